@@ -42,7 +42,7 @@ static const char usage[] =
     "  --scalars        what <for> makes are scalars in FMI 3.0 too, not arrays\n"
     "  --along NAME     adds the derivatives of coordinates and outputs by a parameter, an input or a start value, "
     "X.by.NAME,\n"
-    "                   by the variational equations, to a smooth system\n"
+    "                   by the variational equations, to a system without events\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
@@ -130,6 +130,7 @@ static struct Equations *motion_with_variations(struct Model *model, const struc
   struct Equations *equations = motion_of(model, diagnostics);
   if (equations == NULL || arguments->along_count == 0) return equations;
   add_variations(model, equations, arguments->along, arguments->along_count, diagnostics);
+  model->unrolled = model->constraints.count == 0; /* where these are redundant, it is seen at run time alone */
   return diagnostics->errors == 0 ? motion_of(model, diagnostics) : NULL;
 }
 

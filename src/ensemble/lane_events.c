@@ -83,14 +83,17 @@ static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feel
 
 /* The lanes in which a function, whose values at the nodes are f, stays positive: judge_signs() of events/search.c. */
 static Mask stay_positive(const Lanes *f) {
-  Lanes c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES];
+  Lanes c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES];
   chebyshev_coefficients(f, c);
   Lanes tail = chebyshev_tail(c);
   chebyshev_derivative(c, d);
+  chebyshev_derivative(d, curvature);
   Mask is_far = c[0] - chebyshev_range(c) > 2.0 * tail;
-  Mask rises = (tail <= chebyshev_resolved * chebyshev_range(c)) &
-               (d[0] - chebyshev_range(d) > chebyshev_tail_of_derivative * tail);
-  return is_far | rises;
+  Mask is_resolved = tail <= chebyshev_resolved * chebyshev_range(c);
+  Mask rises = d[0] - chebyshev_range(d) > chebyshev_tail_of_derivative * tail;
+  Mask is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
+  Mask ends_positive = (f[CHEBYSHEV_DEGREE] >= 0.0) & (f[0] >= 0.0);
+  return is_far | (is_resolved & (rises | (is_concave & ends_positive)));
 }
 
 /* The sign that an indicator has while its mode stays, as indicator_sign() of events/indicators.c tells it. */

@@ -16,6 +16,7 @@
 #define chebyshev_tail lane_chebyshev_tail
 #define chebyshev_derivative lane_chebyshev_derivative
 #define chebyshev_powers lane_chebyshev_powers
+#define chebyshev_value lane_chebyshev_value
 #define instructions_frame lane_instructions_frame
 #define instructions_seed lane_instructions_seed
 #define instructions_run lane_instructions_run

@@ -222,9 +222,9 @@ def test_truncated_and_foreign_bytes_are_refused(open_fmu):
 # --- States written by hand, with the right checksum ---
 
 HEADER = 64  # bytes; the last eight are the checksum of the situation, which follows
-# The situation: eight integers, the statistics, seven numbers, and then values.
+# The situation: eight integers, the statistics, eight numbers, and then values.
 MODE, CHANGED, WAITING, STATISTICS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72
-NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end"]
+NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched"]
 VALUES = TIME + 8 * len(NUMBERS)
 
 
@@ -261,7 +261,7 @@ FORGERIES += [("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
 FORGERIES += [("=d", TIME + 8 * i, value) for i in range(len(NUMBERS)) for value in (np.nan, np.inf)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("tolerance"), value) for value in (0.0, -1e-6, 1.0)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("suggested_step"), -1.0)]
-FORGERIES += [("=d", TIME + 8 * NUMBERS.index("last_start"), 1e3)]
+FORGERIES += [("=d", TIME + 8 * NUMBERS.index(number), 1e3) for number in ("last_start", "searched")]
 
 
 def refuses(instance, data, *forgery):

@@ -17,7 +17,13 @@ FITTED = ["m", "k", "d", "x"]
 TURNING = """<system name="Turning"><parameter name="k" start="40" unit="N/m"/><parameter name="c" start="1e5" unit="N.s/m"/><constant name="second" value="1" unit="s"/>
   <coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <dissipation>c*exp(-((time/second - 1.5)/0.3)^8)*v^2/2</dissipation></system>"""
-SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"])}
+HELD = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
+  <coordinate name="x" velocity="vx" unit="m" start="0.6"/><coordinate name="y" velocity="vy" unit="m" start="-0.8"/><particle mass="2" x="x" y="y"/><gravity y="-g"/>
+  <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><output name="pull" unit="N">rod.force</output></system>"""
+HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
+HELD_BY = ["l", "g", "x", "vx"]
+SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
+           "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY)}  # fmt: skip
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -79,6 +85,35 @@ def test_through_handovers(lagrange_fmu):  # noqa: F811
         assert found[i, 0] == pytest.approx(truth.y[[2, 4, 6], i], rel=1e-6, abs=1e-12)
 
 
+def test_through_a_constraint(lagrange_fmu):  # noqa: F811
+    """A pendulum in x and y, whose start is moved onto the circle; of the force in the rod too. They stay on the linearised constraint."""
+    times = [0.0, 1.0, 3.0, 50.0]
+    values, derivatives = motion("Held", ["x", "pull", "y"], HELD_BY, times)
+
+    def place(t, l, g, x):
+        start = mpmath.atan2(x, mpmath.mpf("0.8"))
+        k = mpmath.sin(start / 2)
+        angle = 2 * mpmath.asin(k * mpmath.ellipfun("cd", mpmath.sqrt(g / l) * t, m=k * k))
+        return l * mpmath.sin(angle), 2 * g * (3 * mpmath.cos(angle) - 2 * mpmath.cos(start))
+
+    for i, t in enumerate(times):
+        for k in (0, 1):
+            expected = slopes(lambda *at: place(mpmath.mpf(t), *at)[k], {"l": 1.0, "g": 9.81, "x": 0.6})
+            assert dict(zip(expected, derivatives[i, k])) == pytest.approx(expected, rel=1e-8, abs=1e-9)
+        along_rod = [values[i, 0] * by_x + values[i, 2] * by_y for by_x, by_y in zip(derivatives[i, 0], derivatives[i, 2])]
+        assert along_rod == pytest.approx([1, 0, 0, 0], abs=1e-9)
+
+
+def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
+    """Have no forces in the series, which would be wrong: it is seen, and SciPy follows the motion."""
+    from lagrange_fmu import variational
+    from lagrange_fmu.model_exchange import opened
+
+    for name, is_right in (("Held", True), ("Twice", False)):
+        with opened(archive(name), {}, by=HELD_BY) as point:
+            assert variational.SeriesMotion(point, [], HELD_BY, 1e-8).begins_right() == is_right
+
+
 def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
     """A force that rises and falls between the rows, which the motion of another solver answered."""
     from lagrange_fmu import variational
@@ -100,8 +135,8 @@ def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
     from lagrange_fmu.variational import _is_smooth
 
     work = OSCILLATOR.replace("<experiment", "<work/><experiment")
-    constrained = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text()
-    for text, by, why in ((BALL, "g", "without constraints, contacts or friction"), (constrained, "l", "without constraints"), (work, "k", "without <work/>"),
+    massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
+    for text, by, why in ((BALL, "g", "without what switches"), (massless, "l", "without coordinates without mass"), (work, "k", "without <work/>"),
                           (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
         (tmp_path / "system.xml").write_text(text)
         result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)

@@ -95,12 +95,45 @@ def stewart():
     return f'<robot name="stewart">{"".join(text)}{turns("neck", "piston0", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", -CEILING[0])}</robot>'
 
 
-URDF = {"Gripper": GRIPPER, "Delta": delta(), "Stewart": stewart()}
+# Two legs as a runner's: a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh, and a crank that turns the foot by
+# another rod. The rods weigh nothing; they hold the distance of their ends.
+BONES = {  # of each joint: the one above, its place there, its axis, the link's mass and centre
+    "roll": (None, (0.02, 0.135, 0), "1 0 0", 1.8, "-0.02 0 -0.04"),
+    "yaw": ("roll", (0, 0, -0.07), "0 0 1", 1.2, "0 0 -0.03"),
+    "pitch": ("yaw", (0, 0, -0.09), "0 1 0", 5.5, "0.06 0.03 0"),
+    "knee": ("pitch", (0.12, 0, 0), "0 1 0", 0.8, "0.03 0 -0.02"),
+    "shin": ("knee", (0.06, 0, -0.05), "0 1 0", 0.6, "0.18 0 0"),
+    "tarsus": ("shin", (0.43, 0, -0.02), "0 1 0", 0.8, "0.11 0 0.03"),
+    "heel": ("tarsus", (-0.01, 0, 0.03), "0 1 0", 0.13, "-0.08 0 0"),
+    "crank": ("tarsus", (0.06, -0.02, 0.03), "0 1 0", 0.13, "0 0 0.01"),
+    "foot": ("tarsus", (0.41, 0, 0.04), "0 1 0", 0.15, "0 0 0.03"),
+}
+SPRINGS = {"shin": 1500, "heel": 1250}
+RODS_OF_LEG = {"achilles": [("pitch", (0, -0.045, 0)), ("heel", (-0.1, 0.01, 0))], "plantar": [("crank", (0, -0.01, 0.055)), ("foot", (0, -0.02, 0.05))]}
+USUAL = {"pitch": 0.5, "knee": 1.2, "tarsus": -1.4}
+SIDES = {"left": 1, "right": -1}
+
+
+def legs():
+    text = [link("pelvis")]
+    for side, sign in SIDES.items():
+        mirrored = lambda place: (place[0], sign * place[1], place[2])
+        for name, (parent, place, axis, mass, centre) in BONES.items():
+            above = "pelvis" if parent is None else f"{side}_{parent}_link"
+            text.append(link(f"{side}_{name}_link", mass, centre, INERTIA.format(*(mass * np.array([2e-3, 3e-3, 2.5e-3])))))
+            text.append(joint(f"{side}_{name}", "continuous", above, f"{side}_{name}_link", mirrored(place), axis))
+        for rod, ends in RODS_OF_LEG.items():
+            text += [fixed(f"{side}_{rod}_{i}", f"{side}_{name}_link", mirrored(place)) for i, (name, place) in enumerate(ends)]
+    return f'<robot name="legs">{"".join(text)}</robot>'
+
+
+URDF = {"Gripper": GRIPPER, "Delta": delta(), "Stewart": stewart(), "Legs": legs()}
 # The two links that each <joint> holds together, and its type.
 LOOPS = {
     "Gripper": [(f"{side}_end", f"{side}_pin", 'type="revolute" axis="y"') for side in ("left", "right")],
     "Delta": [(f"rod{arm}{'ab'[sign > 0]}_end", f"rod{arm}{'ab'[sign > 0]}_ankle", 'type="spherical"') for arm, sign in RODS[1:]],
     "Stewart": [(f"piston{leg}", f"head{leg}", 'type="spherical"') for leg in LEGS[1:]],
+    "Legs": [(f"{side}_{rod}_0", f"{side}_{rod}_1", "") for side in SIDES for rod in RODS_OF_LEG],
 }
 
 
@@ -109,9 +142,17 @@ def system(name):
     return f'<system name="{name}"><include file="robot.urdf" as="r"/>{joints}</system>'
 
 
+def system_of_legs():
+    ends = zip(LOOPS["Legs"], Legs("Legs").lengths)
+    rods = "".join(f'<constraint name="rod{i}">distance(r.{one}, r.{other}) - {float(length)!r}</constraint>' for i, ((one, other, _), length) in enumerate(ends))
+    springs = "".join(f"<potential>{stiffness}*r.{side}_{name}^2/2</potential>" for side in SIDES for name, stiffness in SPRINGS.items())
+    return f'<system name="Legs"><include file="robot.urdf" as="r"/>{rods}{springs}</system>'
+
+
 @pytest.fixture(scope="module", autouse=True)
 def robots():
-    build_systems("loops", {name: system(name) for name in URDF}, files={f"{name}/robot.urdf": text for name, text in URDF.items()})
+    texts = {name: system_of_legs() if name == "Legs" else system(name) for name in URDF}
+    build_systems("loops", texts, files={f"{name}/robot.urdf": text for name, text in URDF.items()})
 
 
 class Reference:
@@ -149,14 +190,50 @@ class Reference:
         mass = pin.crba(self.model, self.data, q)
         mass = np.triu(mass) + np.triu(mass, 1).T
         bias = pin.nonLinearEffects(self.model, self.data, q, v)
-        jacobian = self.jacobian(q)
-        pin.forwardKinematics(self.model, self.data, q, v, np.zeros_like(v))
-        of = lambda frame: pin.getFrameClassicalAcceleration(self.model, self.data, frame, pin.LOCAL_WORLD_ALIGNED).linear
-        drift = np.concatenate([of(other) - of(one) for one, other in self.loops])
+        jacobian, drift = self.jacobian(q), self.drift(q, v)
         m, n = len(drift), len(v)
         matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
         solution = np.linalg.lstsq(matrix, np.concatenate([torques - bias, -drift]), rcond=1e-12)[0]
-        return solution[:n], solution[n:].reshape(-1, 3)
+        return solution[:n], solution[n:].reshape(len(self.loops), -1)
+
+    def parting(self, q, v):
+        """How fast the ends of each loop part, and the change of that while the joints' velocities stay as they are."""
+        pin.forwardKinematics(self.model, self.data, q, v, np.zeros_like(v))
+        pin.updateFramePlacements(self.model, self.data)
+        axes = pin.LOCAL_WORLD_ALIGNED
+        velocity = lambda frame: pin.getFrameVelocity(self.model, self.data, frame, axes).linear
+        acceleration = lambda frame: pin.getFrameClassicalAcceleration(self.model, self.data, frame, axes).linear
+        return [np.array([of(other) - of(one) for one, other in self.loops]) for of in (velocity, acceleration)]
+
+    def drift(self, q, v):
+        return self.parting(q, v)[1].reshape(-1)
+
+
+class Legs(Reference):
+    """Each loop is a rod, as long as the distance of its ends in the usual pose."""
+
+    def __init__(self, name):
+        super().__init__(name)
+        self.lengths = np.linalg.norm(self.lines(np.array([USUAL.get(joint.split("_")[1], 0.0) for joint in self.names])), axis=1)
+
+    def lines(self, q):
+        return Reference.misfit(self, q).reshape(-1, 3)
+
+    def misfit(self, q):
+        return np.linalg.norm(self.lines(q), axis=1) - self.lengths
+
+    def directions(self, q):
+        lines = self.lines(q)
+        return lines / np.linalg.norm(lines, axis=1)[:, None]
+
+    def jacobian(self, q):
+        return np.einsum("ri,rij->rj", self.directions(q), Reference.jacobian(self, q).reshape(len(self.loops), 3, -1))
+
+    def drift(self, q, v):
+        velocity, acceleration = self.parting(q, v)
+        along = self.directions(q)
+        across = np.sum(velocity**2, axis=1) - np.sum(along * velocity, axis=1) ** 2
+        return np.sum(along * acceleration, axis=1) + across / np.linalg.norm(self.lines(q), axis=1)
 
 
 def start_of(name, reference, random):
@@ -169,12 +246,14 @@ def start_of(name, reference, random):
             start[joint] += 0.5
         if name == "Stewart" and joint.startswith("piston"):
             start[joint] += 0.6
+        if name == "Legs":
+            start[joint] += USUAL.get(joint.split("_")[1], 0.0)
     return reference.closed(np.array([start[joint] for joint in reference.names]))
 
 
 @pytest.mark.parametrize("name", URDF)
 def test_accelerations_and_forces(name, open_fmu):
-    reference, instance = Reference(name), open_fmu(name, kind=FMU2Model)
+    reference, instance = (Legs if name == "Legs" else Reference)(name), open_fmu(name, kind=FMU2Model)
     states, random = fmu.states_of(name), np.random.default_rng(1)
     order = [states.index(f"r.{joint}") for joint in reference.names] + [states.index(f"r.{joint}_velocity") for joint in reference.names]
     instance.initialize({f"r.{joint}": float(q) for joint, q in zip(reference.names, start_of(name, reference, random))})
@@ -187,7 +266,8 @@ def test_accelerations_and_forces(name, open_fmu):
         v = random.uniform(-1, 1, len(q))
         v -= np.linalg.pinv(jacobian, rcond=1e-9) @ (jacobian @ v)
         torques = random.uniform(-1, 1, len(q))
-        expected, forces = reference.accelerations(q, v, torques)
+        springs = [SPRINGS.get(joint.split("_")[-1], 0.0) if name == "Legs" else 0.0 for joint in reference.names]
+        expected, forces = reference.accelerations(q, v, torques - springs * q)
         values = np.zeros(len(states))
         values[order] = [*q, *v]
         state[:] = values
@@ -197,6 +277,10 @@ def test_accelerations_and_forces(name, open_fmu):
         found = np.array(derivatives)[order][len(q) :]
         assert np.max(np.abs(found - expected)) < 1e-8 * max(1, np.max(np.abs(expected)))
         reference.misfit(q)
+        if name == "Legs":
+            told = [[instance.get(f"rod{i}.force")] for i in range(len(forces))]
+            assert np.max(np.abs(told - forces)) < 1e-8 * max(1, np.max(np.abs(forces)))
+            continue
         for i, (one, _, _) in enumerate(LOOPS[name]):
             axes = reference.place(one).rotation
             told = axes @ [instance.get(f"loop{i}.force{axis}") for axis in "XYZ"]

@@ -11,6 +11,7 @@ from fmpy.fmi2 import FMU2Model
 
 import fmu
 from fmu import build_systems, lagc
+from numerics.space.accelerations import chain
 
 pytestmark = pytest.mark.release
 
@@ -20,6 +21,7 @@ FILES = {
     "Ur5": ("ur_description/urdf/ur5_robot.urdf", False),
     "Panda": ("panda_description/urdf/panda.urdf", False),  # one finger mimics the other
     "Anymal": ("anymal_b_simple_description/robots/anymal.urdf", True),
+    "Chain": (chain(200), False),
     "Humanoid": ("simple_humanoid_description/urdf/simple_humanoid.urdf", True),
 }
 BASE = ["base_x", "base_y", "base_z", "base_qw", "base_qx", "base_qy", "base_qz"]
@@ -149,7 +151,8 @@ def test_accelerations(name, open_fmu):
         expected = reference.accelerations(position, velocity, torques)
         np.testing.assert_array_equal(derivatives[: len(names)], velocity)
         error = np.max(np.abs(derivatives[len(names) :] - expected))
-        assert error < 1e-10 * np.max(np.abs(expected)), error / np.max(np.abs(expected))
+        digits = 1e-8 if name == "Chain" else 1e-10  # the mass matrix of so many joints is hard to solve with
+        assert error < digits * np.max(np.abs(expected)), error / np.max(np.abs(expected))
 
 
 @pytest.mark.parametrize("path", ["talos_data/robots/talos_full_v2.urdf", "centauro_description/urdf/centauro.urdf", "tiago_description/robots/tiago_dual.urdf"])

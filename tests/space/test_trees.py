@@ -7,6 +7,7 @@ from robots_by_energies import Robot
 
 import fmu
 from fmu import build_systems
+from numerics.space.accelerations import chain
 
 LINKS = 10  # of the pendulum
 
@@ -71,6 +72,15 @@ def test_robot(open_fmu):
     with mp.workdps(45):
         expected = robot.accelerations(position, velocity, forces)
     np.testing.assert_allclose(instance.get(*[f"der({name}_velocity)" for name in names]), expected, rtol=1e-9)
+
+
+def test_code_grows_as_the_chain(tmp_path):
+    """What is written of a chain of joints, its frames and bodies included, and what is done to derive it."""
+    sizes = []
+    for count in (100, 200):
+        assert fmu.lagc(chain(count), "-o", tmp_path).returncode == 0
+        sizes.append((tmp_path / "system.c").stat().st_size)
+    assert sizes[1] < 2.5 * sizes[0]
 
 
 def absolute_accelerations(angles, rates, held=None):

@@ -97,6 +97,37 @@ def test_a_floor_does_not_come_through_a_body(open_fmu):
         instance.step(0.1)
 
 
+def test_what_was_searched_ahead_does_not_outlast_a_change(open_fmu):
+    """The ball's first impact would come at 0.4515 s; with a tenfold gravity from 0.2 s on it comes at 0.3096 s, by the parabola."""
+    instance = open_fmu("BouncingBall").initialize()
+    for _ in range(20):
+        instance.step(0.01)
+    instance.set(g=98.1)
+    for _ in range(15):
+        instance.step(0.01)
+    height, speed = 1 - 9.81 * 0.2**2 / 2, 9.81 * 0.2
+    at_ground = np.sqrt(speed**2 + 2 * 98.1 * height)
+    since = 0.15 - (at_ground - speed) / 98.1
+    after = 0.8 * at_ground
+    assert instance.get("h", "v") == pytest.approx([after * since - 98.1 * since**2 / 2, after - 98.1 * since], abs=1e-12)
+
+
+def test_an_impact_is_the_same_in_short_steps_and_long_ones(open_fmu):
+    """Searched for ahead of the step that it is in, from a state that was saved in between too."""
+    ends = []
+    for step in (1.5, 0.1, 0.03, 0.001):
+        instance = open_fmu("BouncingBall").initialize()
+        for k in range(round(1.5 / step)):
+            if k == 7:
+                state = instance.fmu.getFMUstate()
+                instance.step(step)
+                instance.fmu.setFMUstate(state)
+                instance.time = k * step
+            instance.step(step)
+        ends.append(instance.get("h", "v"))
+    assert np.ptp(ends, axis=0) == pytest.approx(0, abs=2e-12)
+
+
 def test_two_events_cannot_set_the_same_at_once(open_fmu):
     instance = open_fmu("SetTwice").initialize()
     with instance.fails(DISCARD, r"number 1, when=\"time >= 1\", and number 2, when=\"time - 1\", happen at once and both set 'v'"):

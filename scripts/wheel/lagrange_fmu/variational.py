@@ -1,5 +1,5 @@
 """
-Motions with their derivatives by the FMU's own solver: of smooth systems, which lagc derives so that the variational equations are a part of the motion.
+Motions with their derivatives by the FMU's own solver: of smooth systems, with constraints too, which lagc derives so that the variational equations are a part of the motion.
 """
 
 import tempfile
@@ -9,14 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from fmpy.fmi1 import FMICallException
 
 from .building import derive
 from .model_exchange import along, opened, words_for
 from .models import Slave2
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import Motion, check_names, check_tolerance, start_slopes
+from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 
+CHECKED = 1e-6  # relative, to which rates are right at the start
 LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
 
 
@@ -43,8 +45,12 @@ class Sensitivities:
 @contextmanager
 def followed(system, values, by):
     """The Point of a system or an FMU, of which motion() makes motions with derivatives by these names."""
-    in_series = not is_fmu(system) and by and _is_smooth(system, by)
-    with opened(system, values, what="be followed", by=by if in_series else ()) as point:
+    if not is_fmu(system) and by and _is_smooth(system, by):
+        with opened(system, values, what="be followed", by=by) as point:
+            if SeriesMotion(point, [], by, CHECKED).begins_right():
+                yield point
+                return
+    with opened(system, values, what="be followed") as point:
         yield point
 
 
@@ -60,12 +66,32 @@ class SeriesMotion:
         self.model.tolerance = tolerance
         self.references = [point.references[name] for name in self.of] + [point.references[along(name, value)] for name in self.of for value in self.by]
 
+    def start(self, values):
+        """The derivatives of the states, a row for each value."""
+        _, slopes = start_slopes(self.point, self.by, values)
+        starts = {along(name, by): slope for by, row in zip(self.by, slopes) for name, slope in zip(self.point.states, row)}
+        self.point.start(values=values | starts)
+        return slopes
+
+    def begins_right(self):
+        """Whether the rates are what the FMU's directional derivatives give, which go without constraints that follow from others; those in the series do not."""
+        reference, rates = self.point.references, self.point.derivatives
+        try:
+            slopes = self.start({})
+            found = [self.model.getReal([reference[along(name, by)] for name in rates]) for by in self.by]
+            expected = [
+                self.model.getDirectionalDerivative([reference[name] for name in rates], [*(reference[name] for name in self.point.states), *acting], [*slope, *[1.0] * len(acting)])
+                for acting, slope in zip(acting_of(self.point, self.by), slopes)
+            ]
+        except FMICallException:
+            self.point.messages.clear()
+            return False
+        return bool(np.allclose(found, expected, rtol=CHECKED, atol=CHECKED * np.max(np.abs(expected), initial=0.0)))
+
     def over(self, times, values=None, inputs=None, kinks=()):
         """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, linear between times and kinks."""
         self.model.start_time = times[0]
-        _, slopes = start_slopes(self.point, self.by, values or {})
-        starts = {along(name, by): slope for by, row in zip(self.by, slopes) for name, slope in zip(self.point.states, row)}
-        self.point.start(values=(values or {}) | starts)
+        self.start(values or {})
         rows, stops = [], np.union1d(times, kinks)
         for begin, end in zip(stops, [*stops[1:], None]):
             self.set_inputs(begin, end, inputs)

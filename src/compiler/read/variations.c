@@ -69,11 +69,18 @@ static void append_outputs(struct Model *model, const struct Equations *equation
 }
 
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
-  if (model->constraints.count > 0) return "constraints, contacts or friction";
   if (equations->switching != NULL) return "what switches";
   if (equations->explicit_form) return "a linearization";
   if (equations->has_work) return "<work/>";
+  if (model->mechanism.stillness_count > 0) return "coordinates without mass";
   return NULL;
+}
+
+/* Forces of constraints are numbered behind the accelerations. */
+static void number_forces(struct Model *model, size_t total) {
+  struct Graph *graph = model->graph;
+  for (size_t j = 0; j < model->constraints.count; j++)
+    graph->symbols[graph->vertices[model->unknowns.forces[j]].left].index = (int)(total + j);
 }
 
 /* The reaction of all, which is 0, stands where drives have theirs. */
@@ -94,13 +101,14 @@ static void make_room_for(struct Model *model, size_t total) {
 
 static void add_variation(struct Model *model, const struct Equations *equations, struct Variable by, size_t outputs,
                           size_t reaction) {
-  size_t count = equations->count, first = model->coordinates.count;
+  size_t count = equations->count, first = model->coordinates.count, rows = row_count(equations);
   for (size_t i = 0; i < count; i++) append_coordinate(model, i, &by, reaction);
-  Node *seeds = direction_of(model, &by, count, first);
-  append_outputs(model, equations, outputs, &by, seeds);
-  Node *along = allocate(count, sizeof *along);
-  derivative_along(model->graph, equations->acceleration, count, seeds, along);
+  Node *seeds = direction_of(model, &by, count, first), *along = allocate(rows, sizeof *along);
+  derivative_along(model->graph, equations->acceleration, rows, seeds, along);
   for (size_t i = 0; i < count; i++) model->given.drives[first + i].acceleration = along[i];
+  for (size_t j = count; j < rows; j++)
+    seeds[model->graph->vertices[model->unknowns.forces[j - count]].left] = along[j];
+  append_outputs(model, equations, outputs, &by, seeds);
 }
 
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
@@ -116,5 +124,6 @@ void add_variations(struct Model *model, const struct Equations *equations, cons
   if (diagnostics->errors > 0) return;
   size_t outputs = model->outputs.count, reaction = append_reaction(model);
   make_room_for(model, (count + 1) * equations->count);
+  number_forces(model, (count + 1) * equations->count);
   for (size_t k = 0; k < count; k++) add_variation(model, equations, *find(model, names[k]), outputs, reaction);
 }

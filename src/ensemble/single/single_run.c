@@ -89,6 +89,12 @@ static void give_state(const double *state, const struct LaneView *lane) {
   give_numbers(state, lagrangian.state_count, lane->series, SERIES_LENGTH * lane->stride);
 }
 
+static bool ends_with_zeros(const struct SingleRun *run) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    if (run->series[i][run->order] != 0.0) return false;
+  return true;
+}
+
 /* Its polynomials for interpolate_lane(), which reads them many times. */
 static void take_series(struct SingleRun *run, const struct LaneView *lane) {
   run->origin = lane->origin;
@@ -99,6 +105,7 @@ static void take_series(struct SingleRun *run, const struct LaneView *lane) {
     take_numbers(run->series[i] + 1, (size_t)lane->order, row + lane->stride, lane->stride);
     run->series[i][0] = lane->low[i * lane->stride];
   }
+  while (run->order > 2 && ends_with_zeros(run)) run->order--;
 }
 
 /* The instance becomes the lane's run, in its last step. */
@@ -106,7 +113,8 @@ static void take(struct SingleRun *run, const struct LaneView *lane) {
   take_values(run, lane);
   take_numbers(run->instance.prepared, lagrangian.prepared_count, lane->prepared, lane->stride);
   run->instance.prepared_is_stale = false;
-  run->instance.situation->last_step = (struct Span){lane->origin, lane->origin + lane->reach};
+  situation_begin(run->instance.situation, lane->origin);
+  run->instance.situation->last_step.end = lane->origin + lane->reach;
 }
 
 /* --- The functions ---------------------------------------------------------------------------------------------------- */
@@ -157,6 +165,8 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
   double tolerance = instance->situation->tolerance;
   instance_reset(instance);
   instance->situation->tolerance = tolerance;
+  instance->situation->stop_time_defined = 1;
+  instance->situation->stop_time = run->step.end;
   instance->situation->phase = PHASE_INITIALIZATION;
   take_values(run, lane);
   take_state(run, lane);

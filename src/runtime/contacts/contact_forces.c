@@ -278,7 +278,7 @@ static const char *refuse_forces(const struct Settlement *settlement, const stru
 }
 
 /* What rests on a contact that closes slides as it moves: it may have been let go as the contact opened. */
-static void let_resting_slide(struct Settlement *settlement, size_t contact) {
+static void let_slide(struct Settlement *settlement, size_t contact) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++)
     if (is_in_plane(settlement->switches, i) && rests_on(settlement->switches, i, contact))
       set_friction(settlement, i, 1.0);
@@ -295,7 +295,7 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
     bool presses = resting->found_force[i] > rounded_force * size, parts = resting->found[i] > rounded_force * size;
     if (is_closed ? !parts : !presses) continue;
     set_contact(settlement, contact, !is_closed);
-    if (!is_closed) let_resting_slide(settlement, contact);
+    if (!is_closed) let_slide(settlement, contact);
     settlement->was_opened[contact] = is_closed ? 1.0 : 0.0;
     changes = true;
   }

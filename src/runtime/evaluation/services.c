@@ -6,6 +6,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/inputs.h"
+#include "instance/held.h"
 #include "instance/projection.h"
 
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
@@ -61,10 +62,23 @@ bool solver_take_state(struct Instance *instance, double time) {
   return are_finite(instance->state, lagrangian.state_count);
 }
 
+bool solver_is_held(const struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (lagrangian.constraints.projection == NULL) return false;
+  bool has_others = switches == NULL || switches->plane_count > 0 ||
+                    lagrangian.constraints.count > switches->contact_count + switches->friction_count;
+  if (has_others) return true;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (contact_holds(instance, i)) return true;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (friction_holds(instance, i)) return true;
+  return false;
+}
+
 /* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
   static const char problem[] = "a constraint cannot be kept there";
-  if (lagrangian.constraints.projection == NULL) return NULL;
+  if (!solver_is_held(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
   return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
 }

@@ -19,6 +19,9 @@ struct Point solver_point(struct Instance *instance, double time, const double *
 /* The instance's state becomes that of a time in the last step. False where that is not known or not finite. */
 bool solver_take_state(struct Instance *instance, double time);
 
+/* False where there are no constraints but those of contacts that are open and of frictions that slide. */
+bool solver_is_held(const struct Instance *instance);
+
 /*
  * Brings the state at the end of a step back to the constraints, where there are some. NULL, or the reason why the
  * motion cannot go on.

@@ -18,10 +18,18 @@ Real chebyshev_time(Real from, Real to, int node) {
 }
 
 void chebyshev_coefficients(const Real *f, Real *c) {
+  enum { HALF = CHEBYSHEV_DEGREE / 2 };
+  Real even[HALF], odd[HALF]; /* of the nodes on both sides of the middle one */
+  for (int k = 0; k < HALF; k++) {
+    Real share = REAL(k == 0 ? 0.5 : 1.0);
+    even[k] = share * (f[k] + f[CHEBYSHEV_DEGREE - k]);
+    odd[k] = share * (f[k] - f[CHEBYSHEV_DEGREE - k]);
+  }
   for (int j = 0; j <= CHEBYSHEV_DEGREE; j++) {
-    Real sum = 0.5 * (f[0] + (j % 2 == 0 ? f[CHEBYSHEV_DEGREE] : -f[CHEBYSHEV_DEGREE]));
-    for (int k = 1; k < CHEBYSHEV_DEGREE; k++) sum += f[k] * cosines[j * k % (2 * CHEBYSHEV_DEGREE)];
-    c[j] = sum * (j == 0 || j == CHEBYSHEV_DEGREE ? 1.0 : 2.0) / CHEBYSHEV_DEGREE;
+    const Real *part = j % 2 == 0 ? even : odd;
+    Real sum = j % 2 == 0 ? f[HALF] * cosines[j * HALF % (2 * CHEBYSHEV_DEGREE)] : REAL(0.0);
+    for (int k = 0; k < HALF; k++) sum += part[k] * cosines[j * k % (2 * CHEBYSHEV_DEGREE)];
+    c[j] = sum * ((j == 0 || j == CHEBYSHEV_DEGREE ? 1.0 : 2.0) / CHEBYSHEV_DEGREE);
   }
 }
 
@@ -40,6 +48,17 @@ void chebyshev_derivative(const Real *c, Real *d) {
   d[CHEBYSHEV_DEGREE - 1] = 2.0 * CHEBYSHEV_DEGREE * c[CHEBYSHEV_DEGREE];
   for (int k = CHEBYSHEV_DEGREE - 2; k >= 0; k--) d[k] = d[k + 2] + 2.0 * (k + 1) * c[k + 1];
   d[0] *= 0.5;
+}
+
+/* Clenshaw's rule. */
+Real chebyshev_value(const Real *c, Real place) {
+  Real next = REAL(0.0), sum = REAL(0.0);
+  for (int k = CHEBYSHEV_DEGREE; k > 0; k--) {
+    Real before = sum;
+    sum = c[k] + 2.0 * place * sum - next;
+    next = before;
+  }
+  return c[0] + place * sum - next;
 }
 
 void chebyshev_powers(const Real *c, Real half, Real *power) {

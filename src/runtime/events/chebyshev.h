@@ -19,9 +19,14 @@ Real chebyshev_range(const Real *c);
 Real chebyshev_tail(const Real *c);
 static const double chebyshev_resolved = 1e-4;
 
-/* The coefficients of its derivative, up to a factor, and what the tail may make of it. */
+/* The coefficients of its derivative, by a place from -1 to 1, and what the tail may make of it, and of its own derivative. */
 void chebyshev_derivative(const Real *c, Real *d);
 static const double chebyshev_tail_of_derivative = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE;
+static const double chebyshev_tail_of_curvature =
+    4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * (CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE - 1) / 3.0;
+
+/* The value at a place from -1, the beginning of the window, to 1. */
+Real chebyshev_value(const Real *c, Real place);
 
 /* Its coefficients of powers of the time from the middle on, in a window of twice the half length. */
 void chebyshev_powers(const Real *c, Real half, Real *power);

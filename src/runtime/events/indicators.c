@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "evaluation/services.h"
+#include "instance/held.h"
 
 /* A state is not told from others nearer than the last digit of this share of its nominal value. */
 static const double least_share = 0.1;
@@ -20,8 +21,8 @@ bool indicator_is_force(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t contacts = contact_indicator(switches, 0), frictions = friction_indicator(switches, 0);
   if (indicator < contacts) return false;
-  if (indicator < frictions) return instance->parameter[switches->contacts[indicator - contacts].mode] > 0.0;
-  return instance->parameter[switches->frictions[indicator - frictions].mode] == 0.0;
+  if (indicator < frictions) return contact_holds(instance, indicator - contacts);
+  return friction_holds(instance, indicator - frictions);
 }
 
 /* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */

@@ -25,6 +25,15 @@ static const double crowding_share = 1e-6;
 /* Where events lie too close in a step of the solver, it is made so many times as short, and so often in a row. */
 enum { NEARER = 64, NEARER_LIMIT = 8 };
 
+/*
+ * How far beyond a communication step its series is searched: so many communication steps, or so many times as far as it is
+ * known, and up to which share of the time to an event, which is looked for again in its own communication step.
+ */
+static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
+
+/* Windows in which that may take more than a few are left to the communication steps there. */
+enum { FURTHER_WINDOWS = 24 };
+
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
 
@@ -75,9 +84,10 @@ const char *events_update(struct Instance *instance, bool *changed) {
   return problem;
 }
 
-/* Lets the solver start anew at the event. */
-static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step) {
+/* Lets the solver start anew at a time, in the state event_state. */
+static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step, double time) {
   const struct Solver *solver = lagrangian.solver;
+  situation_begin(instance->situation, time);
   bool is_done = solver->restart == NULL || solver->restart(instance, instance->event_state, step);
   return is_done ? NULL : "there is no memory for the solver";
 }
@@ -86,10 +96,9 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
 static const char *stop_at_event(struct Instance *instance, struct CommunicationStep *step, double time,
                                  size_t indicator) {
   instance->situation->waiting_event = (int32_t)indicator + 1;
-  instance->situation->last_step = (struct Span){time, time};
   step->end = time;
   step->length = time - step->start;
-  return start_anew(instance, step);
+  return start_anew(instance, step, time);
 }
 
 /*
@@ -101,8 +110,7 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
   const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
-  instance->situation->last_step = (struct Span){time, time};
-  const char *obstacle = start_anew(instance, step);
+  const char *obstacle = start_anew(instance, step, time);
   return problem != NULL ? problem : obstacle;
 }
 
@@ -113,6 +121,7 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
+  progress->searched = fmax(progress->searched, instance->situation->searched);
   const size_t *lifted = progress->has_lifted ? &progress->indicator : NULL;
   while (progress->searched < end) {
     double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
@@ -120,7 +129,8 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     const double *samples;
     bool is_sure = window_narrow(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (search_for_event(instance, progress->searched, near, samples, lifted, time, indicator)) return true;
+    if (search_for_event(instance, progress->searched, near, samples, lifted, WINDOW_LIMIT, time, indicator))
+      return true;
     window = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->gathered = 0;
@@ -128,6 +138,38 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   progress->reach *= 2.0;
   progress->nearer = 0;
   return false;
+}
+
+/* Whether a search may go beyond the communication step: nothing hangs on inputs whose polynomials end with it. */
+static bool may_go_further(const struct Instance *instance, const struct CommunicationStep *step,
+                           const struct EventProgress *progress) {
+  const struct Situation *situation = instance->situation;
+  const struct Span *last = &situation->last_step;
+  bool is_new = last->start == step->start; /* as where values are set before each communication step */
+  bool begins = progress->searched <= fmax(step->start, last->start) && progress->count == 0;
+  return last->end > step->end && begins && !is_new && !situation->input_derivatives_set;
+}
+
+/* Searches a series that serves many communication steps for more than one of them, so that the next need not do it. */
+static void search_further(struct Instance *instance, const struct CommunicationStep *step,
+                           struct EventProgress *progress) {
+  struct Situation *situation = instance->situation;
+  double from = progress->searched, time;
+  double further = fmax(further_steps * step->length, further_share * (from - situation->last_step.start));
+  double to = fmin(situation->last_step.end, from + further);
+  if (situation->stop_time_defined) to = fmin(to, situation->stop_time);
+  if (!may_go_further(instance, step, progress) || !(to > step->end)) return;
+  int singular = instance->singular;
+  const char *limited_by = instance->limited_by;
+  const double *samples;
+  size_t indicator;
+  if (window_narrow(instance, from, &to, &samples)) {
+    bool happens = search_for_event(instance, from, to, samples, NULL, FURTHER_WINDOWS, &time, &indicator);
+    if (!happens) progress->searched = to;
+    else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
+  }
+  instance->singular = singular;
+  instance->limited_by = limited_by;
 }
 
 /*
@@ -139,9 +181,8 @@ static bool go_nearer(struct Instance *instance, const struct CommunicationStep 
   if (progress->unsure > UNSURE_LIMIT || ++progress->nearer > NEARER_LIMIT) return false;
   if (solver_rests(progress->searched, reach)) return false;
   if (!lagrangian.solver->interpolate(instance, progress->searched, instance->event_state)) return false;
-  instance->situation->last_step = (struct Span){progress->searched, progress->searched};
   progress->reach = reach;
-  return start_anew(instance, step) == NULL;
+  return start_anew(instance, step, progress->searched) == NULL;
 }
 
 static bool is_of_contact(size_t indicator) {
@@ -227,7 +268,10 @@ static const char *refuse_gathering(const struct Instance *instance, const struc
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator = 0;
+  progress->searched = fmax(progress->searched, instance->situation->searched);
+  if (progress->searched < end) search_further(instance, step, progress);
   bool is_found = find_next(instance, end, progress, &time, &indicator);
+  instance->situation->searched = progress->searched;
   instance->situation->gathered = 0;
   if (!is_found) return NULL;
   if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);

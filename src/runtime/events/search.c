@@ -10,7 +10,10 @@
 #include "events/indicators.h"
 #include "events/window.h"
 
-enum { DEPTH_LIMIT = 48, WINDOW_LIMIT = 5000, REFINEMENT_LIMIT = 200 };
+enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
+
+/* How far the slope leads beyond a zero: the next value then lies on the other side. */
+static const double overshoot = 1.1;
 
 struct Search {
   struct Instance *instance;
@@ -19,7 +22,7 @@ struct Search {
   double *samples;         /* CHEBYSHEV_NODES rows of them */
   double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
-  int windows;             /* that were looked at */
+  int windows;             /* that may still be looked at */
   double departure;        /* the sign of what left 0 last */
   double floor;            /* what an event has left of an indicator below 0, by rounding */
 };
@@ -74,7 +77,7 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* f: values at the nodes, positive while the mode stays. */
 static enum Verdict judge_signs(const double *f, double noise) {
-  double c[CHEBYSHEV_DEGREE + 1], d[CHEBYSHEV_DEGREE + 1], largest = 0.0;
+  double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
   if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
@@ -91,6 +94,9 @@ static enum Verdict judge_signs(const double *f, double noise) {
   double margin = chebyshev_tail_of_derivative * tail;
   if (d[0] - chebyshev_range(d) > margin) return STAYS; /* it rises */
   if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
+  chebyshev_derivative(d, curvature);
+  bool is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
+  if (is_concave && f[CHEBYSHEV_DEGREE] >= 0.0) return f[0] < -noise ? FALLS : STAYS; /* as a body that is thrown */
   return UNKNOWN;
 }
 
@@ -104,14 +110,35 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
 }
 
 /*
- * Where f falls through 0, from a time where it is not negative: of the two neighbouring times the one where it is smaller,
- * or, of a branch, the later one, where the next piece has a value.
+ * Narrows the two sides of a fall to where the polynomial through f, the values at the nodes, has it: its slope leads from one
+ * side to the other, and a little beyond, so that both come near.
+ */
+static void narrow_fall(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
+                        struct Sample *before, struct Sample *behind) {
+  double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], half = 0.5 * (to - from);
+  double time = before->time + (behind->time - before->time) * (before->f / (before->f - behind->f));
+  double place = (time - from) / half - 1.0;
+  chebyshev_coefficients(f, c);
+  chebyshev_derivative(c, d);
+  for (int i = 0; i < NEWTON_STEPS; i++) place -= chebyshev_value(c, place) / chebyshev_value(d, place);
+  double slope = chebyshev_value(d, place) / half;
+  time = from + half * (1.0 + place);
+  for (int i = 0; i < NARROWING_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {
+    struct Sample next = sample_at(search, indicator, sign, time);
+    double rounding = DBL_EPSILON * fabs(time);
+    *(next.f < 0.0 ? behind : before) = next;
+    time -= overshoot * next.f / slope + (next.f < 0.0 ? rounding : -rounding);
+  }
+}
+
+/*
+ * Where f falls through 0, between a time before, where it is not negative, and one behind: of the two neighbouring times the
+ * one where it is smaller, or, of a branch, the later one, where the next piece has a value.
  * By the Illinois method, with every third step a bisection.
  */
-static double refine(struct Search *search, size_t indicator, double sign, double from, double to) {
-  struct Sample before = sample_at(search, indicator, sign, from), behind = sample_at(search, indicator, sign, to);
+static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;
-  if (before.f < 0.0) return from;
+  if (before.f < 0.0) return before.time;
   for (int i = 0; i < REFINEMENT_LIMIT && behind.time - before.time > DBL_EPSILON * fabs(behind.time); i++) {
     double first = weight_before * before.f, last = weight_behind * behind.f,
            middle = 0.5 * (before.time + behind.time);
@@ -129,26 +156,46 @@ static double refine(struct Search *search, size_t indicator, double sign, doubl
   return before.f <= -behind.f && !is_branch ? before.time : behind.time;
 }
 
+/* The same in a window in which f, with these values at the nodes, falls through 0 once. */
+static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from,
+                          double to) {
+  int node = CHEBYSHEV_DEGREE;
+  if (f[node] < 0.0) return from;
+  while (node > 1 && f[node - 1] >= 0.0) node--;
+  struct Sample before = {chebyshev_time(from, to, node), f[node]};
+  struct Sample behind = {chebyshev_time(from, to, node - 1), f[node - 1]};
+  narrow_fall(search, indicator, sign, f, from, to, &before, &behind);
+  return refine(search, indicator, sign, before, behind);
+}
+
+static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth);
+
 /*
- * The first time in a window at which f = sign times the indicator less the floor falls below 0; INFINITY where it does
- * not.
+ * The first time up to an end at which f = sign times the indicator less the floor falls below 0, from its values at the nodes
+ * of a window that reaches to the end or further; INFINITY where it does not.
  */
-static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
-  double f[CHEBYSHEV_NODES];
-  if (++search->windows > WINDOW_LIMIT) return INFINITY;
-  for (int k = 0; k < CHEBYSHEV_NODES; k++)
-    f[k] = sign * value_at(search, indicator, chebyshev_time(from, to, k)) - search->floor;
+static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
+                            double to, double end, int depth) {
   double noise = search->noise[indicator];
   enum Verdict verdict = judge_signs(f, noise);
   if (verdict == STAYS) return INFINITY;
-  if (verdict == FALLS) return refine(search, indicator, sign, from, to);
-  double middle = 0.5 * (from + to);
-  if (depth == 0 || !(middle > from && middle < to)) {
+  if (verdict == FALLS) return refine_fall(search, indicator, sign, f, from, to);
+  double middle = 0.5 * (from + end);
+  if (depth == 0 || !(middle > from && middle < end)) {
     bool falls = f[CHEBYSHEV_DEGREE] >= -noise && f[0] < -noise;
-    return falls ? refine(search, indicator, sign, from, to) : INFINITY;
+    struct Sample before = {from, f[CHEBYSHEV_DEGREE]}, behind = {to, f[0]};
+    return falls ? refine(search, indicator, sign, before, behind) : INFINITY;
   }
   double first = first_fall(search, indicator, sign, from, middle, depth - 1);
-  return isfinite(first) ? first : first_fall(search, indicator, sign, middle, to, depth - 1);
+  return isfinite(first) ? first : first_fall(search, indicator, sign, middle, end, depth - 1);
+}
+
+/* The same in a window that was not looked at yet. */
+static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
+  double f[CHEBYSHEV_NODES];
+  if (--search->windows < 0) return INFINITY;
+  for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sample_at(search, indicator, sign, chebyshev_time(from, to, k)).f;
+  return first_fall_in(search, indicator, sign, f, from, to, to, depth);
 }
 
 /*
@@ -227,9 +274,10 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
 }
 
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
-                      double *time, size_t *indicator) {
+                      int windows, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
+  search.windows = windows;
   bool knows_noise = false;
   for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
     sample(&search, chebyshev_time(from, to, (int)k), samples != NULL ? samples + k * lagrangian.state_count : NULL,
@@ -243,9 +291,10 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     knows_noise = true;
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
     search.floor = floor_of(&search, i, start, lifted);
-    double end = fmin(to, *time), found = sign == 0.0 ? first_departure(&search, i, from, to)
-                                                      : first_fall(&search, i, sign, from, end, DEPTH_LIMIT);
-    bool is_lost = search.windows > WINDOW_LIMIT;
+    for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] -= search.floor;
+    double found = sign == 0.0 ? first_departure(&search, i, from, to)
+                               : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);
+    bool is_lost = search.windows < 0;
     if (!is_lost && !(found < *time)) continue;
     *time = is_lost ? NAN : found;
     *indicator = i;

@@ -79,7 +79,7 @@ static double largest_acceleration(const struct Window *window) {
  * What rounding of the state makes of them in the middle: just before a body rolls or rests, the direction of its friction in a
  * plane is that of a velocity of which little more than rounding is left.
  */
-static double noise_of_accelerations(const struct Window *window) {
+static double noise_in_window(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count, middle = CHEBYSHEV_NODES / 2;
   const double *state = window->states + middle * lagrangian.state_count,
                *exact = window->accelerations + middle * count;
@@ -129,8 +129,7 @@ static double sure_half(struct Window *window) {
     is_resolved = expand_sampled(window, window->states, states, i, 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i],
                                  window->x[i]);
   double noise = is_resolved ? force_noise * largest_acceleration(window) : 0.0;
-  if (!is_resolved ||
-      !(expand_accelerations(window, noise) || expand_accelerations(window, noise_of_accelerations(window))))
+  if (!is_resolved || !(expand_accelerations(window, noise) || expand_accelerations(window, noise_in_window(window))))
     return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(window->input[i], 0, sizeof(Series));

@@ -56,8 +56,15 @@ struct Situation {
   double tolerance;
   double suggested_step; /* of a solver that starts anew, not clipped by the communication step; 0 for none */
   struct Span last_step; /* of the solver, which may end after time */
+  double searched;       /* no event is left in it before this time */
   double values[];
 };
+
+/* The solver is to begin at a time. */
+static inline void situation_begin(struct Situation *situation, double time) {
+  situation->last_step = (struct Span){time, time};
+  situation->searched = time;
+}
 
 struct Allocator {
   void *(*allocate)(size_t count, size_t size); /* zeros */

@@ -15,7 +15,7 @@ struct Header {
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
-enum { VERSION = 4 };
+enum { VERSION = 5 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + situation_size();
@@ -122,8 +122,8 @@ static bool are_modes(const char *parameters) {
  * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
  */
 static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
-  const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,    fixed->tolerance,
-                            fixed->suggested_step, fixed->last_step.start, fixed->last_step.end};
+  const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,     fixed->tolerance,
+                            fixed->suggested_step, fixed->last_step.start, fixed->last_step.end, fixed->searched};
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
@@ -131,6 +131,7 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
          snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
+         fixed->searched <= fixed->last_step.end &&
          (may_lack_state(fixed->phase) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
          snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&

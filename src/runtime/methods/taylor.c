@@ -9,7 +9,6 @@
 
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
-#include "instance/projection.h"
 #include "instance/snapshot.h"
 #include "methods/taylor_reach.h"
 
@@ -102,7 +101,7 @@ static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
 
 /* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
 static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
-  if (lagrangian.constraints.projection == NULL) return NULL;
+  if (!solver_is_held(instance)) return NULL;
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
   const char *problem = solver_project(instance, taylor->span->start, taylor->term);
   for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];

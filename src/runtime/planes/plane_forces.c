@@ -13,7 +13,7 @@
 #include "planes/cone_impulses.h"
 
 /* In units of the largest: accelerations that are none, and forces. */
-static const double rounded_share_of_forces = 1e-9;
+static const double least_force_share = 1e-9;
 
 /* Rows as of the pushes: the accelerations without their forces, and these; then with them. */
 struct PlaneForces {
@@ -23,7 +23,7 @@ struct PlaneForces {
 };
 
 /* Whether it is, or may be brought to rest. What rests on an open contact moves as it does. */
-static bool may_rest(const struct Settlement *settlement, const struct PlaneState *state) {
+static bool is_at_rest(const struct Settlement *settlement, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS || !plane_moves(state)) return true;
   return state->has_force && plane_is_slow(settlement, state);
 }
@@ -33,7 +33,7 @@ static bool stop_slow(struct Settlement *settlement) {
   bool moves = false;
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    if (!state.has_force || !may_rest(settlement, &state)) continue;
+    if (!state.has_force || !is_at_rest(settlement, &state)) continue;
     moves |= state.speed > 0.0;
     plane_stick(settlement, &state);
   }
@@ -52,7 +52,7 @@ static void choose_pushes(struct Settlement *settlement) {
 }
 
 /* The pushes, and the accelerations without them. */
-static bool find_free_accelerations(struct PlaneForces *forces) {
+static bool find_free(struct PlaneForces *forces) {
   struct Settlement *settlement = forces->settlement;
   const struct SwitchTable *switches = settlement->switches;
   settlement_keep_modes(settlement);
@@ -67,12 +67,12 @@ static bool find_free_accelerations(struct PlaneForces *forces) {
   return is_done;
 }
 
-static bool slides_on(const struct PlaneForces *forces, size_t row) {
+static bool slides(const struct PlaneForces *forces, size_t row) {
   const struct SwitchTable *switches = forces->settlement->switches;
   size_t plane = plane_of(switches, forces->pushes.member[row]);
   if (plane == switches->plane_count) return true;
   struct PlaneState state = plane_state(forces->settlement, plane);
-  return !may_rest(forces->settlement, &state);
+  return !is_at_rest(forces->settlement, &state);
 }
 
 /* What slides pushes with each contact, and has no push of its own. */
@@ -80,7 +80,7 @@ static void join_sliding(struct PlaneForces *forces) {
   const struct Pushes *pushes = &forces->pushes;
   size_t n = pushes->count, contacts = pushes->contact_count;
   for (size_t row = contacts; row < n; row++) {
-    if (!slides_on(forces, row)) continue;
+    if (!slides(forces, row)) continue;
     double share = sliding_share(forces->settlement, pushes->member[row]);
     for (size_t i = 0; i < n; i++)
       for (size_t j = 0; j < contacts; j++)
@@ -91,7 +91,7 @@ static void join_sliding(struct PlaneForces *forces) {
   }
 }
 
-static void fill_accelerations(struct PlaneForces *forces) {
+static void fill_rates_of_planes(struct PlaneForces *forces) {
   const struct Settlement *settlement = forces->settlement;
   for (size_t row = 0; row < forces->pushes.count; row++) {
     size_t member = forces->pushes.member[row];
@@ -103,7 +103,7 @@ static void fill_accelerations(struct PlaneForces *forces) {
 }
 
 /* The accelerations with the forces. Returns the largest of all that they add up from. */
-static double fill_accelerations_behind(struct PlaneForces *forces) {
+static double fill_behind(struct PlaneForces *forces) {
   size_t n = forces->pushes.count;
   double largest = 0.0;
   for (size_t i = 0; i < n; i++) {
@@ -119,7 +119,7 @@ static double fill_accelerations_behind(struct PlaneForces *forces) {
 }
 
 /* One that neither presses nor parts stays as it is: others may share its force. */
-static void set_modes_of_contacts(struct PlaneForces *forces, double none) {
+static void set_contacts(struct PlaneForces *forces, double none) {
   struct Settlement *settlement = forces->settlement;
   const struct Pushes *pushes = &forces->pushes;
   for (size_t row = 0; row < pushes->contact_count; row++) {
@@ -131,7 +131,7 @@ static void set_modes_of_contacts(struct PlaneForces *forces, double none) {
   }
 }
 
-static void set_modes_of_planes(struct PlaneForces *forces, double none) {
+static void set_planes(struct PlaneForces *forces, double none) {
   struct Settlement *settlement = forces->settlement;
   const struct Pushes *pushes = &forces->pushes;
   for (size_t row = pushes->contact_count; row < pushes->count; row++) {
@@ -143,7 +143,7 @@ static void set_modes_of_planes(struct PlaneForces *forces, double none) {
       is_pressed |= rests_on(settlement->switches, state.facts->along, pushes->member[i]) &&
                     contact_is_closed(settlement, pushes->member[i]);
     if (!is_pressed) plane_free(settlement, &state);
-    else if (slides_on(forces, row)) plane_slide(settlement, &state);
+    else if (slides(forces, row)) plane_slide(settlement, &state);
     else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
       plane_head(settlement, &state, &forces->behind[row]);
     else plane_stick(settlement, &state);
@@ -151,7 +151,7 @@ static void set_modes_of_planes(struct PlaneForces *forces, double none) {
   }
 }
 
-static bool find_forces_at_rest(struct PlaneForces *forces) {
+static bool find_plane_forces(struct PlaneForces *forces) {
   struct Settlement *settlement = forces->settlement;
   size_t n = forces->pushes.count;
   double *block = scratch_take(settlement->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
@@ -162,13 +162,13 @@ static bool find_forces_at_rest(struct PlaneForces *forces) {
   forces->rate = block;
   forces->force = block + n;
   forces->behind = block + 2 * n;
-  fill_accelerations(forces);
+  fill_rates_of_planes(forces);
   join_sliding(forces);
   bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
   if (is_done) {
-    double none = rounded_share_of_forces * fill_accelerations_behind(forces);
-    set_modes_of_contacts(forces, none);
-    set_modes_of_planes(forces, none);
+    double none = least_force_share * fill_behind(forces);
+    set_contacts(forces, none);
+    set_planes(forces, none);
   }
   scratch_return(settlement->instance, SCRATCH_FORCES);
   return is_done;
@@ -178,8 +178,8 @@ bool plane_forces_settle(struct Settlement *settlement) {
   struct PlaneForces forces = {.settlement = settlement};
   if (!stop_slow(settlement)) return false;
   choose_pushes(settlement);
-  if (!find_free_accelerations(&forces)) return false;
-  bool is_done = find_forces_at_rest(&forces);
+  if (!find_free(&forces)) return false;
+  bool is_done = find_plane_forces(&forces);
   pushes_free(settlement, &forces.pushes);
   return is_done;
 }

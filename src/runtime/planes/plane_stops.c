@@ -31,7 +31,7 @@ static size_t find_overcome(const struct Settlement *settlement) {
 }
 
 /* It slides on, or begins anew where its velocity is none. */
-static void let_slide(struct Settlement *settlement, size_t plane) {
+static void let_plane_slide(struct Settlement *settlement, size_t plane) {
   struct PlaneState state = plane_state(settlement, plane);
   if (plane_moves(&state)) plane_slide(settlement, &state);
   else plane_head(settlement, &state, state.force);
@@ -59,7 +59,7 @@ bool planes_stop(struct Settlement *settlement) {
   while (overcome < count) {
     if (!plane_evaluate(settlement)) return false;
     overcome = find_overcome(settlement);
-    if (overcome < count) let_slide(settlement, overcome);
+    if (overcome < count) let_plane_slide(settlement, overcome);
   }
   return bring_to_rest(settlement);
 }

@@ -41,7 +41,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
                  step->start >= situation->last_step.start && step->start <= situation->last_step.end &&
                  (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
-    situation->last_step = (struct Span){step->start, step->start};
+    situation_begin(situation, step->start);
     /* The state or the parameters may have been set, unless an event has settled all. */
     bool is_settled = situation->changed == CHANGED_BY_EVENT;
     if (!is_settled && !start_step(instance)) return STEP_PARTIAL;

@@ -204,12 +204,22 @@ static void carry_load(size_t n, const size_t *start, const size_t *column, cons
     if (coordinate[i] < 0) x[i] += missing[i];
 }
 
+/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
+static Condition has_row(const size_t *start, const Real *m, size_t i) {
+  Real sum = REAL(0.0);
+  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
+  return sum > 0.0;
+}
+
 /* N balances only as well as the constraints before those that follow have hold: what it spoils is mended once. */
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x) {
-  Real *given = x + 3 * n, steps = REAL(0.0);
-  for (size_t i = 0; i < n; i++) steps += WHERE(is_redundant(start, m, i), 3.0, 0.0);
-  if (!ANYWHERE(steps > 0.0)) return;
+  Real *given = x + 3 * n, steps = REAL(0.0), rows = REAL(0.0);
+  for (size_t i = 0; i < n; i++) {
+    steps += WHERE(is_redundant(start, m, i), 3.0, 0.0);
+    rows += WHERE(BOTH(is_redundant(start, m, i), has_row(start, m, i)), 1.0, 0.0);
+  }
+  if (!ANYWHERE(rows > 0.0)) return;
   memcpy(given, x, n * sizeof *given);
   shorten_forces(n, start, column, coordinate, m, steps, x);
   carry_load(n, start, column, coordinate, m, given, x);

@@ -268,6 +268,7 @@ static void connect_transmissions(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->tendon_count; i++) {
     struct Tendon *tendon = &robot->tendons[i];
+    tendon->symbol = format_text("%s_tendon", robot_symbol(tendon->name));
     connect_transmission(connection, &tendon->transmission, "tendon", tendon->name, tendon->symbol, tendon->line);
   }
   for (size_t i = 0; i < robot->actuator_count; i++) {

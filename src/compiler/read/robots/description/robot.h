@@ -82,7 +82,7 @@ struct Transmission {
 
 /* A spring, a damper, an inertia and limits along a transmission. */
 struct Tendon {
-  char *name, *symbol;
+  char *name, *symbol; /* this set by robot_connect() */
   long line;
   struct Transmission transmission;
   double lower, upper; /* NAN: no limit */

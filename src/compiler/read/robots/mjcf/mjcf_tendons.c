@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "read/names/similar.h"
 #include "read/robots/mjcf/mjcf_tree.h"
-#include "read/robots/robot_tree.h"
 #include "read/xml/nodes.h"
 
 static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
@@ -47,13 +46,13 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "fixed")) {
     mjcf_report_unknown(
-        mjcf, node, "a <fixed> one, or a <spring> or <joint type=\"distance\"> in a <system> that includes the robot");
+        mjcf, node,
+        "a <fixed> one, or a <spring> or a <constraint> of a distance in a <system> that includes the robot");
     return;
   }
   struct Tendon tendon = {.name = attribute(node, "name"), .line = xmlGetLineNo(node)};
   double limits[2];
   if (tendon.name == NULL) tendon.name = format_text("tendon%zu", robot->tendon_count + 1);
-  tendon.symbol = format_text("%s_tendon", robot_symbol(tendon.name));
   read_pulls(mjcf, node, &tendon);
   read_relaxed(mjcf, node, &tendon);
   tendon.stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);

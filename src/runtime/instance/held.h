@@ -1,0 +1,15 @@
+/* Which constraints of contacts and frictions hold at present. */
+#ifndef HELD_H
+#define HELD_H
+
+#include "instance/instance.h"
+
+static inline bool contact_holds(const struct Instance *instance, size_t contact) {
+  return instance->parameter[lagrangian.switches->contacts[contact].mode] > 0.0;
+}
+
+static inline bool friction_holds(const struct Instance *instance, size_t friction) {
+  return instance->parameter[lagrangian.switches->frictions[friction].mode] == 0.0;
+}
+
+#endif
