@@ -1,6 +1,7 @@
 """Ellipsoids on planes: their gaps against a search for the lowest point, and a rattleback against the equations of Newton and Euler, which SciPy integrates."""
 
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -120,3 +121,10 @@ def test_messages(tmp_path, shapes, message):
     (tmp_path / "system.xml").write_text(f'<system name="Egg">{BODY}{shapes}</system>')
     found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
     assert found.returncode == 1 and message in found.stderr
+
+
+def test_scene():
+    """What pages draw has its type and measures."""
+    shapes = ElementTree.parse(fmu.unpacked("Rattleback") / "modelDescription.xml").iter("shape")
+    assert {(shape.get("type"), *(shape.get(f"size{axis}") for axis in "XYZ")) for shape in shapes} == {
+        ("ellipsoid", "0.2", "0.04", "0.03"), ("plane", None, None, None)}  # fmt: skip
