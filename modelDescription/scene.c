@@ -89,15 +89,12 @@ static void write_mesh(xmlTextWriterPtr writer, const struct Model *model, const
 
 /* What it is part of is the base where nothing is named. */
 static void write_shape(xmlTextWriterPtr writer, const struct Model *model, const struct ContactShape *shape) {
-  static const char *const types[] = {
-      [SHAPE_PLANE] = "plane",       [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
-      [SHAPE_CYLINDER] = "cylinder", [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh"};
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const angles[] = {"roll", "pitch", "yaw"};
   const struct Graph *graph = model->graph;
   xmlTextWriterStartElement(writer, BAD_CAST "shape");
   if (shape->particle != NO_PARTICLE) write_attribute(writer, "in", shape->in);
   else write_frame_of(writer, model, shape->frame);
-  write_attribute(writer, "type", types[shape->type]);
+  write_attribute(writer, "type", shape_type_names[shape->type]);
   write_attribute(writer, "axis", axes[shape->axis]);
   for (int i = 0; i < 3; i++) {
     write_formula(writer, graph, axes[i], shape->offset.along[i]);

@@ -1,6 +1,7 @@
 """Ellipsoids on planes: their gaps against a search for the lowest point, and a rattleback against the equations of Newton and Euler, which SciPy integrates."""
 
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -159,3 +160,10 @@ def test_an_egg_that_lands_without_a_bounce_and_lifts_off_again():
         energy = instance.get("totalEnergy")
         instance.step(landed.t_events[0][0] + 1e-4)
         assert instance.get("totalEnergy") - energy == pytest.approx(push * closing / 2, abs=1e-5)
+
+
+def test_scene():
+    """What pages draw has its type and measures."""
+    shapes = ElementTree.parse(fmu.unpacked("Rattleback") / "modelDescription.xml").iter("shape")
+    assert {(shape.get("type"), *(shape.get(f"size{axis}") for axis in "XYZ")) for shape in shapes} == {
+        ("ellipsoid", "0.2", "0.04", "0.03"), ("plane", None, None, None)}  # fmt: skip

@@ -308,10 +308,11 @@ def test_hostile_starts(seed):
     instance.free()
 
 
-def test_tippe_top():
+@pytest.mark.parametrize("slip", [0.02, 0.0])
+def test_tippe_top(slip):
     """Its spin turns it over, losing energy, while Jellett's integral stays: the angular momentum times the way from the centre of mass to the pole."""
     m, r, moment = 1.0, 0.02, 0.4 * 0.02**2
-    values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": 0.02} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])
+    values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": slip} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])
     with Running("TippeTop", values) as instance:
         jellett, energies, ups = [], [], []
         for time in np.arange(1, 31) * 0.1:

@@ -6,6 +6,11 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
+const char *const shape_type_names[SHAPE_TYPES] = {
+    [SHAPE_PLANE] = "plane",        [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
+    [SHAPE_CYLINDER] = "cylinder",  [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh",
+    [SHAPE_ELLIPSOID] = "ellipsoid"};
+
 void add_term(struct Model *model, struct Quantity *sum, Node term) {
   sum->node = add(model->graph, sum->node, term);
 }

@@ -102,6 +102,9 @@ struct GivenMotion {
 enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH, SHAPE_ELLIPSOID };
 enum { SHAPE_TYPES = SHAPE_ELLIPSOID + 1 };
 
+/* As in type="...". */
+extern const char *const shape_type_names[SHAPE_TYPES];
+
 /* What is drawn, and touches. A plane is where its axis is 0, and open above it. */
 struct ContactShape {
   char *name;

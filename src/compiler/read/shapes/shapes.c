@@ -32,11 +32,6 @@ static const struct Measure measures[] = {
 static const char *const of_meshes[] = {"file", "scale"};
 enum { MEASURE_COUNT = sizeof measures / sizeof *measures };
 
-static const char *const type_names[] = {
-    [SHAPE_PLANE] = "plane",        [SHAPE_SPHERE] = "sphere",   [SHAPE_BOX] = "box",
-    [SHAPE_CYLINDER] = "cylinder",  [SHAPE_CAPSULE] = "capsule", [SHAPE_MESH] = "mesh",
-    [SHAPE_ELLIPSOID] = "ellipsoid"};
-
 static const struct ContactShape *find_shape(const struct Reader *reader, const char *name) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
   for (size_t i = 0; i < mechanism->shape_count; i++)
@@ -46,8 +41,8 @@ static const struct ContactShape *find_shape(const struct Reader *reader, const 
 
 static enum ShapeType type_of(xmlNodePtr node) {
   enum ShapeType type = SHAPE_PLANE;
-  for (size_t i = 0; i < sizeof type_names / sizeof *type_names; i++)
-    if (attribute_is(node, "type", type_names[i])) type = (enum ShapeType)i;
+  for (size_t i = 0; i < SHAPE_TYPES; i++)
+    if (attribute_is(node, "type", shape_type_names[i])) type = (enum ShapeType)i;
   return type; /* the schema refuses others */
 }
 
@@ -64,21 +59,21 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
     has_size |= is_given;
     if (is_given && !is_of_type)
       report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
-                type_names[shape->type], measure->name);
+                shape_type_names[shape->type], measure->name);
     if (!is_given && is_needed)
-      report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", type_names[shape->type], shape->name,
-                measure->name, measure->name);
+      report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", shape_type_names[shape->type],
+                shape->name, measure->name, measure->name);
   }
   for (int i = 0; i < 2; i++)
     if (has_attribute(node, of_meshes[i]) && shape->type != SHAPE_MESH)
       report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
-                type_names[shape->type], of_meshes[i]);
+                shape_type_names[shape->type], of_meshes[i]);
   if (shape->type == SHAPE_MESH && !has_attribute(node, "file"))
     report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
               shape->name);
   if (has_attribute(node, "axis") && (TYPE(shape->type) & without_axis) != 0)
     report_at(reader, node, "the shape '%s' is %s %s, which has no axis", shape->name, article_of(shape),
-              type_names[shape->type]);
+              shape_type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
 }
