@@ -171,6 +171,15 @@ def test_an_importer_sees_what_leaves_zero():
     assert exchanged("Left", 1, 0.25, "x")["x"][-1] == pytest.approx(-0.5, abs=1e-5)
 
 
+def test_a_bounce_that_is_tiny_beside_its_communication_step(open_fmu):
+    """The step begins just before an impact, with nothing known of the bounces before, and takes a thousand times as long as the next one."""
+    for before in np.linspace(0, 0.01, 100):
+        instance = open_fmu("Shaken").initialize(tolerance=1e-9)
+        for end in (1.1 - before, 1.101 - before, 3.0):  # at 1.1009 s it rests
+            instance.step(end - instance.time)
+        assert instance.get("h") == pytest.approx(0.3 * np.sin(9), abs=1e-12)
+
+
 @pytest.mark.parametrize("interval", [0.1, 1.2])
 def test_an_event_that_the_projection_moves_is_seen(open_fmu, interval):
     def rate(_, s):

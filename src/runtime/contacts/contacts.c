@@ -242,15 +242,17 @@ static bool part(struct Settlement *settlement) {
 /*
  * Whether what an open contact stands in one another has to be taken up: an importer comes to it late, and an indicator that
  * stays below 0 would not be seen again. Where time is coarse, one that is left without speed and force would be found again
- * and again.
+ * and again; so is one that has only just opened, whose gap the other constraints, kept behind the event, have taken below 0.
  */
 static bool has_to_lift(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
   const double *value = settlement->value, *noise = settlement->noise;
   if (contact_is_closed(settlement, contact) || !(value[gap] < -noise[gap])) return false;
   if (!(value[gap] >= -largest_drift(settlement))) return false;
-  bool has_stopped = settlement->occasion == AT_EVENT && settlement->jumped && value[rate] <= noise[rate];
-  return settlement->occasion == IN_EXCHANGE || (has_stopped && value[gap] < -found_again * noise[gap]);
+  bool has_stopped = settlement->jumped && value[rate] <= noise[rate];
+  bool is_stuck = is_hit(settlement, contact_indicator(settlement->switches, contact)) && value[rate] >= 0.0;
+  bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * noise[gap];
+  return settlement->occasion == IN_EXCHANGE || (settlement->occasion == AT_EVENT && comes_again);
 }
 
 /* Moves all of these apart at once; *lifts where there is any. False where that cannot be. */

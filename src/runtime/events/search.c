@@ -96,8 +96,10 @@ static enum Verdict judge_signs(const double *f, double noise) {
   if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
   chebyshev_derivative(d, curvature);
   bool is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
-  if (is_concave && f[CHEBYSHEV_DEGREE] >= 0.0) return f[0] < -noise ? FALLS : STAYS; /* as a body that is thrown */
-  return UNKNOWN;
+  if (!is_concave || f[CHEBYSHEV_DEGREE] < 0.0) return UNKNOWN;
+  if (f[0] >= -noise) return STAYS; /* as a body that is thrown */
+  /* One that leaves 0 and is back before the next node: rounding at its start would pass for the fall. */
+  return fmax(f[CHEBYSHEV_DEGREE], f[CHEBYSHEV_DEGREE - 1]) > noise ? FALLS : UNKNOWN;
 }
 
 /* A time, and f there: what is looked for less its floor. */
