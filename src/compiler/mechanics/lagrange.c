@@ -1,6 +1,7 @@
 #include "mechanics/lagrange.h"
 
 #include "algebra/differentiate.h"
+#include "algebra/polynomials/shared_products.h"
 #include "algebra/polynomials/shorten.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -127,11 +128,33 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
   }
 }
 
-/* What is left to ldlt.h at run time keeps the symbols of the accelerations. */
-static void solve_for_accelerations(const struct Model *model, struct Equations *equations) {
-  inertia_solve(model->graph, equations->inertia, equations->right_side, equations->acceleration);
+/* What is computed of the accelerations: their expressions, or the right sides of what is left to ldlt.h at run time. */
+static Node *solution_of(struct Graph *graph, const struct Equations *equations, const Node *right_side) {
+  Node *solution = allocate(row_count(equations), sizeof *solution);
+  inertia_solve(graph, equations->inertia, right_side, solution);
   for (size_t i = 0; i < row_count(equations); i++)
-    if (is_looped(equations, i)) equations->acceleration[i] = unknown_of_row(model, i);
+    if (is_looped(equations, i)) solution[i] = right_side[i];
+  return solution;
+}
+
+/* Products that right sides share are computed once, where that makes the accelerations shorter. */
+static void solve_for_accelerations(const struct Model *model, struct Equations *equations) {
+  struct Graph *graph = model->graph;
+  size_t rows = row_count(equations);
+  Node *shared = allocate(2 * rows, sizeof *shared); /* right sides, then residuals */
+  for (size_t i = 0; i < rows; i++) {
+    shared[i] = equations->right_side[i];
+    shared[rows + i] = equations->residual[i];
+  }
+  share_products(graph, rows, 2 * rows, shared);
+  Node *solution = solution_of(graph, equations, equations->right_side), *other = solution_of(graph, equations, shared);
+  bool is_shorter = are_shorter(graph, rows, other, solution);
+  for (size_t i = 0; i < rows; i++) {
+    if (is_shorter) equations->right_side[i] = shared[i];
+    if (is_shorter) equations->residual[i] = shared[rows + i];
+    Node acceleration = is_shorter ? other[i] : solution[i];
+    equations->acceleration[i] = is_looped(equations, i) ? unknown_of_row(model, i) : acceleration;
+  }
 }
 
 /* What is solved for symbolically stands for its symbol. */

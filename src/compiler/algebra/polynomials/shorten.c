@@ -25,10 +25,13 @@ static struct Length length_of(const struct Graph *graph, const Node *nodes, siz
   return length;
 }
 
-void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others) {
+bool are_shorter(const struct Graph *graph, size_t count, const Node *nodes, const Node *others) {
   struct Length length = length_of(graph, nodes, count), other = length_of(graph, others, count);
-  if (other.in_motion > length.in_motion) return;
-  if (other.in_motion == length.in_motion && other.once >= length.once) return;
+  return length.in_motion != other.in_motion ? length.in_motion < other.in_motion : length.once < other.once;
+}
+
+void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others) {
+  if (!are_shorter(graph, count, others, nodes)) return;
   for (size_t i = 0; i < count; i++) nodes[i] = others[i];
 }
 

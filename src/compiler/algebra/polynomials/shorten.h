@@ -6,6 +6,9 @@
 
 #include "algebra/graph.h"
 
+/* Whether the nodes need fewer operations than the others. */
+bool are_shorter(const struct Graph *graph, size_t count, const Node *nodes, const Node *others);
+
 /* Replaces the nodes by the others where these need fewer operations. */
 void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others);
 
