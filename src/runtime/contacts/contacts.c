@@ -162,11 +162,11 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
 
 /*
  * Whether one that touches would stay with others that come to rest: those of a body that comes to lie flat differ by rounding, and
- * the last of them has no acceleration of its own, but shares the load.
+ * the last of them has no acceleration of its own, but shares the load. So does one that pulled before the others had come to rest.
  */
 static bool rests_with_others(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
-  if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
+  if (!is_touching(settlement, contact)) return false;
   if (settlement->value[acceleration] > settlement->noise[acceleration]) return false;
   return bounce_is_lost(settlement, contact, 0.5 * contact_value(settlement, contact, CONTACT_RATE));
 }
@@ -182,10 +182,11 @@ static bool close_those(struct Settlement *settlement, bool (*rests)(const struc
   return closes;
 }
 
-/* Closes contacts that come to rest, all at once. */
+/* Closes contacts that come to rest, all at once, and those that stay with them, as the accelerations before and then behind that tell. */
 static bool close_contacts(struct Settlement *settlement) {
-  if (!close_those(settlement, comes_to_rest)) return false;
-  close_those(settlement, rests_with_others);
+  bool comes = close_those(settlement, comes_to_rest), shares = comes || settlement->came_to_rest;
+  settlement->came_to_rest = comes;
+  if (!(shares && close_those(settlement, rests_with_others)) && !comes) return false;
   let_moving_slide(settlement);
   return true;
 }

@@ -29,6 +29,7 @@ struct Settlement {
   bool changed, jumped;                /* jumped: velocities, or coordinates did */
   bool moved, thrown, set_mode;        /* an event has set coordinates; coordinates or velocities; a mode */
   bool lags;                           /* frictions have changed, and velocities were not taken to what holds since */
+  bool came_to_rest;                   /* contacts have, in the last round of them */
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   bool has_found_forces;               /* modes were set by the forces of all at rest at once */
