@@ -75,14 +75,14 @@ def test_sources_that_do_not_compile_over_lanes(tmp_path):
 
 def test_resumes_after_a_kill(tmp_path):
     """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
-    output, words = tmp_path / "killed.parquet", ["BouncingBall", "--vary", "v=-2:2", "--random", "8000", "--stop", "3"]
+    output, words = tmp_path / "killed.parquet", ["BouncingBall", "--vary", "v=-2:2", "--random", "60000", "--stop", "3"]
     first = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL,
                              stderr=subprocess.DEVNULL)  # fmt: skip
-    for _ in range(600):
+    for _ in range(6000):
         finished = sorted(tmp_path.glob("*.parts-*/*.parquet"))
         if len(finished) > 5 or first.poll() is not None:
             break
-        time.sleep(0.05)
+        time.sleep(0.005)
     first.send_signal(signal.SIGKILL)
     first.wait()
     assert not output.exists()
@@ -91,8 +91,8 @@ def test_resumes_after_a_kill(tmp_path):
     for path in tmp_path.glob("*.parts-*/*.parquet"):
         times |= dict(zip(*(pq.read_table(path).to_pydict()[column] for column in ("run", "runTime"))))
     table, text = sweep(output, *words)
-    assert f"{len(times)} of 8000 runs are there already" in text and len(stamps) > 5
-    assert table["run"] == list(range(8000))
+    assert f"{len(times)} of 60000 runs are there already" in text and len(stamps) > 5
+    assert table["run"] == list(range(60000))
     assert all(table["runTime"][run] == seconds for run, seconds in times.items())
     assert list(tmp_path.glob("*.parts-*")) == []
 

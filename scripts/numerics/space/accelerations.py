@@ -150,7 +150,7 @@ def rows(quick):
     except (Missing, RuntimeError) as error:
         pinocchio, sentences = None, [str(error)]
     cases = [(name, text, robots / path, base) for name, text, path, base in ROBOTS[: 1 if quick else None]]
-    if hand.source() is None:
+    if not quick and hand.source() is None:
         sentences.append("No Shadow hand: the Python package gymnasium-robotics, or mujoco, is not installed here.")
     elif not quick:
         cases.append(("Shadow", "hand of 24 axes", written(FOLDER / "shadow.urdf", hand.urdf()), "fixed"))
