@@ -162,7 +162,7 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
 
 /*
  * Whether one that touches would stay with others that come to rest: those of a body that comes to lie flat differ by rounding, and
- * the last of them has no acceleration of its own, but shares the load. So does one that pulled before the others had come to rest.
+ * the last of them has no acceleration of its own, but shares the load. So does one that pulled before the others came to rest.
  */
 static bool rests_with_others(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
@@ -182,7 +182,7 @@ static bool close_those(struct Settlement *settlement, bool (*rests)(const struc
   return closes;
 }
 
-/* Closes contacts that come to rest, all at once, and those that stay with them, as the accelerations before and then behind that tell. */
+/* Closes contacts that come to rest, all at once, and those that stay with them, as accelerations before and behind that tell. */
 static bool close_contacts(struct Settlement *settlement) {
   bool comes = close_those(settlement, comes_to_rest), shares = comes || settlement->came_to_rest;
   settlement->came_to_rest = comes;
