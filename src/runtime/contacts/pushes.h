@@ -6,6 +6,7 @@
 #define PUSHES_H
 
 #include "events/settlement.h"
+#include "instance/held.h"
 
 struct Pushes {
   size_t contact_count, friction_count, count; /* count: of both */
@@ -25,7 +26,7 @@ bool pushes_create(struct Settlement *settlement, struct Pushes *pushes);
 void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
 
 static inline bool contact_is_closed(const struct Settlement *settlement, size_t contact) {
-  return mode_of(settlement, settlement->switches->contacts[contact].mode) != 0.0;
+  return contact_holds(settlement->instance, contact);
 }
 
 static inline void set_contact(struct Settlement *settlement, size_t contact, bool is_closed) {
@@ -37,7 +38,7 @@ static inline double contact_value(const struct Settlement *settlement, size_t c
 }
 
 static inline bool friction_sticks(const struct Settlement *settlement, size_t friction) {
-  return mode_of(settlement, settlement->switches->frictions[friction].mode) == 0.0;
+  return friction_holds(settlement->instance, friction);
 }
 
 /* mode: the sign of its velocity, which one in a plane does not look at; 0 for one that sticks. */
