@@ -174,6 +174,15 @@ SEEN_AT = """name => {
   const seen = scene.position(history.samples[history.length - 1][0], scene.byName.get(name)).project(scene.camera);
   return [box.left + ((seen.x + 1) * box.width) / 2, box.top + ((1 - seen.y) * box.height) / 2];
 }"""
+# Over two seconds, as a motion that still swings has no speed where it turns.
+AT_REST = """() => {
+  const { history } = live, energy = live.names.indexOf("kineticEnergy"), last = history.length - 1;
+  for (let k = last; k > 0; k--) {
+    if (history.samples[k][0][energy] >= 1e-11) return false;
+    if (history.time(last) - history.time(k) > 2) return true;
+  }
+  return false;
+}"""
 LAST = "[...live.history.samples[live.history.length - 1][0]]"
 
 
@@ -184,8 +193,7 @@ def pull(page, name, off, by):
     page.mouse.down()
     page.mouse.move(x + off[0] + by[0], y + off[1] + by[1], steps=4)
     page.fill("#speed", "0.6")
-    energy = page.evaluate("live.names.indexOf('kineticEnergy')")
-    page.wait_for_function(f"live.history.time(live.history.length - 1) > 2 && {LAST}[{energy}] < 1e-11", timeout=60000)
+    page.wait_for_function(AT_REST, timeout=60000)
     return SimpleNamespace(**dict(zip(page.evaluate("live.names"), page.evaluate(LAST)))), page.evaluate("live.pulled")
 
 
