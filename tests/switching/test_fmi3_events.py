@@ -44,6 +44,17 @@ SMALL_GAP = """
   <contact name="ground" gap="s*h" restitution="0.5"/>
 </system>
 """
+# A block whose velocity leaves 0 as it slips, with no acceleration yet.
+SLIPPING = """
+<system name="Slipping">
+  <coordinate name="x" velocity="v"/>
+  <mode name="slips"/>
+  <particle mass="1" x="x"/>
+  <force coordinate="x">2*time</force>
+  <friction name="rub" coordinate="x" force="1"/>
+  <event when="v" direction="both"><set mode="slips">slips + 1</set></event>
+</system>
+"""
 FAR_METHODS = ["taylor", "radau", "erk"]
 EVENTS = dict(eventModeUsed=True, earlyReturnAllowed=True)
 
@@ -55,11 +66,13 @@ def far_ground(method):
 @pytest.fixture(scope="module", autouse=True)
 def built():
     far = {name: FAR_GROUND.format(name=name, method=name[9:].lower()) for name in map(far_ground, FAR_METHODS)}
-    fmu.build_systems("fmi3-events", {"Zeno": ZENO, "SmallGap": SMALL_GAP, **far}, versions=[3])
+    fmu.build_systems("fmi3-events", {"Zeno": ZENO, "SmallGap": SMALL_GAP, "Slipping": SLIPPING, **far}, versions=[3])
 
 
-def go_through(instance):
+def go_through(instance, updates=1):
     *_, changed, defined, _ = update = instance.fmu.updateDiscreteStates()
+    for _ in range(updates - 1):
+        assert not any(instance.fmu.updateDiscreteStates()), "nothing has changed since"
     assert update[:3] == (False, False, False) and not defined
     instance.fmu.enterStepMode()
     return changed
@@ -71,7 +84,7 @@ def start(opened, name, values=(), **options):  # noqa: F811
     return instance
 
 
-def to(instance, end, at_event=lambda: None):
+def to(instance, end, at_event=lambda: None, updates=1):
     """Steps with all events; how many there were."""
     count = 0
     while instance.time < end:
@@ -80,7 +93,7 @@ def to(instance, end, at_event=lambda: None):
         if need:
             at_event()
             instance.fmu.enterEventMode()
-            go_through(instance)
+            go_through(instance, updates)
             count += 1
     return count
 
@@ -104,6 +117,12 @@ def test_an_importer_sees_both_sides_of_a_bounce(opened):
         assert instance.get("v") == pytest.approx(-into, abs=1e-11)
         assert go_through(instance)
         assert instance.get("h", "v") == pytest.approx([0, out], abs=1e-11)
+
+
+def test_an_importer_may_update_discrete_states_again(opened):
+    instance = start(opened, "Slipping")
+    to(instance, 2.0, updates=3)
+    assert instance.get("v", "slips") == pytest.approx([2.25, 0], abs=1e-12)
 
 
 @pytest.mark.parametrize("name", SWITCHED)

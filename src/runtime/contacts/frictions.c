@@ -25,7 +25,7 @@ struct FrictionState {
   bool is_first;                                /* it has not switched in this settlement */
   bool may_jump;                                /* velocities have jumped, or the simulation starts */
   bool is_moving;                               /* by more than rounding */
-  bool has_no_force;                            /* the contact that it rests on gives none, as of mu = 0 */
+  bool has_no_force;                            /* as of mu = 0: on which side it would stick is rounding */
 };
 
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
@@ -46,7 +46,9 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
     state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
     state.noise_of_force = settlement->force_noise[friction] + noise[FRICTION_STICTION];
   }
-  state.has_no_force = settlement->switches->rests_on != NULL && state.stiction == 0.0 && value[FRICTION_FORCE] == 0.0;
+  /* Of what passes through 0 the next moment has a force. */
+  bool may_stay = settlement->switches->rests_on != NULL || !settlement->switches->friction_varies;
+  state.has_no_force = may_stay && state.stiction == 0.0 && value[FRICTION_FORCE] == 0.0;
   /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
   double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
@@ -59,6 +61,7 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
 static double mode_without_force(const struct FrictionState *state) {
   double next = state->is_moving                           ? state->velocity
                 : fabs(state->rate) > state->noise_of_rate ? state->rate
+                : state->is_hit && state->is_first         ? -state->mode
                                                            : state->mode;
   return next < 0.0 ? -1.0 : 1.0;
 }
@@ -73,7 +76,7 @@ static double mode_from_rest(const struct Settlement *settlement, const struct F
 
 /* Of one that slides, at a velocity that has not jumped. */
 static double mode_from_sliding(const struct Settlement *settlement, const struct FrictionState *state) {
-  bool turns = state->mode * state->velocity < 0.0 || state->is_hit;
+  bool turns = (state->is_moving && state->mode * state->velocity < 0.0) || state->is_hit;
   if (state->is_moving && !turns) return state->mode;
   if (settlement->occasion == AT_START && state->is_first) return 0.0;
   double least_rate = -state->noise_of_rate - state->noise / shortest_slip;

@@ -74,6 +74,9 @@ bool events_settle_change(struct Instance *instance, double time) {
 
 const char *events_update(struct Instance *instance, bool *changed) {
   struct Situation *situation = instance->situation;
+  *changed = false;
+  /* The modes agree already, and that of what goes from 0 is known from its event alone. */
+  if (situation->waiting_event == 0 && situation->changed != CHANGED_VALUES) return NULL;
   enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;

@@ -23,6 +23,7 @@ struct Search {
   double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
   int windows;             /* that may still be looked at */
+  bool projects;           /* states onto the constraints: what they hold at 0 is not what rounding makes of it */
   double departure;        /* the sign of what left 0 last */
   double floor;            /* what an event has left of an indicator below 0, by rounding */
 };
@@ -49,6 +50,7 @@ static struct Search search_of(struct Instance *instance) {
 static void sample(struct Search *search, double time, const double *state, double *values) {
   size_t count = indicator_count(lagrangian.switches);
   bool known = state != NULL || lagrangian.solver->interpolate(search->instance, time, search->state);
+  if (search->projects) known = known && solver_project(search->instance, time, search->state) == NULL;
   known = known && indicators_at(search->instance, time, state != NULL ? state : search->state, values);
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
@@ -275,6 +277,23 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
   return start >= -error - noise && (error == 0.0 || start <= error + noise) ? fmin(start, -error) : 0.0;
 }
 
+/*
+ * Whether it is a velocity that is 0 within rounding while constraints hold: they may be what holds it, and in a long step
+ * rounding of the accelerations shows in it. A gap is left at once.
+ */
+static bool may_be_held(const struct Search *search, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_gap = indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
+  return !is_gap && fabs(search->exact[indicator]) <= search->noise[indicator] && solver_is_held(search->instance);
+}
+
+/* The values of one indicator at the nodes, anew. */
+static void sample_nodes(struct Search *search, size_t indicator, double from, double to) {
+  size_t count = indicator_count(lagrangian.switches);
+  for (int k = 0; k < CHEBYSHEV_NODES; k++)
+    search->samples[(size_t)k * count + indicator] = value_at(search, indicator, chebyshev_time(from, to, k));
+}
+
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
                       int windows, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
@@ -285,24 +304,30 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     sample(&search, chebyshev_time(from, to, (int)k), samples != NULL ? samples + k * lagrangian.state_count : NULL,
            search.samples + k * count);
   *time = INFINITY;
+  bool leaves = false; /* it is a zero at which the indicator rested */
   for (size_t i = 0; i < count; i++) {
     double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
+    search.projects = may_be_held(&search, i);
+    if (search.projects) sample_nodes(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
     search.floor = floor_of(&search, i, start, lifted);
-    for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] -= search.floor;
+    for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;
     double found = sign == 0.0 ? first_departure(&search, i, from, to)
                                : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);
     bool is_lost = search.windows < 0;
-    if (!is_lost && !(found < *time)) continue;
+    /* What it leaves with is known once what falls there too has switched, such as a friction. */
+    if (!is_lost && !(found < *time) && !(leaves && found == *time && sign != 0.0)) continue;
     *time = is_lost ? NAN : found;
     *indicator = i;
+    leaves = sign == 0.0;
     if (is_lost) return true;
     instance->departure = search.departure;
   }
+  search.projects = false;
   if (!isfinite(*time)) return false;
   double before = value_at(&search, *indicator, 0.5 * (from + *time));
   instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
