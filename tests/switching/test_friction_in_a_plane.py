@@ -38,6 +38,8 @@ BALL = """<system name="{name}" description="Ball with spin on a plane which may
   <friction name="skin" velocity="vx - r*wy" across="vy + r*wx" force="mu*ground.force"/>
   <experiment stopTime="2"/>
 </system>"""
+# A wall throws it back, and so turns what slides without a rest in between.
+WALLED = BALL.replace("<experiment", '<stop coordinate="x" max="0.1" restitution="0.8"/><experiment')
 
 
 def disk(points):
@@ -143,7 +145,7 @@ def random_system():
 def built():
     texts = {f"Puck_{m}": PUCK.format(name=f"Puck_{m}", solver=f'<solver method="{m}"/>') for m in METHODS}
     texts |= {f"Disk{6 * rings}": disk(places(rings)) for rings in RINGS}
-    texts |= {"PlaneBall": BALL.format(name="PlaneBall"), "Cluster": CLUSTER, "Sledges": SLEDGE, "TwoSoles": SOLES, "RandomCones": random_system()}
+    texts |= {"PlaneBall": BALL.format(name="PlaneBall"), "WalledBall": WALLED.format(name="WalledBall"), "Cluster": CLUSTER, "Sledges": SLEDGE, "TwoSoles": SOLES, "RandomCones": random_system()}
     texts |= {"RodInPlane": ROD.format(name="RodInPlane", velocities=IN_PLANE), "RodOnLine": ROD.format(name="RodOnLine", velocities='velocity="slip"')}
     build_systems("friction-in-a-plane", texts)
 
@@ -365,7 +367,7 @@ def test_a_disk_ends_to_slide_and_to_spin_at_once(open_fmu):
     assert differences[-1] < 0.03 and differences[-1] < differences[0]
 
 
-@pytest.mark.parametrize("name, values", [("Puck_bdf", {"vx": 1, "vy": 2}), ("Puck_auto", {"tilt": 0.2, "vy": 1}), ("Disk18", {"vx": 0.5, "vy": 0.2, "w": 2}), ("PlaneBall", {"vx": 1, "wx": 10})])
+@pytest.mark.parametrize("name, values", [("Puck_bdf", {"vx": 1, "vy": 2}), ("Puck_auto", {"tilt": 0.2, "vy": 1}), ("Disk18", {"vx": 0.5, "vy": 0.2, "w": 2}), ("PlaneBall", {"vx": 1, "wx": 10}), ("WalledBall", {"vx": 1.8, "wx": -7})])
 def test_model_exchange(name, values):
     words = dict(stop_time=3, output_interval=0.1, start_values=values, output=["x", "y", "vx", "vy", "events"])
     path = str(fmu.archive(name))

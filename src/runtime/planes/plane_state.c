@@ -15,7 +15,7 @@ static const double slower_share = 0.1;
 
 /* Speeds that are not reached, and where it turns from its heading to the side, which no importer passes over unseen. */
 static const double never = -1e300, turned_aside = -1e-300;
-/* One that goes back in less than this slope to the heading was at rest in between. */
+/* One that goes back in less than this slope to the heading, without an impact, was at rest in between. */
 static const double slope_back = 0.5;
 
 static double tolerance_of(const struct Instance *instance) {
@@ -51,8 +51,8 @@ struct PlaneState plane_state(const struct Settlement *settlement, size_t plane)
   state.none = no_share * unit;
   state.has_slowed = is_hit(settlement, friction_indicator(switches, facts->along));
   state.has_sped = is_hit(settlement, friction_indicator(switches, facts->along + 1));
-  state.has_turned_back =
-      state.mode == PLANE_SLIDES && state.upper == turned_aside && state.aside < -slope_back * state.ahead;
+  bool may_have_turned = state.mode == PLANE_SLIDES && state.upper == turned_aside && !settlement->jumped;
+  state.has_turned_back = may_have_turned && state.aside < -slope_back * state.ahead;
   state.is_first = settlement->flips[friction_indicator(switches, facts->along)] == 0.0;
   return state;
 }
