@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import fmu
 import package
 from building import build_systems
-from motions import BALL, BELT, OSCILLATOR, belt, bounce, lagrange_fmu, measured, oscillation, slopes  # noqa: F401
+from motions import BALL, BELT, OSCILLATOR, WORKED, belt, bounce, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
 
 TOLERATED = dict(rel=1e-8, abs=1e-9)
 TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
@@ -28,7 +28,7 @@ WALLED = """<system name="Walled"><parameter name="l" start="1" unit="m"/><param
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED})
+    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -42,6 +42,15 @@ def test_derivatives_of_an_oscillation(lagrange_fmu):
                 assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), **TOLERATED)
     # m a = F - k x - d v at the start
     assert found.derivatives["der(v)", "k"][0] == pytest.approx(-0.3 / 2, rel=1e-12)
+
+
+def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
+    """The work, alone and beside an output."""
+    at = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
+    expected = slopes(lambda *values: work(2, *values), at)
+    for of in (["nonConservativeWork"], ["x", "nonConservativeWork"]):
+        found = lagrange_fmu.sensitivities(fmu.archive("Worked"), of, list(at), [2], {"F": 4.0})
+        assert {name: found.derivatives["nonConservativeWork", name][0] for name in at} == pytest.approx(expected, **TOLERATED)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "PendulumCartesian"])
