@@ -45,12 +45,18 @@ class Point:
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
         self.name, self.units = description.modelName, units_of(description)
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
+        self.starts = {v.name: float(v.start) for v in description.modelVariables if v.name in self.states and v.initial == "exact"}
         self.indicator_count = description.numberOfEventIndicators
         modes = [v for v in description.modelVariables if v.variability == "discrete" and v.causality == "local" and v.name not in COUNTERS]
         self.mode_references = [[v.valueReference for v in modes if (v.type in ("Real", "Float64")) == is_real] for is_real in (True, False)]
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
+
+    def given(self, names, values=()):
+        """What these start at, where values by name are set: of states, before constraints move them, but of those which follow parameters."""
+        known = self.starts | self.values | dict(values)
+        return [known.get(name, found) for name, found in zip(names, self.read(names))]
 
     def start(self, states=None, values=None):
         """The states that initialization makes of those, and of values by name."""
