@@ -35,10 +35,21 @@ TILTED = f"""<system name="EggOverPlane">{BODY}{SHAPE.replace('yaw="0.1"', 'yaw=
 THROWN = f"""<system name="ThrownEgg">{BODY}{SHAPE}<shape name="table" type="plane"/>
   <contact name="touch" between="shell" and="table"/><experiment stopTime="2"/></system>"""
 
+# A ground that is tilted, in a frame; planes that are only seen, or are second ones, touch nothing.
+SCENE = """<mujoco model="eggs"><compiler angle="radian"/><worldbody>
+  <geom type="plane" size="1 1 1" pos="0 0 9" contype="0" conaffinity="0"/>
+  <frame pos="0.1 0 0.2" euler="0.3 -0.2 0.5"><geom type="plane" size="1 1 1" pos="0 0 -0.1" euler="0.2 0.1 0"/></frame>
+  <body name="egg"><freejoint/><geom type="ellipsoid" size="0.2 0.1 0.05" pos="0.02 0 -0.01" euler="0.1 0.2 0.3"/></body>
+  <body name="rod"><freejoint/><geom type="ellipsoid" size="0.05 0.1" fromto="0.1 0 0 -0.2 0.1 0.3"/>{}</body>
+</worldbody></mujoco>"""
+STANDING = '<system name="EggsOfMujoco"><include file="eggs.xml" as="r" ground="true"/><experiment stopTime="1"/></system>'
+SECOND = '<geom type="plane" size="1 1 1"/>'
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("ellipsoids", {"Rattleback": RATTLEBACK, "EggOverPlane": TILTED, "ThrownEgg": THROWN})
+    texts = {"Rattleback": RATTLEBACK, "EggOverPlane": TILTED, "ThrownEgg": THROWN, "EggsOfMujoco": STANDING}
+    build_systems("ellipsoids", texts, files={"EggsOfMujoco/eggs.xml": SCENE.format("")})
 
 
 def quaternion(turn, spin=(0, 0, 0)):
@@ -110,6 +121,44 @@ def test_gap():
         least = min(minimize(height, guess, tol=1e-12).fun for guess in ([0, 0], [2, 0.5], [4, -0.5], [1, 1.2], [1, -1.2]))
         assert instance.get("touch.force") == pytest.approx(-least, abs=1e-9)
         instance.free()
+
+
+def test_mjcf():
+    """How deep MuJoCo finds ellipsoids in a tilted plane, is what our springs are pressed by."""
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(SCENE.format(""))
+    data = mujoco.MjData(model)
+    chance = np.random.default_rng(4)
+    for _ in range(10):
+        values, data.qpos = {}, 0
+        for i, name in enumerate(("egg", "rod")):
+            q = chance.normal(size=4)
+            pose = np.r_[chance.normal(0, 0.1, 2), -0.05 * i, q / np.linalg.norm(q)]
+            data.qpos[7 * i : 7 * i + 7] = pose
+            values |= dict(zip((f"r.{name}_{part}" for part in ("x", "y", "z", "qw", "qx", "qy", "qz")), pose))
+        mujoco.mj_forward(model, data)
+        depths = np.zeros(2)
+        for contact in data.contact[: data.ncon]:
+            if min(contact.geom) < 2:  # not the eggs with each other
+                depths[max(contact.geom) - 2] = -contact.dist
+        instance = fmu.Instance("EggsOfMujoco").initialize(values)
+        forces = np.array(instance.get("r.egg_ground1.force", "r.rod_ground1.force"))
+        assert np.max(depths) > 0 and forces / instance.get("r.ground_stiffness") == pytest.approx(depths, abs=1e-9)
+        instance.free()
+
+
+@pytest.mark.parametrize(
+    "scene, body, expected",
+    [
+        (SCENE.format(SECOND), "rod", "it in the <worldbody>, of which one is the ground"),
+        (SCENE.format("").replace("<frame", SECOND + "<frame"), "world", "one plane, which is the ground"),
+    ],
+)
+def test_planes_of_mjcf_that_touch_nothing(tmp_path, scene, body, expected):
+    (tmp_path / "eggs.xml").write_text(scene)
+    (tmp_path / "system.xml").write_text(STANDING)
+    found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert found.returncode == 0 and f"a <geom> of type plane of the body '{body}' touches nothing: expected {expected}" in found.stderr
 
 
 @pytest.mark.parametrize(
