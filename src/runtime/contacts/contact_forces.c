@@ -16,6 +16,9 @@
 #include "contacts/resting_forces.h"
 #include "evaluation/services.h"
 
+/* Noise is what one rounding makes of a value; several together make more of one that is 0 but for them. */
+static const double parting_in_noise = 1e3;
+
 /* What a refusal says of them. */
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
@@ -37,14 +40,20 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
   return sticks;
 }
 
+/* What rounding makes of the acceleration of a contact: all of it, where its force has come to 0 and it parts. */
+static double noise_of_acceleration(const struct Settlement *settlement, size_t contact) {
+  size_t indicator = contact_indicator(settlement->switches, contact);
+  bool parts = is_hit(settlement, indicator) && settlement->was_opened[contact] != 0.0;
+  double noise = settlement->noise[contact_place(settlement->switches, contact, CONTACT_ACCELERATION)];
+  return (parts ? parting_in_noise : 1.0) * noise;
+}
+
 /* Whether an open contact at rest would close, as one that another has opened too soon. */
 static bool sinks(const struct Settlement *settlement) {
   bool any = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    size_t place = contact_place(settlement->switches, i, CONTACT_ACCELERATION);
+  for (size_t i = 0; i < settlement->switches->contact_count; i++)
     any |= !contact_is_closed(settlement, i) && settlement->takes_part[i] != 0.0 &&
-           settlement->value[place] < -settlement->noise[place];
-  }
+           contact_value(settlement, i, CONTACT_ACCELERATION) < -noise_of_acceleration(settlement, i);
   return any;
 }
 
