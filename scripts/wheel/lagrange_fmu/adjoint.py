@@ -90,8 +90,7 @@ class WayBack:
 
     def rates(self, time, now, states):
         self.trail.place(time, states(time), self.inputs)
-        seed = [*now[: self.state_count], *(1.0 for _ in self.running)]
-        found = self.model.adjoint([*self.trail.rate_references, *self.running], self.knowns, seed)
+        found = self.back([*self.trail.rate_references, *self.running], [*now[: self.state_count], *(1.0 for _ in self.running)])
         return -np.append(found, sum(self.model.getReal(self.running)) if self.running else 0.0)
 
     def go(self, begin, end, states):
@@ -113,7 +112,17 @@ class WayBack:
     def add(self, time, weights, states):
         """What is read at this time."""
         self.trail.place(time, states(time), self.inputs)
-        self.now[:-1] += self.model.adjoint(self.trail.read_references, self.knowns, list(weights))
+        self.now[:-1] += self.back(self.trail.read_references, weights)
+
+    def back(self, unknowns, weights):
+        """What the sum of the weighted unknowns changes by with each known."""
+        hidden, pairs = self.trail.hidden, list(zip(unknowns, weights))
+        asked = [pair for pair in pairs if pair[0] not in hidden]
+        found = self.model.adjoint([unknown for unknown, _ in asked], self.knowns, [weight for _, weight in asked]) if asked else np.zeros(len(self.knowns))
+        for reference, weight in pairs:
+            if reference in hidden:
+                found[hidden[reference]] += weight
+        return found
 
     def along(self, phase, readings):
         """readings: (time, weights) up to its end, of which those after its beginning are taken."""

@@ -23,8 +23,8 @@ class Start:
 
     def __init__(self, point, by, values):
         self.point, self.values = point, values
+        self.at = dict(zip(by, point.given(by, values)))
         self.states, self.modes, self.sides = self.found(values)
-        self.at = dict(zip(by, point.read(by)))
         self.step = {name: STEP * (abs(value) or 1.0) for name, value in self.at.items()}
         self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
 
@@ -82,6 +82,7 @@ class Motion:
         self.rate_references = [reference[name] for name in point.derivatives]
         self.read_references = [reference[name] for name in self.of]
         self.acting = acting_of(point, self.by)
+        self.hidden = {reference[name]: place for place, name in enumerate(point.states) if name not in point.outputs}  # states that are no unknowns of FMI
 
     def place(self, time, state, inputs):
         self.model.setTime(time)
@@ -112,7 +113,11 @@ class Motion:
         self.place(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
         values = np.array(self.model.getReal(self.read_references))
-        derivatives = self.along(self.read_references, slopes) if self.by else np.empty((0, len(values)))
+        derivatives = np.empty((len(self.by), len(values)))
+        unknowns = [reference for reference in self.read_references if reference not in self.hidden]
+        found = iter(self.along(unknowns, slopes).T if self.by and unknowns else derivatives.T)
+        for i, reference in enumerate(self.read_references):
+            derivatives[:, i] = slopes[:, self.hidden[reference]] if reference in self.hidden else next(found)
         return values, derivatives.T
 
     def over(self, times, values=None, inputs=None, kinks=()):
