@@ -227,7 +227,8 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return problem;
   bool closes = sinks(settlement);
   enum RestingSolutions solutions = resting_forces_solve(&resting.forces, !closes);
-  if (numbers_of_solutions[solutions] != NULL) problem = refuse_forces(settlement, &resting, numbers_of_solutions[solutions]);
+  if (numbers_of_solutions[solutions] != NULL)
+    problem = refuse_forces(settlement, &resting, numbers_of_solutions[solutions]);
   else if (closes) *again = take_solution(settlement, &resting);
   if (solutions == PERHAPS_OTHERS) tell_of_others(settlement, &resting);
   free_resting(settlement, &resting);

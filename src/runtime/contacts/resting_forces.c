@@ -149,7 +149,7 @@ static bool is_same_motion(const struct RestingForces *resting, double size) {
   return change <= 1e3 * rounded_force * terms;
 }
 
-static void take_solution(const struct RestingForces *resting) {
+static void note_solution(const struct RestingForces *resting) {
   for (size_t i = 0; i < resting->group_count; i++) {
     resting->found[resting->group[i]] = resting->motion[resting->group[i]];
     resting->found_force[resting->group[i]] = resting->force[resting->group[i]];
@@ -162,7 +162,7 @@ static enum RestingSolutions count_motions(const struct RestingForces *resting, 
   for (unsigned combination = 0; combination < 1u << resting->group_count && count < 2; combination++) {
     if (!find_forces(resting, combination) || !is_solution(resting, size)) continue;
     if (count > 0 && is_same_motion(resting, size)) continue;
-    if (count++ == 0) take_solution(resting);
+    if (count++ == 0) note_solution(resting);
   }
   return count == 0 ? NO_MOTION : count == 1 ? ONE_MOTION : SEVERAL_MOTIONS;
 }
@@ -185,7 +185,7 @@ static enum RestingSolutions solve_group(const struct RestingForces *resting, bo
   if (is_solved && is_one) return ONE_MOTION;
   if (resting->group_count <= COMBINED_LIMIT) return count_motions(resting, size);
   if (!is_solved && !find_by_pivoting(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
-  if (!is_solved) take_solution(resting);
+  if (!is_solved) note_solution(resting);
   return is_one ? ONE_MOTION : PERHAPS_OTHERS;
 }
 
