@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import fmu
 import package
 from building import build_systems
-from motions import BALL, BELT, OSCILLATOR, WORKED, belt, bounce, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
+from motions import BALL, BELT, OSCILLATOR, STIFF, WORKED, Counted, belt, bounce, creep, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
 
 TOLERATED = dict(rel=1e-8, abs=1e-9)
 TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
@@ -30,7 +30,7 @@ RELEASED = WALLED.replace('"Walled"', '"Released"').replace('unit="m"/><particle
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED})
+    build_systems("fitted", {"Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -53,6 +53,18 @@ def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
     for of in (["nonConservativeWork"], ["x", "nonConservativeWork"]):
         found = lagrange_fmu.sensitivities(fmu.archive("Worked"), of, list(at), [2], {"F": 4.0})
         assert {name: found.derivatives["nonConservativeWork", name][0] for name in at} == pytest.approx(expected, **TOLERATED)
+
+
+def test_derivatives_of_what_is_stiff(lagrange_fmu, monkeypatch):
+    """By Radau's method, as an explicit one would take 400,000 steps."""
+    from lagrange_fmu.sensitivity import Motion
+
+    Counted(monkeypatch, Motion, "rates", 20000)
+    at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
+    found = lagrange_fmu.sensitivities(fmu.archive("Stiff"), ["x"], list(at), [0.5, 2.0])
+    for i, t in enumerate(found.time):
+        expected = slopes(lambda *values: creep(mpmath.mpf(t), *values), at)
+        assert {name: found.derivatives["x", name][i] for name in at} == pytest.approx(expected, rel=1e-7, abs=1e-11)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "PendulumCartesian"])

@@ -43,7 +43,7 @@ class Fit:
         width = max(map(len, self.values))
         lines = [f"{name.ljust(width)}  {value:.9g} +- {self.deviations[name]:.3g}" for name, value in self.values.items()]
         lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
-        lines += [f"not told by the data: {' and '.join(shares)} together" for shares in self.untold]
+        lines += [f"not told by the data: {' and '.join(shares)}{' together' if len(shares) > 1 else ''}" for shares in self.untold]
         return "\n".join(lines)
 
     def write_system(self, path):

@@ -5,7 +5,7 @@ import numpy as np
 from .problem import Problem
 
 try:
-    from scipy.integrate import DOP853
+    from .stepping import Steps
 except ImportError:
     raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
 
@@ -103,6 +103,13 @@ class Motion:
         values = self.model.getReal(self.rate_references)
         return np.concatenate([values, self.along(self.rate_references, slopes).ravel()]) if self.by else np.array(values)
 
+    def jacobian(self, time, both, inputs):
+        """Of the rates; without that of the slopes by the states, which are alone then: corrections converge in a few rounds more."""
+        count = len(self.state_references)
+        self.place(time, both[:count], inputs)
+        columns = [self.model.getDirectionalDerivative(self.rate_references, [state], [1.0]) for state in self.state_references]
+        return np.kron(np.eye(len(both) // count), np.array(columns).T)
+
     def start(self, values):
         """The states that initialization makes of these values, and their derivatives."""
         return np.concatenate([part.ravel() for part in start_slopes(self.point, self.by, values)])
@@ -133,12 +140,10 @@ class Motion:
 
     def follow(self, begin, both, end, inputs, due, rows):
         """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
-        solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
+        steps = Steps(lambda time, both: self.rates(time, both, inputs), lambda time, both: self.jacobian(time, both, inputs), (begin, end), both, self.tolerance, "the motion cannot be followed")
         self.begin_phase(begin)
-        while solver.status == "running":
-            message = solver.step()
-            if solver.status == "failed":
-                raise Problem(f"the motion cannot be followed beyond {solver.t:g} s: {message}")
+        while steps.take():
+            solver = steps.solver
             dense = solver.dense_output()
             event = self.event_in(dense, solver, inputs)
             reached = event[0] if event else solver.t
@@ -147,7 +152,7 @@ class Motion:
                 rows.append(self.read(due[0], dense(due.pop(0)), inputs))
             if event:
                 return event[0], self.pass_over(event, dense, solver.t_old, inputs)
-        return end, solver.y
+        return end, steps.solver.y
 
     def begin_phase(self, time):
         """Of smooth motion, of which each step is added next: those may note it who go back."""
