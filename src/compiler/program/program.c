@@ -84,6 +84,12 @@ static size_t count_of(const struct Routine *routine) {
   return routine != NULL ? routine->count : 0;
 }
 
+bool program_solves_by_statements(const struct Program *program, size_t number) {
+  enum { ROWS = 3 };
+  const struct InertiaBlock *block = program->blocks.items[number].block;
+  return !program->is_table && block->count <= ROWS && block->constraint_count > 0 && block->force_count == 0;
+}
+
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;

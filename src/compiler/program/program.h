@@ -38,6 +38,9 @@ struct Program {
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
 
+/* Whether the solutions of a block are statements: it has few rows, of which one is a constraint's. */
+bool program_solves_by_statements(const struct Program *program, size_t block);
+
 /* Visits each routine of the program, with the function that it is of, in the order in which they are built. */
 typedef void RoutineVisitor(void *context, enum FunctionName name, const struct Routine *routine);
 void program_visit(const struct Program *program, RoutineVisitor *visit, void *context);

@@ -100,6 +100,11 @@ static void write_block_statement(FILE *file, const struct Program *program, con
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
     bool is_least = instruction->opcode == LEAST_FORCES;
+    if (!is_least && program_solves_by_statements(program, number)) {
+      const struct LoopedBlock *looped = &program->blocks.items[number];
+      fprintf(file, "solve%u(mass + %zu, side + %zu)", number, looped->first_mass, looped->first_side);
+      return;
+    }
     const char *solve = is_oblique ? "oblique_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
     write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_oblique, number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
