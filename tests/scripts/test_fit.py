@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 import fmu
 import package
 from building import build_systems
-from motions import BALL, BELT, OSCILLATOR, belt, bounce, lagrange_fmu, measured, oscillation, slopes  # noqa: F401
+from motions import BALL, BELT, OSCILLATOR, STIFF, WORKED, Counted, belt, bounce, creep, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
 
 TOLERATED = dict(rel=1e-8, abs=1e-9)
 TWO = """<system name="Two"><for index="i" from="1" to="2"><coordinate name="h[i]" velocity="v[i]" unit="m" start="1"/>
@@ -24,11 +24,13 @@ LATE = """<system name="Late"><parameter name="F" start="3" unit="N"/><parameter
 WALLED = """<system name="Walled"><parameter name="l" start="1" unit="m"/><parameter name="e" start="0.5" unit="1"/>
   <coordinate name="x" velocity="vx" unit="m" start="1"/><coordinate name="y" velocity="vy" unit="m"/><particle mass="1" x="x" y="y"/><gravity y="-9.81"/>
   <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><contact name="wall" gap="x + 0.2*l" unit="m" restitution="e"/></system>"""
+OFF = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('"PendulumCartesian"', '"Off"').replace('start="-1"', 'start="0.72"').replace('name="y"', 'name="y" start="-0.96"')
+RELEASED = WALLED.replace('"Walled"', '"Released"').replace('unit="m"/><particle', 'unit="m" start="-0.7*l"/><particle')
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED})
+    build_systems("fitted", {"Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -42,6 +44,27 @@ def test_derivatives_of_an_oscillation(lagrange_fmu):
                 assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), **TOLERATED)
     # m a = F - k x - d v at the start
     assert found.derivatives["der(v)", "k"][0] == pytest.approx(-0.3 / 2, rel=1e-12)
+
+
+def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
+    """The work, alone and beside an output."""
+    at = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
+    expected = slopes(lambda *values: work(2, *values), at)
+    for of in (["nonConservativeWork"], ["x", "nonConservativeWork"]):
+        found = lagrange_fmu.sensitivities(fmu.archive("Worked"), of, list(at), [2], {"F": 4.0})
+        assert {name: found.derivatives["nonConservativeWork", name][0] for name in at} == pytest.approx(expected, **TOLERATED)
+
+
+def test_derivatives_of_what_is_stiff(lagrange_fmu, monkeypatch):
+    """By Radau's method, as an explicit one would take 400,000 steps."""
+    from lagrange_fmu.sensitivity import Motion
+
+    Counted(monkeypatch, Motion, "rates", 20000)
+    at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
+    found = lagrange_fmu.sensitivities(fmu.archive("Stiff"), ["x"], list(at), [0.5, 2.0])
+    for i, t in enumerate(found.time):
+        expected = slopes(lambda *values: creep(mpmath.mpf(t), *values), at)
+        assert {name: found.derivatives["x", name][i] for name in at} == pytest.approx(expected, rel=1e-7, abs=1e-11)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "PendulumCartesian"])
@@ -114,16 +137,24 @@ def test_where_it_switches(lagrange_fmu):
         lagrange_fmu.sensitivities(fmu.archive("Late"), ["x"], ["begin"], [1.0], {"begin": 0.0})
 
 
-def test_starts_of_dependent_coordinates(lagrange_fmu):
-    """Of a pendulum in x and y: what is set is moved onto the circle, and only what lies along it counts."""
-    found = lagrange_fmu.sensitivities(fmu.archive("PendulumCartesian"), ["x"], ["x", "y", "vx"], [0.0, 1.0], {"x": 0.6, "y": -0.8, "l": 1.0})
+@pytest.mark.parametrize("name, off, start", [("PendulumCartesian", 1.0, {"x": 0.6, "y": -0.8}), ("PendulumCartesian", 1.2, {"x": 0.72, "y": -0.96}), ("Off", 1.2, {})])
+def test_starts_of_dependent_coordinates(lagrange_fmu, name, off, start):
+    """Of a pendulum in x and y: what it starts at, perhaps off the circle, is moved onto it, and only what lies along it counts."""
+    found = lagrange_fmu.sensitivities(fmu.archive(name), ["x"], ["x", "y", "vx"], [0.0, 1.0], start | {"l": 1.0})
     g = fmu.start_values("PendulumCartesian")["g"]
     rates = lambda t, state: [state[1], -g * np.sin(state[0]), state[3], -g * np.cos(state[0]) * state[2], state[5], -g * np.cos(state[0]) * state[4]]
     angle = np.arctan2(0.6, 0.8)
     end = solve_ivp(rates, (0, 1), [angle, 0, 1, 0, 0, 1], method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
     by_angle, by_rate = np.cos(end[0]) * end[2], np.cos(end[0]) * end[4]
-    for name, turn in (("x", 0.8 * by_angle), ("y", 0.6 * by_angle), ("vx", 0.8 * by_rate)):
-        assert found.derivatives["x", name][1] == pytest.approx(turn, rel=1e-7), name
+    for by, turn in (("x", 0.8 * by_angle / off), ("y", 0.6 * by_angle / off), ("vx", 0.8 * by_rate)):
+        assert found.derivatives["x", by][1] == pytest.approx(turn, rel=1e-7), by
+
+
+def test_a_start_that_follows_parameters_and_is_moved(lagrange_fmu):
+    """What it is before it is moved is not told by the FMU."""
+    with pytest.raises(lagrange_fmu.Problem, match="start value of 'y' follows parameters, and constraints move it; expected a value"):
+        lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1})
+    lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1, "y": -0.77})
 
 
 def test_through_a_constraint_and_an_impact(lagrange_fmu):

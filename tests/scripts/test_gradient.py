@@ -8,7 +8,7 @@ import pytest
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, belt, bounce, energy_of_double, lagrange_fmu, measured, oscillation, slopes  # noqa: F401
+from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, Counted, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
 
 HELD = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('name="PendulumCartesian"', 'name="Held"')
 MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant name="k" value="10" unit="N/m"/>
@@ -19,7 +19,7 @@ MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant n
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    systems = {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Held": HELD, "Double": DOUBLE, "Many": MANY}
+    systems = {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Held": HELD, "Double": DOUBLE, "Many": MANY, "Worked": WORKED, "Stiff": STIFF}
     build_systems("gradients", systems, "--adjoint", "--scalars", versions=(3,))
 
 
@@ -40,6 +40,24 @@ def test_a_value_at_the_end_and_an_integral(lagrange_fmu, integral):  # noqa: F8
     found = lagrange_fmu.gradient(archive("Oscillator"), "x", list(AT), 4, integral=integral, start_values={"F": 4.0})
     assert found.value == pytest.approx(float(number(*AT.values())), rel=1e-9)
     assert found.derivatives == pytest.approx(slopes(number, AT), rel=1e-8)
+
+
+@pytest.mark.parametrize("integral", [False, True])
+def test_of_a_state_that_is_no_output(lagrange_fmu, integral):  # noqa: F811
+    expected = slopes(lambda *at: mpmath.quad(lambda t: work(t, *at), [0, 1, 2, 3, 4]) if integral else work(4, *at), AT)
+    found = lagrange_fmu.gradient(archive("Worked"), "nonConservativeWork", list(AT), 4, integral=integral, start_values={"F": 4.0})
+    assert found.derivatives == pytest.approx(expected, rel=1e-7)
+
+
+def test_of_what_is_stiff(lagrange_fmu, monkeypatch):  # noqa: F811
+    """There and back in steps that an explicit method could not take."""
+    from lagrange_fmu.adjoint import Motion, WayBack
+
+    for owner in (Motion, WayBack):
+        Counted(monkeypatch, owner, "rates", 20000)
+    at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
+    found = lagrange_fmu.gradient(archive("Stiff"), "x", list(at), 2)
+    assert found.derivatives == pytest.approx(slopes(lambda *values: creep(mpmath.mpf(2), *values), at), rel=1e-7, abs=1e-11)
 
 
 def test_squares(lagrange_fmu):  # noqa: F811

@@ -35,6 +35,10 @@ def elbow(between='<parent link="upper"/><child link="lower"/>', origin='<origin
     return between + origin + axis + more
 
 
+def sole(shape):
+    return f'<link name="upper"><collision><geometry>{shape}</geometry></collision>'
+
+
 # What is wrong, the line replaced, its new text, the line and message expected.
 CASES = [
     ("no name", 1, "<robot>", 1, "<robot> needs the attribute 'name'"),
@@ -76,6 +80,10 @@ CASES = [
     ("nothing to move", 7, "", 12, "the joint 'elbow' moves no inertia: neither the link 'lower' nor what hangs on it has a mass"),
     ("mimic of an unknown joint", 13, elbow(more='<mimic joint="sholder"/>'), 12, "there is no joint 'sholder' for a <mimic>; did you mean 'shoulder'"),
     ("mimic of itself", 13, elbow(more='<mimic joint="elbow"/>'), 12, "the joint 'elbow' mimics itself"),
+    ("negative radius", 3, sole('<sphere radius="-1"/>'), 3, 'radius="-1" of <sphere>; expected a number above 0'),
+    ("negative side", 3, sole('<box size="1 0 -2"/>'), 3, 'size="1 0 -2" of <box>; expected sides above 0'),
+    ("negative length", 3, sole('<cylinder radius="1" length="-2"/>'), 3, 'length="-2" of <cylinder>; expected a number above 0'),
+    ("radius that is no number", 3, sole('<capsule radius="nan" length="2"/>'), 3, 'radius="nan" of <capsule>; expected a number such as 2'),
     ("xacro macro", 2, '<link name="stand"/><xacro:wheel xmlns:xacro="http://www.ros.org/wiki/xacro" name="w"/>', 2,
      "<wheel> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it"),
     ("xacro expression", 13, elbow(origin='<origin xyz="0 0 ${-length}"/>'), 13, "<origin> has macros or expressions of xacro"),

@@ -35,10 +35,26 @@ TILTED = f"""<system name="EggOverPlane">{BODY}{SHAPE.replace('yaw="0.1"', 'yaw=
 THROWN = f"""<system name="ThrownEgg">{BODY}{SHAPE}<shape name="table" type="plane"/>
   <contact name="touch" between="shell" and="table"/><experiment stopTime="2"/></system>"""
 
+TUMBLING = f"""<system name="TumblingEgg">{FREE}<parameter name="mu" start="1"/><frame name="f"><translate x="x" y="y" z="z"/>
+  <rotate quaternion="q0 q1 q2 q3"/></frame><body name="egg" in="f" mass="1" Ixx="0.0065" Iyy="0.01" Izz="0.0125"/><gravity x="9.81*sin(0.3)" z="-9.81*cos(0.3)"/>
+  <shape name="shell" in="f" type="ellipsoid" sizeX="0.4" sizeY="0.3" sizeZ="0.2"/><shape name="slope" type="plane"/>
+  <contact name="touch" between="shell" and="slope" friction="mu"/><experiment stopTime="2"/></system>"""
+
+# A ground that is tilted, in a frame; planes that are only seen, or are second ones, touch nothing.
+SCENE = """<mujoco model="eggs"><compiler angle="radian"/><worldbody>
+  <geom type="plane" size="1 1 1" pos="0 0 9" contype="0" conaffinity="0"/>
+  <frame pos="0.1 0 0.2" euler="0.3 -0.2 0.5"><geom type="plane" size="1 1 1" pos="0 0 -0.1" euler="0.2 0.1 0"/></frame>
+  <body name="egg"><freejoint/><geom type="ellipsoid" size="0.2 0.1 0.05" pos="0.02 0 -0.01" euler="0.1 0.2 0.3"/></body>
+  <body name="rod"><freejoint/><geom type="ellipsoid" size="0.05 0.1" fromto="0.1 0 0 -0.2 0.1 0.3"/>{}</body>
+</worldbody></mujoco>"""
+STANDING = '<system name="EggsOfMujoco"><include file="eggs.xml" as="r" ground="true"/><experiment stopTime="1"/></system>'
+SECOND = '<geom type="plane" size="1 1 1"/>'
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("ellipsoids", {"Rattleback": RATTLEBACK, "EggOverPlane": TILTED, "ThrownEgg": THROWN})
+    texts = {"Rattleback": RATTLEBACK, "EggOverPlane": TILTED, "ThrownEgg": THROWN, "EggsOfMujoco": STANDING, "TumblingEgg": TUMBLING}
+    build_systems("ellipsoids", texts, files={"EggsOfMujoco/eggs.xml": SCENE.format("")})
 
 
 def quaternion(turn, spin=(0, 0, 0)):
@@ -112,6 +128,44 @@ def test_gap():
         instance.free()
 
 
+def test_mjcf():
+    """How deep MuJoCo finds ellipsoids in a tilted plane, is what our springs are pressed by."""
+    mujoco = pytest.importorskip("mujoco")
+    model = mujoco.MjModel.from_xml_string(SCENE.format(""))
+    data = mujoco.MjData(model)
+    chance = np.random.default_rng(4)
+    for _ in range(10):
+        values, data.qpos = {}, 0
+        for i, name in enumerate(("egg", "rod")):
+            q = chance.normal(size=4)
+            pose = np.r_[chance.normal(0, 0.1, 2), -0.05 * i, q / np.linalg.norm(q)]
+            data.qpos[7 * i : 7 * i + 7] = pose
+            values |= dict(zip((f"r.{name}_{part}" for part in ("x", "y", "z", "qw", "qx", "qy", "qz")), pose))
+        mujoco.mj_forward(model, data)
+        depths = np.zeros(2)
+        for contact in data.contact[: data.ncon]:
+            if min(contact.geom) < 2:  # not the eggs with each other
+                depths[max(contact.geom) - 2] = -contact.dist
+        instance = fmu.Instance("EggsOfMujoco").initialize(values)
+        forces = np.array(instance.get("r.egg_ground1.force", "r.rod_ground1.force"))
+        assert np.max(depths) > 0 and forces / instance.get("r.ground_stiffness") == pytest.approx(depths, abs=1e-9)
+        instance.free()
+
+
+@pytest.mark.parametrize(
+    "scene, body, expected",
+    [
+        (SCENE.format(SECOND), "rod", "it in the <worldbody>, of which one is the ground"),
+        (SCENE.format("").replace("<frame", SECOND + "<frame"), "world", "one plane, which is the ground"),
+    ],
+)
+def test_planes_of_mjcf_that_touch_nothing(tmp_path, scene, body, expected):
+    (tmp_path / "eggs.xml").write_text(scene)
+    (tmp_path / "system.xml").write_text(STANDING)
+    found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
+    assert found.returncode == 0 and f"a <geom> of type plane of the body '{body}' touches nothing: expected {expected}" in found.stderr
+
+
 @pytest.mark.parametrize(
     "shapes, message",
     [
@@ -160,6 +214,25 @@ def test_an_egg_that_lands_without_a_bounce_and_lifts_off_again():
         energy = instance.get("totalEnergy")
         instance.step(landed.t_events[0][0] + 1e-4)
         assert instance.get("totalEnergy") - energy == pytest.approx(push * closing / 2, abs=1e-5)
+
+
+def test_an_egg_that_rolls_down_a_slope_and_lifts_off():
+    """Where it parts while it slides, it has neither force nor acceleration against the slope but rounding. Then it flies."""
+    random, parted = np.random.default_rng(3), 0
+    for _ in range(40):
+        start = dict(zip(("z", "vx", "vy", "vz"), np.r_[0.25, random.normal(0, 2, 2), -1])) | quaternion(Rotation.random(rng=random), random.normal(0, 5, 3))
+        instance = fmu.Instance("TumblingEgg").initialize(start | {"mu": random.uniform(0.3, 1)}, tolerance=1e-6)
+        energy, was_closed = instance.get("totalEnergy"), False
+        for _ in range(200):
+            instance.step(0.01)
+            before, energy = energy, instance.get("totalEnergy")
+            assert energy <= before + 1e-6
+            is_closed = instance.fmu.getInteger(instance.vr("touch.closed")) == [1]
+            parted += was_closed and not is_closed
+            was_closed = is_closed
+            assert is_closed or instance.get("der(vz)") == pytest.approx(-G * np.cos(0.3), rel=1e-12)
+        instance.free()
+    assert parted > 30
 
 
 def test_scene():

@@ -155,3 +155,14 @@ def test_a_mesh_that_is_missing(tmp_path):
     (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
     told = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
     assert "left out, since the motion does not depend on them: collision" in told and "1 mesh is not drawn; the first: the mesh 'roller.stl'" in told
+
+
+def test_a_shape_without_size(tmp_path):
+    """It cannot stand on a ground; without one it is left out."""
+    (tmp_path / "roller.urdf").write_text(re.sub("<geometry>.*</geometry>", '<geometry><sphere radius="0"/></geometry>', ROUND.format(INERTIA.format(0.1))))
+    (tmp_path / "system.xml").write_text(ROLLER)
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and 'radius="0" of <sphere>; expected a number above 0' in result.stderr
+    (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and "left out, since the motion does not depend on them: collision" in result.stderr

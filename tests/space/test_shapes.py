@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import fmu
 from building import LAGC, build_systems
+from fmu import ERROR
 
 HEAD = """<constant name="g" value="9.81" unit="m/s2"/><parameter name="m" start="2" unit="kg"/><parameter name="r" start="0.1" unit="m"/>
   <parameter name="k" start="1e5" unit="N/m"/><parameter name="c" start="0" unit="s/m"/><parameter name="mu" start="0" unit="1"/>"""
@@ -197,6 +198,13 @@ def test_ball_on_a_slope(mu):
             assert instance.get("der(w)") == pytest.approx(mu * weight * r / (0.4 * m * r**2), rel=1e-3)
 
 
+def test_a_size_that_is_tuned():
+    """What a radius is taken from cannot be set below 0, with which the ball would be turned inside out."""
+    with Running("Slope", {}) as instance:
+        with instance.fails(ERROR, "-0.1 for 'r' is below its minimum, 0"):
+            instance.set({"r": -0.1})
+
+
 def test_shapes_of_a_loop_and_of_included_files():
     """Each by its own name."""
     with Running("Twice", {f"a.z[{i}]": 0.05 for i in (1, 2, 3)} | {f"b.z[{i}]": 0.3 for i in (1, 2, 3)}) as instance:
@@ -268,6 +276,13 @@ def test_a_block_that_falls_flat():
         ('<contact between="skin" and="skin" stiffness="k"/>', "a <contact> of 'skin' with itself"),
         ('<contact between="skin" and="floor" stiffness="k" friction="mu" creep="0"/>', "the creep of a <contact> is 0"),
         ('<shape name="s" type="sphere" radius="r" axis="x"/>', "is a sphere, which has no axis"),
+        ('<shape name="s" type="sphere" radius="-2*r"/>', "the radius of the sphere 's' is -0.2 at the start values; expected a number above 0"),
+        ('<shape name="s" type="sphere" radius="r*sqrt(mu - 1)"/>', "nan at the start values; expected a number above 0"),
+        ('<shape name="s" type="capsule" radius="0" length="r"/>', "the radius of the capsule 's' is 0 at the start values; expected a number above 0"),
+        ('<shape name="s" type="cylinder" radius="r" length="0"/>', "the length of the cylinder 's' is 0 at the start values; expected a number above 0"),
+        ('<shape name="s" type="ellipsoid" sizeX="0" sizeY="1" sizeZ="1"/>', "the sizeX of the ellipsoid 's' is 0 at the start values; expected a number above 0"),
+        ('<shape name="s" type="box" sizeX="1" sizeY="-r"/>', "the sizeY of the box 's' is -0.1 at the start values; expected none below 0"),
+        ('<shape name="s" type="box" sizeX="0"/>', "the diagonal of the box 's' is 0 at the start values; expected a number above 0"),
         ('<shape name="s" in="bal" type="sphere" radius="r"/>', "there is nothing named 'bal' for this <shape>"),
         ('<contact gap="z"/>', "a <contact> needs a name and a gap, or shapes"),
 

@@ -13,6 +13,9 @@ OSCILLATOR = """<system name="Oscillator"><!-- kept -->
   <input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m" start="0.3"/>
   <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
   <experiment stopTime="4"/></system>"""
+WORKED = OSCILLATOR.replace('name="Oscillator"', 'name="Worked"').replace("<experiment", "<work/><experiment")
+# So that explicit steps would have to be of some 5 us.
+STIFF = OSCILLATOR.replace('name="Oscillator"', 'name="Stiff"').replace('name="d" start="1"', 'name="d" start="1e6"')
 BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
   <parameter name="e" start="0.5" unit="1" min="0" max="1"/>
   <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
@@ -49,6 +52,35 @@ def oscillation(t, m, k, d, x0, F=0.0):
     a, shift = d / (2 * m), F / k
     w = mpmath.sqrt(k / m - a * a)
     return shift + (x0 - shift) * mpmath.exp(-a * t) * (mpmath.cos(w * t) + a / w * mpmath.sin(w * t))
+
+
+def creep(t, m, k, d, x0):
+    """The oscillation, damped beyond what swings."""
+    a = d / (2 * m)
+    w = mpmath.sqrt(a * a - k / m)
+    slow, fast = -k / m / (a + w), -a - w
+    return x0 * (fast * mpmath.exp(slow * t) - slow * mpmath.exp(fast * t)) / (fast - slow)
+
+
+class Counted:
+    """A function that may be called so often."""
+
+    def __init__(self, monkeypatch, owner, name, most):
+        function, self.count = getattr(owner, name), 0
+
+        def call(*arguments):
+            self.count += 1
+            assert self.count <= most
+            return function(*arguments)
+
+        monkeypatch.setattr(owner, name, call)
+
+
+def work(t, *at):
+    """Of the damper and the force on the oscillation: what its energy changes by."""
+    m, k = at[:2]
+    energies = [(m * mpmath.diff(lambda s: oscillation(s, *at), when) ** 2 + k * oscillation(when, *at) ** 2) / 2 for when in (mpmath.mpf(t), mpmath.mpf(0))]
+    return energies[0] - energies[1]
 
 
 def bounce(t, h0, g, e, bounces):

@@ -109,6 +109,19 @@ TOWER = """<system name="BallOnBall" description="Two balls on top of each other
   <experiment stopTime="30"/>
 </system>"""
 
+
+
+def sledge(name, n):
+    """n masses of 1 kg that slide with a sledge of 10 kg, each down a slope of its own: the friction of each presses all."""
+    parts = "".join(
+        f'<coordinate name="z{i}" velocity="w{i}" velocityStart="-0.5"/><particle mass="1" y="z{i}"/><contact name="c{i}" gap="z{i} + 0.5*x"/>'
+        for i in range(n)
+    )
+    return f"""<system name="{name}" description="Masses that a sledge slides on"><parameter name="mu" start="1"/><parameter name="pull" start="0"/>
+      <coordinate name="x" velocity="v" velocityStart="1"/><particle mass="10" x="x"/><force coordinate="x">pull</force><gravity y="-9.81"/>{parts}
+      <friction name="rub" velocity="v" force="mu*({"+".join(f"c{i}.force" for i in range(n))})"/><experiment stopTime="1"/></system>"""
+
+
 PAIRS = [(1, 2), (1, 3), (2, 3)]
 SYSTEMS = {
     "RandomContacts": random_system("RandomContacts", [0, 1, 2, 3]),
@@ -120,6 +133,8 @@ SYSTEMS = {
     "RockingBlock": BLOCK,
     "BallOnIncline": INCLINE,
     "BallOnBall": TOWER,
+    "Masses12": sledge("Masses12", 12),
+    "Masses14": sledge("Masses14", 14),
 }
 
 
@@ -310,6 +325,27 @@ def test_a_rod_parts_before_it_locks(open_fmu):
     to(instance, 1.1 * path.t[-1])
     assert instance.get("totalEnergy") <= energy and instance.get("tip.force") == 0 and events(instance) == 1
     assert instance.get("y") > np.sin(instance.get("theta"))
+
+
+def told_of_other_forces(instance):
+    return sum("which may not be the only one" in text for _, _, text in instance.messages)
+
+
+def test_contacts_that_are_too_many_to_try_all(open_fmu):
+    """Each force F is 9.81 + k n F with k = 0.5 (mu - 0.5)/10: positive up to n k = 1. Beyond this a pull lifts all, or all press; of 12 that is known."""
+    instance = open_fmu("Masses14").initialize({"mu": 1})
+    assert instance.get("c0.force", "c13.force") == pytest.approx(2 * [9.81 / (1 - 14 * 0.025)], rel=1e-9)
+    assert told_of_other_forces(instance) == 0
+    instance = open_fmu("Masses12")
+    with instance.fails(ERROR, "more than one solution"):
+        instance.initialize({"mu": 3.1, "pull": 400})
+    instance = open_fmu("Masses14").initialize({"mu": 3.1, "pull": 400})
+    for _ in range(3):
+        instance.step(0.01)
+    assert told_of_other_forces(instance) == 1 and instance.get("c0.force") == 0
+    instance = open_fmu("Masses14")
+    with instance.fails(ERROR, "the contact 'c0' has perhaps no solution"):
+        instance.initialize({"mu": 3.1})
 
 
 # --- Ties ---

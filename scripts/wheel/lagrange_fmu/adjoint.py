@@ -12,8 +12,9 @@ from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
 from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
+from .stepping import Steps
 
-from scipy.integrate import DOP853, OdeSolution  # isort: skip
+from scipy.integrate import OdeSolution  # isort: skip
 
 
 @dataclass(frozen=True)
@@ -90,30 +91,44 @@ class WayBack:
 
     def rates(self, time, now, states):
         self.trail.place(time, states(time), self.inputs)
-        seed = [*now[: self.state_count], *(1.0 for _ in self.running)]
-        found = self.model.adjoint([*self.trail.rate_references, *self.running], self.knowns, seed)
+        found = self.back([*self.trail.rate_references, *self.running], [*now[: self.state_count], *(1.0 for _ in self.running)])
         return -np.append(found, sum(self.model.getReal(self.running)) if self.running else 0.0)
+
+    def jacobian(self, time, states):
+        """Of the rates by what they act on."""
+        self.trail.place(time, states(time), self.inputs)
+        found = np.zeros((len(self.now), len(self.now)))
+        for i, seed in enumerate(np.eye(self.state_count)):
+            found[:-1, i] = -self.back(self.trail.rate_references, seed)
+        return found
 
     def go(self, begin, end, states):
         """Back from the end to the beginning."""
         if not begin < end:
             return
-        tolerance = self.trail.tolerance
         first = None if self.step is None else min(self.step, end - begin)
-        solver = DOP853(lambda time, now: self.rates(time, now, states), end, self.now, begin, first_step=first, rtol=max(tolerance, 3e-14), atol=1e-2 * tolerance)
-        steps = []
-        while solver.status == "running":
-            message = solver.step()
-            if solver.status == "failed":
-                raise Problem(f"the motion cannot be followed back beyond {solver.t:g} s: {message}")
-            steps.append(solver.step_size)
-        self.now = solver.y
-        self.step = steps[-2] if len(steps) > 1 else max(self.step or 0.0, steps[-1])  # the last one is cut short
+        span, what = (end, begin), "the motion cannot be followed back"
+        steps = Steps(lambda time, now: self.rates(time, now, states), lambda time, now: self.jacobian(time, states), span, self.now, self.trail.tolerance, what, first)
+        sizes = []
+        while steps.take():
+            sizes.append(steps.solver.step_size)
+        self.now = steps.solver.y
+        self.step = sizes[-2] if len(sizes) > 1 else max(self.step or 0.0, sizes[-1])  # the last one is cut short
 
     def add(self, time, weights, states):
         """What is read at this time."""
         self.trail.place(time, states(time), self.inputs)
-        self.now[:-1] += self.model.adjoint(self.trail.read_references, self.knowns, list(weights))
+        self.now[:-1] += self.back(self.trail.read_references, weights)
+
+    def back(self, unknowns, weights):
+        """What the sum of the weighted unknowns changes by with each known."""
+        hidden, pairs = self.trail.hidden, list(zip(unknowns, weights))
+        asked = [pair for pair in pairs if pair[0] not in hidden]
+        found = self.model.adjoint([unknown for unknown, _ in asked], self.knowns, [weight for _, weight in asked]) if asked else np.zeros(len(self.knowns))
+        for reference, weight in pairs:
+            if reference in hidden:
+                found[hidden[reference]] += weight
+        return found
 
     def along(self, phase, readings):
         """readings: (time, weights) up to its end, of which those after its beginning are taken."""

@@ -43,7 +43,7 @@ class Fit:
         width = max(map(len, self.values))
         lines = [f"{name.ljust(width)}  {value:.9g} +- {self.deviations[name]:.3g}" for name, value in self.values.items()]
         lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
-        lines += [f"not told by the data: {' and '.join(shares)} together" for shares in self.untold]
+        lines += [f"not told by the data: {' and '.join(shares)}{' together' if len(shares) > 1 else ''}" for shares in self.untold]
         return "\n".join(lines)
 
     def write_system(self, path):
@@ -140,8 +140,7 @@ class _Search:
             own = len(vary) + number * len(each)
             self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise))
         check_noise(noise, self.experiments)
-        point.start()
-        self.begin = dict(zip(self.names, point.read(self.kinds)))
+        self.begin = dict(zip(self.names, point.given(self.kinds)))
         for experiment in self.experiments:
             measured = {self.names[place]: experiment.first(self.kinds[place]) for place in experiment.places[len(vary) :]}
             self.begin |= {name: value for name, value in measured.items() if value is not None}

@@ -45,12 +45,27 @@ class Point:
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
         self.name, self.units = description.modelName, units_of(description)
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
+        self.starts = {v.name: float(v.start) for v in description.modelVariables if v.name in self.states}
         self.indicator_count = description.numberOfEventIndicators
         modes = [v for v in description.modelVariables if v.variability == "discrete" and v.causality == "local" and v.name not in COUNTERS]
         self.mode_references = [[v.valueReference for v in modes if (v.type in ("Real", "Float64")) == is_real] for is_real in (True, False)]
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
+
+    def given(self, names, values=None):
+        """What these start at, a list, where values by name are set; a state: before constraints move it."""
+        known = self.values | (values or {})
+        states = self.start(values=values)
+        read = dict(zip(names, self.read(names)))
+        return [known[name] if name in known else self._unmoved(name, read[name], known, states) if name in self.states else read[name] for name in names]
+
+    def _unmoved(self, name, moved, values, states):
+        """What has to be set for the same start: what modelDescription.xml tells, or, where that follows parameters, what was found."""
+        for value in (self.starts[name], moved):
+            if np.allclose(self.start(values=values | {name: value}), states, rtol=1e-9, atol=1e-12):
+                return value
+        raise Problem(f"the start value of '{name}' follows parameters, and constraints move it; expected a value for it by start_values")
 
     def start(self, states=None, values=None):
         """The states that initialization makes of those, and of values by name."""

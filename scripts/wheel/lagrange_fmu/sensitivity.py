@@ -5,7 +5,7 @@ import numpy as np
 from .problem import Problem
 
 try:
-    from scipy.integrate import DOP853
+    from .stepping import Steps
 except ImportError:
     raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
 
@@ -23,8 +23,8 @@ class Start:
 
     def __init__(self, point, by, values):
         self.point, self.values = point, values
+        self.at = dict(zip(by, point.given(by, values)))
         self.states, self.modes, self.sides = self.found(values)
-        self.at = dict(zip(by, point.read(by)))
         self.step = {name: STEP * (abs(value) or 1.0) for name, value in self.at.items()}
         self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
 
@@ -82,6 +82,7 @@ class Motion:
         self.rate_references = [reference[name] for name in point.derivatives]
         self.read_references = [reference[name] for name in self.of]
         self.acting = acting_of(point, self.by)
+        self.hidden = {reference[name]: place for place, name in enumerate(point.states) if name not in point.outputs}  # states that are no unknowns of FMI
 
     def place(self, time, state, inputs):
         self.model.setTime(time)
@@ -102,6 +103,13 @@ class Motion:
         values = self.model.getReal(self.rate_references)
         return np.concatenate([values, self.along(self.rate_references, slopes).ravel()]) if self.by else np.array(values)
 
+    def jacobian(self, time, both, inputs):
+        """Of the rates; without that of the slopes by the states, which are alone then: corrections converge in a few rounds more."""
+        count = len(self.state_references)
+        self.place(time, both[:count], inputs)
+        columns = [self.model.getDirectionalDerivative(self.rate_references, [state], [1.0]) for state in self.state_references]
+        return np.kron(np.eye(len(both) // count), np.array(columns).T)
+
     def start(self, values):
         """The states that initialization makes of these values, and their derivatives."""
         return np.concatenate([part.ravel() for part in start_slopes(self.point, self.by, values)])
@@ -112,7 +120,11 @@ class Motion:
         self.place(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
         values = np.array(self.model.getReal(self.read_references))
-        derivatives = self.along(self.read_references, slopes) if self.by else np.empty((0, len(values)))
+        derivatives = np.empty((len(self.by), len(values)))
+        unknowns = [reference for reference in self.read_references if reference not in self.hidden]
+        found = iter(self.along(unknowns, slopes).T if self.by and unknowns else derivatives.T)
+        for i, reference in enumerate(self.read_references):
+            derivatives[:, i] = slopes[:, self.hidden[reference]] if reference in self.hidden else next(found)
         return values, derivatives.T
 
     def over(self, times, values=None, inputs=None, kinks=()):
@@ -128,12 +140,10 @@ class Motion:
 
     def follow(self, begin, both, end, inputs, due, rows):
         """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
-        solver = DOP853(lambda time, both: self.rates(time, both, inputs), begin, both, end, rtol=max(self.tolerance, 3e-14), atol=1e-2 * self.tolerance)
+        steps = Steps(lambda time, both: self.rates(time, both, inputs), lambda time, both: self.jacobian(time, both, inputs), (begin, end), both, self.tolerance, "the motion cannot be followed")
         self.begin_phase(begin)
-        while solver.status == "running":
-            message = solver.step()
-            if solver.status == "failed":
-                raise Problem(f"the motion cannot be followed beyond {solver.t:g} s: {message}")
+        while steps.take():
+            solver = steps.solver
             dense = solver.dense_output()
             event = self.event_in(dense, solver, inputs)
             reached = event[0] if event else solver.t
@@ -142,7 +152,7 @@ class Motion:
                 rows.append(self.read(due[0], dense(due.pop(0)), inputs))
             if event:
                 return event[0], self.pass_over(event, dense, solver.t_old, inputs)
-        return end, solver.y
+        return end, steps.solver.y
 
     def begin_phase(self, time):
         """Of smooth motion, of which each step is added next: those may note it who go back."""

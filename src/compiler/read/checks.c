@@ -116,10 +116,11 @@ static void check_expectations(const struct Reader *reader, const double *values
   for (size_t i = 0; i < reader->expectation_count; i++) {
     const struct Expectation *expected = &reader->expectations[i];
     double value = values[expected->node];
-    if (!(value < 0.0)) continue;
-    static const char message[] = "%s is %g at the start values; expected none below 0";
-    if (expected->is_required) report_error(reader->diagnostics, expected->line, message, expected->what, value);
-    else report_warning(reader->diagnostics, expected->line, message, expected->what, value);
+    if (expected->is_size ? value > 0.0 && isfinite(value) : !(value < 0.0)) continue;
+    static const char message[] = "%s is %g at the start values; expected %s";
+    const char *right = expected->is_size ? "a number above 0" : "none below 0";
+    if (expected->is_required) report_error(reader->diagnostics, expected->line, message, expected->what, value, right);
+    else report_warning(reader->diagnostics, expected->line, message, expected->what, value, right);
   }
 }
 

@@ -117,9 +117,18 @@ void require_unit(struct Reader *reader, long line, const char *what, struct Qua
     report_error(reader->diagnostics, line, "%s%s", problem, unit_hint(quantity.dimension));
 }
 
-void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {
+static void append_expectation(struct Reader *reader, struct Expectation expectation) {
   size_t count = reader->expectation_count++;
   reader->expectations = make_room(reader->expectations, count, sizeof *reader->expectations);
-  reader->expectations[count] =
-      (struct Expectation){value, scope_line(reader->scope, xmlGetLineNo(node)), what, is_required};
+  reader->expectations[count] = expectation;
+}
+
+void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {
+  long line = scope_line(reader->scope, xmlGetLineNo(node));
+  append_expectation(reader, (struct Expectation){value, line, what, is_required, false});
+}
+
+void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value) {
+  long line = scope_line(reader->scope, xmlGetLineNo(node));
+  append_expectation(reader, (struct Expectation){value, line, what, true, true});
 }

@@ -20,7 +20,7 @@ struct Expectation {
   Node node;
   long line;
   const char *what;
-  bool is_required;
+  bool is_required, is_size; /* a size: above 0, and finite */
 };
 
 struct Source;
@@ -123,6 +123,9 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
 
 /* Notes that a node of parameters should not be below 0 at the start values: an error where required, else a warning. */
 void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required);
+
+/* Notes that a node of parameters must be above 0 at the start values. */
+void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value);
 
 /* Reports an error unless the quantity has the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,

@@ -11,6 +11,16 @@ static const char ground[] = "ground";
 /* The stiffness lets the robot sink by a millimetre where one point bears all of it. */
 static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
 
+static void place_element(xmlNodePtr shape, const struct Placement *place) {
+  static const char *const names[] = {"roll", "pitch", "yaw"};
+  double angles[3];
+  placement_angles(place, angles);
+  for (int axis = 0; axis < 3; axis++) {
+    set_number(shape, axes[axis], place->translation[axis]);
+    set_number(shape, names[axis], angles[axis]);
+  }
+}
+
 void write_ground(struct Writer *writer, const struct Robot *robot) {
   double mass = 0.0;
   for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
@@ -24,6 +34,7 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
   xmlNodePtr plane = write_element(writer, "shape");
   set_attribute(plane, "name", copy_text(ground));
   set_attribute(plane, "type", copy_text("plane"));
+  if (robot->ground != NULL) place_element(plane, robot->ground);
 }
 
 static void write_contact(const struct Writer *writer, const struct Link *link, const char *shape, size_t number) {
@@ -38,20 +49,15 @@ static void write_contact(const struct Writer *writer, const struct Link *link, 
 
 static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, const struct Collision *collision,
                               char *name) {
-  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const names[] = {"roll", "pitch", "yaw"};
+  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
   const double *scale = collision->scale;
-  double angles[3];
-  placement_angles(&collision->place, angles);
   writer->line = collision->line;
   xmlNodePtr shape = write_element(writer, "shape");
   set_attribute(shape, "name", name);
   set_attribute(shape, "in", copy_text(link->symbol));
   set_attribute(shape, "type", copy_text(collision->type));
-  for (int axis = 0; axis < 3; axis++) {
-    set_number(shape, axes[axis], collision->place.translation[axis]);
-    set_number(shape, sizes[axis], collision->size[axis]);
-    set_number(shape, names[axis], angles[axis]);
-  }
+  place_element(shape, &collision->place);
+  for (int axis = 0; axis < 3; axis++) set_number(shape, sizes[axis], collision->size[axis]);
   set_number(shape, "radius", collision->radius);
   set_number(shape, "length", collision->length);
   if (collision->color != NULL) set_attribute(shape, "color", copy_text(collision->color));

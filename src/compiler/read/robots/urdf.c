@@ -89,25 +89,45 @@ static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touch
   return problem;
 }
 
-/* False of what has no shape here; in *problem is why a mesh is none, else NULL. */
+/*
+ * Whether any is above 0: boxes may be flat. Reports those that are below 0, and if it touches that all are 0: robots have
+ * such shapes where there is nothing to be seen.
+ */
+static bool read_sizes(struct RobotFile *urdf, xmlNodePtr node, const char *name, size_t count, bool touches,
+                       double *sizes) {
+  int errors = urdf->diagnostics->errors;
+  if (*required_attribute(urdf, node, name) != '\0') read_numbers(urdf, node, name, count, sizes);
+  double least = sizes[0], largest = sizes[0];
+  for (size_t i = 1; i < count; i++) {
+    least = fmin(least, sizes[i]);
+    largest = fmax(largest, sizes[i]);
+  }
+  if (urdf->diagnostics->errors == errors && (least < 0 || (touches && !(largest > 0))))
+    report_error(urdf->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s above 0", name,
+                 attribute(node, name), (const char *)node->name, count == 1 ? "a number" : "sides");
+  return largest > 0;
+}
+
+/* False of what has no shape here, unless that was reported; in *problem is why a mesh is none, else NULL. */
 static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision,
                           char **problem) {
   xmlNodePtr sphere = child_of(urdf, node, "sphere"), box = child_of(urdf, node, "box");
   xmlNodePtr round = child_of(urdf, node, "cylinder"), capsule = round == NULL ? child_of(urdf, node, "capsule") : NULL;
   xmlNodePtr mesh = only_child_of(node, "mesh");
+  bool has_size = true;
   if (round == NULL) round = capsule;
   if (sphere != NULL) {
     collision->type = "sphere";
-    collision->radius = required_number(urdf, sphere, "radius");
+    has_size = read_sizes(urdf, sphere, "radius", 1, touches, &collision->radius);
   } else if (box != NULL) {
     collision->type = "box";
-    if (*required_attribute(urdf, box, "size") != '\0') read_numbers(urdf, box, "size", 3, collision->size);
+    has_size = read_sizes(urdf, box, "size", 3, touches, collision->size);
   } else if (round != NULL) {
     collision->type = capsule != NULL ? "capsule" : "cylinder";
-    collision->radius = required_number(urdf, round, "radius");
-    collision->length = required_number(urdf, round, "length");
+    has_size = read_sizes(urdf, round, "radius", 1, touches, &collision->radius);
+    has_size &= read_sizes(urdf, round, "length", 1, touches, &collision->length);
   } else if (mesh != NULL) *problem = read_mesh(urdf, mesh, touches, collision);
-  return collision->type != NULL && *problem == NULL;
+  return collision->type != NULL && (has_size || touches) && *problem == NULL;
 }
 
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {

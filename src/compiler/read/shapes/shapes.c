@@ -1,5 +1,6 @@
 #include "read/shapes/shapes.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "algebra/simplify.h"
@@ -95,12 +96,33 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   mechanism->shapes[mechanism->shape_count++] = shape;
 }
 
-static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name, bool may_be_negative) {
+static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity length = {.node = ZERO};
   if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ZERO;
   require_unit(reader, xmlGetLineNo(node), name, length, unit_of("m"));
-  if (!may_be_negative) expect_not_negative(reader, node, format_text("the %s of <shape>", name), length.node, false);
   return length.node;
+}
+
+/* Of a parameter alone, or so many times one, importers learn that it cannot be negative, and the FMU refuses it. */
+static void keep_from_negative(struct Reader *reader, Node size) {
+  const struct Graph *graph = reader->model->graph;
+  const struct Vertex *vertex = &graph->vertices[size];
+  bool is_multiple = vertex->operation == MULTIPLY && graph_is_constant(graph, vertex->left);
+  if (is_multiple && graph_value(graph, vertex->left) > 0.0) vertex = &graph->vertices[size = vertex->right];
+  if (vertex->operation != SYMBOL || graph_symbol_of(graph, size)->kind != PARAMETER) return;
+  struct Variable *parameter = &reader->model->parameters.items[graph_symbol_of(graph, size)->index];
+  parameter->minimum = fmax(parameter->minimum, 0.0);
+}
+
+/* Sides of a box may be 0, but not all of them. */
+static Node read_size(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape, const char *name) {
+  if (!has_attribute(node, name)) return ZERO;
+  Node size = read_length(reader, node, name);
+  const char *what = format_text("the %s of the %s '%s'", name, shape_type_names[shape->type], shape->name);
+  keep_from_negative(reader, size);
+  if (shape->type == SHAPE_BOX) expect_not_negative(reader, node, what, size, true);
+  else expect_size(reader, node, what, size);
+  return size;
 }
 
 /* The base where nothing is named. */
@@ -138,17 +160,20 @@ static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactSha
 
 void place_shape(struct Reader *reader, xmlNodePtr node) {
   if (!has_attribute(node, "name")) return;
+  struct Graph *graph = reader->model->graph;
   struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
   place_in(reader, node, shape);
   turn_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;
-    Node shift = read_length(reader, node, axes[i], true);
-    shape->offset.along[i] = add(reader->model->graph, shape->offset.along[i], shift);
-    shape->size.along[i] = read_length(reader, node, measures[2 + i].name, false);
+    shape->offset.along[i] = add(graph, shape->offset.along[i], read_length(reader, node, axes[i]));
+    shape->size.along[i] = read_size(reader, node, shape, measures[2 + i].name);
   }
-  shape->radius = read_length(reader, node, "radius", false);
-  shape->length = read_length(reader, node, "length", false);
+  shape->radius = read_size(reader, node, shape, "radius");
+  shape->length = read_size(reader, node, shape, "length");
+  if (shape->type == SHAPE_BOX)
+    expect_size(reader, node, format_text("the diagonal of the box '%s'", shape->name),
+                power_number(graph, vector_dot(graph, shape->size, shape->size), 0.5));
 }
 
 const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {

@@ -130,6 +130,7 @@ struct Robot {
   struct Actuator *actuators;
   struct RobotLoop *loops;
   size_t link_count, joint_count, tendon_count, actuator_count, loop_count;
-  double gravity[3]; /* m/s2 */
+  double gravity[3];        /* m/s2 */
+  struct Placement *ground; /* of the plane on which it stands, which points along its z; NULL: z = 0 */
   struct Link *root;
 };

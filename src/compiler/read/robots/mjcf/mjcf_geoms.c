@@ -130,8 +130,8 @@ static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
 
 /* Why the geom is no shape here; NULL where it is one. */
 static const char *problem_of(const struct Geom *geom, bool touches) {
-  if (geom->type <= BOX) return NULL;
-  if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box or mesh";
+  if (geom->type <= ELLIPSOID) return NULL;
+  if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box, ellipsoid or mesh";
   if (touches && geom->mesh->problem == NULL && geom->mesh->is_flat) return "its mesh is flat; expected a volume";
   return geom->mesh->problem;
 }
@@ -141,11 +141,26 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
   if (geom->type == MESH) {
     shape.file = geom->mesh->path;
     memcpy(shape.scale, geom->mesh->scale, sizeof shape.scale);
-  } else if (geom->type == BOX)
+  } else if (geom->type == BOX || geom->type == ELLIPSOID)
     for (int i = 0; i < 3; i++) shape.size[i] = 2 * geom->size[i];
   else shape.radius = geom->size[0];
   if (geom->type == CAPSULE || geom->type == CYLINDER) shape.length = 2 * geom->size[1];
   return shape;
+}
+
+/* The first plane of the world is the ground; others touch nothing, which is told where there is a ground. */
+static void add_plane(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, const struct Link *link) {
+  struct Robot *robot = mjcf->file.robot;
+  bool is_of_world = link == robot->links[0];
+  if (!mjcf->file.options->has_ground) return;
+  if (is_of_world && robot->ground == NULL) {
+    robot->ground = allocate(1, sizeof *robot->ground);
+    *robot->ground = geom->place;
+  } else
+    report_warning(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "a <geom> of type plane of the body '%s' touches nothing: expected %s", link->name,
+                   is_of_world ? "one plane, which is the ground"
+                               : "it in the <worldbody>, of which one is the ground");
 }
 
 /* What can touch is a shape that does, and what cannot one that is drawn in place of the body's others. */
@@ -153,14 +168,18 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   bool touches = mjcf_number(mjcf, node, "contype", 1) != 0 || mjcf_number(mjcf, node, "conaffinity", 1) != 0;
   bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
   const char *problem = problem_of(geom, meets_ground);
-  if (geom->type == PLANE) return;
+  if (geom->type == PLANE) {
+    if (touches) add_plane(mjcf, node, geom, link);
+    return;
+  }
   if (problem != NULL && meets_ground)
     report_warning(mjcf->file.diagnostics, xmlGetLineNo(node),
                    "a <geom> of type %s of the body '%s' touches nothing: %s", geom_types[geom->type], link->name,
                    problem);
   else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
     note_mesh_problem(&mjcf->file, geom->mesh->problem);
-  else if (problem != NULL) leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder, box and mesh");
+  else if (problem != NULL)
+    leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder, box, ellipsoid and mesh");
   if (problem != NULL) return;
   struct Collision shape = shape_of(geom, xmlGetLineNo(node));
   shape.color = read_color(mjcf, node);

@@ -1,0 +1,206 @@
+#include "contacts/resting_forces.h"
+
+#include <math.h>
+
+#include "contacts/complementarity.h"
+
+/* Of so many contacts that act on one another all combinations are tried out. */
+enum { COMBINED_LIMIT = 12 };
+
+/* A pivot below this share of the largest is that of a singular matrix. */
+static const double least_share_of_pivot = 1e-11;
+
+/* A combination whose friction leaves less of its mobility is about to lock. */
+static const double locking_share = 1e-3;
+
+/* What acts on another by less than this does so by rounding. */
+static const double least_coupling = 1e-13;
+
+static size_t work_count(size_t count) {
+  size_t lemke = count * count + 2 * count + complementarity_work_count(count), combined = count * (count + 1);
+  return count > COMBINED_LIMIT ? lemke : combined;
+}
+
+size_t resting_forces_bytes(size_t count) {
+  return (count * count + 5 * count + work_count(count)) * sizeof(double) + count * sizeof(size_t);
+}
+
+struct RestingForces resting_forces_in(void *block, size_t count) {
+  struct RestingForces resting = {.count = count, .s = block};
+  resting.free = resting.s + count * count;
+  resting.found = resting.free + count;
+  resting.found_force = resting.found + count;
+  resting.force = resting.found_force + count;
+  resting.motion = resting.force + count;
+  resting.work = resting.motion + count;
+  resting.group = (size_t *)(resting.work + work_count(count));
+  return resting;
+}
+
+double largest_free_acceleration(const struct RestingForces *resting) {
+  double size = 0.0;
+  for (size_t i = 0; i < resting->count; i++) size = fmax(size, fabs(resting->free[i]));
+  return size;
+}
+
+static double between(const struct RestingForces *resting, size_t i, size_t j) {
+  return resting->s[resting->group[i] * resting->count + resting->group[j]];
+}
+
+static bool act_on_each_other(const struct RestingForces *resting, size_t i, size_t j) {
+  size_t n = resting->count;
+  return fmax(fabs(resting->s[i * n + j]), fabs(resting->s[j * n + i])) > least_coupling;
+}
+
+/* The contact and all that act on it or on which it acts, by others in between too, in their order. */
+static void collect_group(struct RestingForces *resting, size_t first) {
+  size_t n = resting->count;
+  double *is_member = resting->force;
+  for (size_t i = 0; i < n; i++) is_member[i] = i == first ? 1.0 : 0.0;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = 0; j < n; j++) {
+        if (is_member[i] == 0.0 || is_member[j] != 0.0 || !act_on_each_other(resting, i, j)) continue;
+        is_member[j] = 1.0;
+        grows = true;
+      }
+  }
+  resting->group_count = 0;
+  for (size_t i = 0; i < n; i++)
+    if (is_member[i] != 0.0) resting->group[resting->group_count++] = i;
+}
+
+static void collect_all(struct RestingForces *resting) {
+  resting->group_count = resting->count;
+  for (size_t i = 0; i < resting->count; i++) resting->group[i] = i;
+}
+
+/* Whether the symmetric part of S is positive, so that there is one motion: by Cholesky's factors. */
+static bool is_surely_one(const struct RestingForces *resting) {
+  size_t n = resting->group_count;
+  double *l = resting->work;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++) {
+      double sum = 0.5 * (between(resting, i, j) + between(resting, j, i));
+      for (size_t k = 0; k < j; k++) sum -= l[i * n + k] * l[j * n + k];
+      if (i == j && !(sum > locking_share * locking_share)) return false;
+      l[i * n + j] = i == j ? sqrt(sum) : sum / l[j * n + j];
+    }
+  return true;
+}
+
+/* The forces that hold the contacts of a combination, by Gauss elimination. False where S is singular. */
+static bool find_forces(const struct RestingForces *resting, unsigned combination) {
+  size_t member[COMBINED_LIMIT], count = 0;
+  double *a = resting->work;
+  for (size_t i = 0; i < resting->group_count; i++)
+    if ((combination >> i & 1u) != 0) member[count++] = i;
+  size_t width = count + 1;
+  for (size_t i = 0; i < count; i++) {
+    for (size_t j = 0; j < count; j++) a[i * width + j] = between(resting, member[i], member[j]);
+    a[i * width + count] = -resting->free[resting->group[member[i]]];
+  }
+  for (size_t k = 0; k < count; k++) {
+    size_t best = k;
+    for (size_t i = k + 1; i < count; i++)
+      if (fabs(a[i * width + k]) > fabs(a[best * width + k])) best = i;
+    if (!(fabs(a[best * width + k]) > least_share_of_pivot)) return false;
+    for (size_t j = 0; j < width; j++) {
+      double other = a[k * width + j];
+      a[k * width + j] = a[best * width + j];
+      a[best * width + j] = other;
+    }
+    for (size_t i = 0; i < count; i++) {
+      double share = i == k ? 0.0 : a[i * width + k] / a[k * width + k];
+      for (size_t j = k; j < width; j++) a[i * width + j] -= share * a[k * width + j];
+    }
+  }
+  for (size_t i = 0; i < resting->group_count; i++) resting->force[resting->group[i]] = 0.0;
+  for (size_t i = 0; i < count; i++)
+    resting->force[resting->group[member[i]]] = a[i * width + count] / a[i * width + i];
+  return true;
+}
+
+/* Whether the forces press, and no gap closes. */
+static bool is_solution(const struct RestingForces *resting, double size) {
+  bool is_fine = true;
+  for (size_t i = 0; i < resting->group_count; i++) {
+    size_t contact = resting->group[i];
+    double change = 0.0, terms = size;
+    for (size_t j = 0; j < resting->group_count; j++) {
+      double term = between(resting, i, j) * resting->force[resting->group[j]];
+      change += term;
+      terms = fmax(terms, fabs(term));
+    }
+    resting->motion[contact] = resting->free[contact] + change;
+    is_fine &= resting->force[contact] >= -rounded_force * size && resting->motion[contact] >= -rounded_force * terms;
+  }
+  return is_fine;
+}
+
+static bool is_same_motion(const struct RestingForces *resting, double size) {
+  double change = 0.0, terms = size;
+  for (size_t i = 0; i < resting->group_count; i++) {
+    size_t contact = resting->group[i];
+    change = fmax(change, fabs(resting->motion[contact] - resting->found[contact]));
+    terms = fmax(terms, fabs(resting->force[contact]));
+  }
+  return change <= 1e3 * rounded_force * terms;
+}
+
+static void note_solution(const struct RestingForces *resting) {
+  for (size_t i = 0; i < resting->group_count; i++) {
+    resting->found[resting->group[i]] = resting->motion[resting->group[i]];
+    resting->found_force[resting->group[i]] = resting->force[resting->group[i]];
+  }
+}
+
+/* Tries all combinations of a group out. */
+static enum RestingSolutions count_motions(const struct RestingForces *resting, double size) {
+  int count = 0;
+  for (unsigned combination = 0; combination < 1u << resting->group_count && count < 2; combination++) {
+    if (!find_forces(resting, combination) || !is_solution(resting, size)) continue;
+    if (count > 0 && is_same_motion(resting, size)) continue;
+    if (count++ == 0) note_solution(resting);
+  }
+  return count == 0 ? NO_MOTION : count == 1 ? ONE_MOTION : SEVERAL_MOTIONS;
+}
+
+/* The forces of a group by Lemke's method, at free accelerations as shares of the largest. */
+static bool find_by_pivoting(const struct RestingForces *resting, double size) {
+  size_t n = resting->group_count;
+  double *matrix = resting->work, *q = matrix + n * n, *z = q + n;
+  for (size_t i = 0; i < n; i++) {
+    q[i] = size > 0.0 ? resting->free[resting->group[i]] / size : 0.0;
+    for (size_t j = 0; j < n; j++) matrix[i * n + j] = between(resting, i, j);
+  }
+  if (!complementarity_solve(n, matrix, q, z, z + n)) return false;
+  for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = z[i] * size;
+  return is_solution(resting, size);
+}
+
+static enum RestingSolutions solve_group(const struct RestingForces *resting, bool is_solved, double size) {
+  bool is_one = is_surely_one(resting);
+  if (is_solved && is_one) return ONE_MOTION;
+  if (resting->group_count <= COMBINED_LIMIT) return count_motions(resting, size);
+  if (!is_solved && !find_by_pivoting(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
+  if (!is_solved) note_solution(resting);
+  return is_one ? ONE_MOTION : PERHAPS_OTHERS;
+}
+
+enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved) {
+  double size = largest_free_acceleration(resting);
+  enum RestingSolutions worst = ONE_MOTION;
+  collect_all(resting);
+  if (is_solved && is_surely_one(resting)) return worst;
+  for (size_t i = 0; i < resting->count; i++) {
+    collect_group(resting, i);
+    if (resting->group[0] != i) continue; /* a group that was there before */
+    enum RestingSolutions solutions = solve_group(resting, is_solved, size);
+    /* What neither sinks nor pulls is a solution, though others may share its forces in another way, and rounding hide it. */
+    if (is_solved && solutions == NO_MOTION) solutions = ONE_MOTION;
+    if (solutions > worst) worst = solutions;
+  }
+  return worst;
+}

@@ -1,0 +1,62 @@
+/* Forces of contacts that slide, against closed forms: S = 1 - k J, J all ones, has the forces -free/(1 - n k) of n that press. */
+#include "contacts/resting_forces.h"
+
+#include "expressions.h"
+
+enum { MOST = 16 };
+
+static double block[4 * MOST * MOST + 20 * MOST + MOST * (2 * MOST + 3)];
+
+/* Groups of so many contacts, with free accelerations of 1, and k of each group. */
+static struct RestingForces groups(size_t count, size_t size, const double *k) {
+  assert_true(resting_forces_bytes(count) <= sizeof block);
+  struct RestingForces resting = resting_forces_in(block, count);
+  for (size_t i = 0; i < count; i++) {
+    resting.free[i] = -1.0;
+    for (size_t j = 0; j < count; j++)
+      resting.s[i * count + j] = (i == j ? 1.0 : 0.0) - (i / size == j / size ? k[i / size] : 0.0);
+  }
+  return resting;
+}
+
+static void test_groups(void **state) {
+  (void)state;
+  struct RestingForces resting = groups(16, 8, (double[]){0.01, 0.02});
+  assert_int_equal(resting_forces_solve(&resting, false), ONE_MOTION);
+  for (size_t i = 0; i < 16; i++) {
+    assert_true(fabs(resting.found_force[i] - (i < 8 ? 1.0 / 0.92 : 1.0 / 0.84)) < 1e-14);
+    assert_true(fabs(resting.found[i]) < 1e-14);
+  }
+  /* Of the second all may press, or none, though there are more than 12 in both. */
+  resting = groups(16, 8, (double[]){0.01, 0.2});
+  for (size_t i = 8; i < 16; i++) resting.free[i] = 1.0;
+  assert_int_equal(resting_forces_solve(&resting, true), SEVERAL_MOTIONS);
+  for (size_t i = 8; i < 16; i++) resting.free[i] = -1.0;
+  assert_int_equal(resting_forces_solve(&resting, false), NO_MOTION);
+}
+
+static void test_many(void **state) {
+  (void)state;
+  struct RestingForces resting = groups(14, 14, (double[]){0.02});
+  assert_int_equal(resting_forces_solve(&resting, true), ONE_MOTION);
+  resting.free[3] = resting.free[5] = 10.0; /* part, which leaves 12 that press */
+  assert_int_equal(resting_forces_solve(&resting, false), ONE_MOTION);
+  for (size_t i = 0; i < 14; i++) {
+    bool parts = i == 3 || i == 5;
+    assert_true(fabs(resting.found_force[i] - (parts ? 0.0 : 1.0 / 0.76)) < 1e-12);
+    assert_true(fabs(resting.found[i] - (parts ? 10.0 - 0.24 / 0.76 : 0.0)) < 1e-12);
+  }
+  resting = groups(14, 14, (double[]){0.15});
+  assert_int_equal(resting_forces_solve(&resting, true), PERHAPS_OTHERS);
+  assert_int_equal(resting_forces_solve(&resting, false), PERHAPS_NONE);
+  for (size_t i = 0; i < 14; i++) resting.free[i] = 1.0;
+  assert_int_equal(resting_forces_solve(&resting, false), PERHAPS_OTHERS);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_groups),
+      cmocka_unit_test(test_many),
+  };
+  return cmocka_run_group_tests_name("resting forces", tests, NULL, NULL);
+}
