@@ -23,6 +23,14 @@
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
+/* Solutions keep most of their digits where the weakest constraint has more than this share. */
+static const double saddle_weak_share = 1e-3;
+
+/* Whether one has less; m holds so many elements of factors. */
+static inline Condition saddle_is_weak(size_t elements, const Real *m) {
+  return m[2 * elements] < saddle_weak_share;
+}
+
 /*
  * Solves K x = b in place. Where a constraint has little hold, the solution is refined: -J M^-1 J^T has lost twice the
  * digits that K has lost.

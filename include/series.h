@@ -210,6 +210,41 @@ static SERIES_INLINE double series_middle(int k, const double *a, const double *
   return SERIES_IS_CONSTANT(k) ? series_middle_by_size(k, a, b) : series_middle_of_any_size(k, a, b);
 }
 
+/*
+ * The middle terms of all products of an order k, m[i] = sum of a[from + j] b[k - 1 - j] for j < k - 1, where PRODUCTS(EACH)
+ * is a list of EACH(i, a, from, b): by pairs of neighbours, the newest coefficients alone. They are sums of coefficients
+ * below k, and so none waits for another; rows that are factors of several products are read once.
+ */
+#define SERIES_MIDDLES(PRODUCTS)                                                                                       \
+  do {                                                                                                                 \
+    if (k < 3) {                                                                                                       \
+      PRODUCTS(SERIES_MIDDLE_OF_LOW_ORDER)                                                                             \
+      break;                                                                                                           \
+    }                                                                                                                  \
+    PRODUCTS(SERIES_NO_PAIRS)                                                                                          \
+    for (int j = 1; j + 3 < k; j += 2) {                                                                               \
+      PRODUCTS(SERIES_NEXT_PAIR)                                                                                       \
+    }                                                                                                                  \
+    PRODUCTS(SERIES_MIDDLE_OF_PAIRS)                                                                                   \
+    if (k % 2 == 0) {                                                                                                  \
+      PRODUCTS(SERIES_TERM_WITHOUT_NEIGHBOUR)                                                                          \
+    }                                                                                                                  \
+  } while (0)
+#define SERIES_MIDDLE_OF_LOW_ORDER(i, a, from, b) m[i] = k == 2 ? (a)[from] * (b)[1] : 0.0;
+#define SERIES_NO_PAIRS(i, a, from, b) Pair pairs##i = {0.0, 0.0};
+#define SERIES_NEXT_PAIR(i, a, from, b) pairs##i = pair_sum(pairs##i, pair_product((a) + (from) + j, (b) + k - 1 - j));
+#define SERIES_MIDDLE_OF_PAIRS(i, a, from, b)                                                                          \
+  m[i] = pair_total(pairs##i) + ((a)[from] * (b)[k - 1] + (a)[(from) + k - 2] * (b)[1]);
+#define SERIES_TERM_WITHOUT_NEIGHBOUR(i, a, from, b) m[i] += (a)[(from) + k - 3] * (b)[2];
+
+/*
+ * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has
+ * the middle terms.
+ */
+static SERIES_INLINE double series_product_around(double middle, int k, const double *a, const double *b) {
+  return (middle + a[k] * b[0]) + a[0] * b[k];
+}
+
 static SERIES_INLINE double series_product_by_size(int k, const double *a, const double *b) {
   return series_middle_by_size(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
 }
@@ -218,17 +253,26 @@ static SERIES_NOT_INLINE double series_product_of_any_size(int k, const double *
   return series_product_by_size(k, a, b);
 }
 
-/* (a b)_k */
+/* (a b)_k, of rows in any order. */
 static SERIES_INLINE double series_product(int k, const double *a, const double *b) {
   return SERIES_IS_CONSTANT(k) ? series_product_by_size(k, a, b) : series_product_of_any_size(k, a, b);
 }
 
 /* (a b)_k without its first term a_0 b_k */
-static SERIES_INLINE double series_rest(int k, const double *a, const double *b) {
-  return series_middle(k, a, b) + a[k] * b[0];
+static SERIES_INLINE double series_rest_around(double middle, int k, const double *a, const double *b) {
+  return middle + a[k] * b[0];
 }
 
-/* (a a)_k: each pair of different coefficients stands twice in the sum. */
+static SERIES_INLINE double series_rest(int k, const double *a, const double *b) {
+  return series_rest_around(series_middle(k, a, b), k, a, b);
+}
+
+/* (a a)_k */
+static SERIES_INLINE double series_square_around(double middle, int k, const double *a) {
+  return middle + 2.0 * (a[0] * a[k]);
+}
+
+/* Each pair of different coefficients stands twice in the sum. */
 static SERIES_INLINE double series_square(int k, const double *a) {
   double half = a[0] * a[k];
   if (k > 2) half += series_dot((k - 3) / 2, a + 2, a + k - 2) + a[1] * a[k - 1];
@@ -236,14 +280,23 @@ static SERIES_INLINE double series_square(int k, const double *a) {
 }
 
 /* (a / b)_k, where top is a_k, inverse is 1 / b_0 and c holds the quotient so far */
+static SERIES_INLINE double series_quotient_around(double middle, int k, double top, double inverse, const double *b,
+                                                   const double *c) {
+  return (top - (middle + b[k] * c[0])) * inverse;
+}
+
 static SERIES_INLINE double series_quotient(int k, double top, double inverse, const double *b, const double *c) {
   return ((top - b[k] * c[0]) - series_middle(k, b, c)) * inverse;
 }
 
 /* (sqrt a)_k; the root of 0 at all times is 0 */
-static SERIES_INLINE double series_root(int k, const double *a, const double *c) {
+static SERIES_INLINE double series_root_around(double middle, int k, const double *a, const double *c) {
   if (c[0] == 0.0 && c[k - 1] == 0.0 && a[k] == 0.0) return 0.0;
-  return (a[k] - series_dot(k - 1, c + 1, c + k - 1)) / (2.0 * c[0]);
+  return (a[k] - middle) / (2.0 * c[0]);
+}
+
+static SERIES_INLINE double series_root(int k, const double *a, const double *c) {
+  return series_root_around(series_dot(k - 1, c + 1, c + k - 1), k, a, c);
 }
 
 /*
@@ -264,6 +317,10 @@ static inline double series_power(int k, double n, const double *a, const double
 }
 
 /* c' = a' b: c_k, with the series of a' */
+static SERIES_INLINE double series_integral_around(double middle, int k, const double *rate, const double *b) {
+  return (middle + rate[k - 1] * b[0]) * (1.0 / k);
+}
+
 static SERIES_INLINE double series_integral(int k, const double *rate, const double *b) {
   if (k < 3) return (k == 1 ? rate[0] * b[0] : rate[0] * b[1] + rate[1] * b[0]) * (1.0 / k);
   double old = series_dot(k - 3, rate + 1, b + k - 2) + (rate[0] * b[k - 1] + rate[k - 2] * b[1]);

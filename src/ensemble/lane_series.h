@@ -8,9 +8,6 @@ enum { SERIES_LENGTH = 24 };
 
 typedef Real Series[SERIES_LENGTH];
 
-/* A piece of code serves all orders: products of whole lanes leave little to gain by unrolling. */
-#define SERIES_INLINE __attribute__((noinline))
-
 /* sum of a[j] b[-j] for j < n; additions that wait for one another leave the processor to other sums. */
 LANES_INLINE Lanes series_dot(int n, const Lanes *a, const Lanes *b) {
   Lanes sum = {0};
@@ -23,37 +20,67 @@ LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
   return series_dot(k - 1, a + 1, b + k - 1);
 }
 
-/* (a b)_k; the newest coefficients come last, as they are waited for. */
+/* The same of all products of an order. */
+#define SERIES_MIDDLES(PRODUCTS) PRODUCTS(SERIES_MIDDLE)
+#define SERIES_MIDDLE(i, a, from, b) m[i] = series_dot(k - 1, (a) + (from), (b) + k - 1);
+
+/*
+ * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has
+ * the middle terms.
+ */
+LANES_INLINE Lanes series_product_around(Lanes middle, int k, const Lanes *a, const Lanes *b) {
+  return (middle + a[k] * b[0]) + a[0] * b[k];
+}
+
 LANES_INLINE Lanes series_product(int k, const Lanes *a, const Lanes *b) {
-  return series_middle(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
+  return series_product_around(series_middle(k, a, b), k, a, b);
 }
 
 /* (a b)_k without its first term a_0 b_k */
-LANES_INLINE Lanes series_rest(int k, const Lanes *a, const Lanes *b) {
-  return series_middle(k, a, b) + a[k] * b[0];
+LANES_INLINE Lanes series_rest_around(Lanes middle, int k, const Lanes *a, const Lanes *b) {
+  return middle + a[k] * b[0];
 }
 
-/* (a a)_k: each pair of different coefficients stands twice in the sum. */
+LANES_INLINE Lanes series_rest(int k, const Lanes *a, const Lanes *b) {
+  return series_rest_around(series_middle(k, a, b), k, a, b);
+}
+
+/* (a a)_k */
+LANES_INLINE Lanes series_square_around(Lanes middle, int k, const Lanes *a) {
+  return middle + 2.0 * (a[0] * a[k]);
+}
+
+/* Each pair of different coefficients stands twice in the sum. */
 LANES_INLINE Lanes series_square(int k, const Lanes *a) {
   Lanes half = series_dot((k - 1) / 2, a + 1, a + k - 1) + a[0] * a[k];
   return k % 2 == 0 ? 2.0 * half + a[k / 2] * a[k / 2] : 2.0 * half;
 }
 
 /* (a / b)_k, where top is a_k, which may be a constant, inverse is 1 / b_0 and c holds the quotient so far */
-LANES_INLINE Lanes lane_series_quotient(int k, Lanes top, Lanes inverse, const Lanes *b, const Lanes *c) {
-  return ((top - b[k] * c[0]) - series_middle(k, b, c)) * inverse;
+LANES_INLINE Lanes lane_series_quotient(Lanes middle, int k, Lanes top, Lanes inverse, const Lanes *b, const Lanes *c) {
+  return (top - (middle + b[k] * c[0])) * inverse;
 }
-#define series_quotient(k, top, inverse, b, c) lane_series_quotient(k, LANES_OF(top), LANES_OF(inverse), b, c)
+#define series_quotient_around(middle, k, top, inverse, b, c)                                                          \
+  lane_series_quotient(middle, k, LANES_OF(top), LANES_OF(inverse), b, c)
+#define series_quotient(k, top, inverse, b, c) series_quotient_around(series_middle(k, b, c), k, top, inverse, b, c)
 
 /* (sqrt a)_k; the root of 0 at all times is 0 */
-LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
-  Lanes root = (a[k] - series_dot(k - 1, c + 1, c + k - 1)) / (2.0 * c[0]);
+LANES_INLINE Lanes series_root_around(Lanes middle, int k, const Lanes *a, const Lanes *c) {
+  Lanes root = (a[k] - middle) / (2.0 * c[0]);
   return lanes_select((c[0] == 0.0) & (c[k - 1] == 0.0) & (a[k] == 0.0), (Lanes){0}, root);
 }
 
+LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
+  return series_root_around(series_middle(k, c, c), k, a, c);
+}
+
 /* c' = a' b: c_k, with the series of a' */
+LANES_INLINE Lanes series_integral_around(Lanes middle, int k, const Lanes *rate, const Lanes *b) {
+  return (middle + rate[k - 1] * b[0]) * (1.0 / k);
+}
+
 LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
-  return (series_dot(k - 1, rate, b + k - 1) + rate[k - 1] * b[0]) * (1.0 / k);
+  return series_integral_around(series_dot(k - 1, rate, b + k - 1), k, rate, b);
 }
 
 /* c' = a' / b: c_k, where top is a_k, which may be a constant */

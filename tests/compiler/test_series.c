@@ -64,6 +64,30 @@ static void test_products(void **state) {
   }
 }
 
+/* As series() of a generated system has them: the sums of all products of an order first. */
+static void test_products_that_are_begun_together(void **state) {
+  (void)state;
+  Series a, b, product, square, quotient, root;
+  exponential(a, 2, 3);
+  exponential(b, 3, 1);
+  exponential(product, 6, 4);
+  exponential(square, 4, 6);
+  exponential(quotient, 2.0 / 3, 2);
+  exponential(root, sqrt(2), 1.5);
+#define PRODUCTS(EACH) EACH(0, a, 1, b) EACH(1, a, 1, a) EACH(2, b, 1, quotient) EACH(3, root, 1, root) EACH(4, a, 0, b)
+  for (int k = 1; k <= ORDER; k++) {
+    Real m[5];
+    SERIES_MIDDLES(PRODUCTS);
+    assert_near(series_product_around(m[0], k, a, b), product[k]);
+    assert_near(series_rest_around(m[0], k, a, b), product[k] - a[0] * b[k]);
+    assert_near(series_square_around(m[1], k, a), square[k]);
+    assert_near(series_quotient_around(m[2], k, a[k], 1 / b[0], b, quotient), quotient[k]);
+    assert_near(series_root_around(m[3], k, a, root) + a[k], root[k] + a[k]); /* it takes the middle from a_k */
+    assert_near(series_integral_around(m[4], k, a, b), product[k - 1] / k);
+  }
+#undef PRODUCTS
+}
+
 static void test_quotients_roots_and_powers(void **state) {
   (void)state;
   Series a, b, quotient, root, power, moved = {0}, cube = {0}, zero = {0};
@@ -239,6 +263,7 @@ static void test_excursions(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_products),
+      cmocka_unit_test(test_products_that_are_begun_together),
       cmocka_unit_test(test_quotients_roots_and_powers),
       cmocka_unit_test(test_integrals_of_quotients),
       cmocka_unit_test(test_signs),

@@ -16,8 +16,12 @@ enum {
   TREE_STATEMENT_LIMIT = 200000
 };
 
-/* Series of up to this many recurrences an order get code of their own for the first orders. */
-enum { UNROLLED_RECURRENCES = 40 };
+/*
+ * Series of up to this many recurrences an order begin all products of an order together, which takes more code for each than
+ * a call: with more of them, that would fill the cache of instructions. Where blocks are solved for each order, these take
+ * longer than the products.
+ */
+enum { RECURRENCES_TOGETHER = 40 };
 
 static void create_results(struct Program *program, struct Values *values) {
   const struct Interface *interface = program->interface;
@@ -80,6 +84,12 @@ static size_t count_of(const struct Routine *routine) {
   return routine != NULL ? routine->count : 0;
 }
 
+bool program_solves_by_statements(const struct Program *program, size_t number) {
+  enum { ROWS = 3 };
+  const struct InertiaBlock *block = program->blocks.items[number].block;
+  return !program->is_table && block->count <= ROWS && block->constraint_count > 0 && block->force_count == 0;
+}
+
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
@@ -87,8 +97,8 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   program->switches_are_table = form == ALL_TABLES;
   program->is_table = all || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
   program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
-  program->series_is_unrolled = series != NULL && program->equations->method->series == ALL_TERMS &&
-                                program->blocks.count == 0 && series->recurrences <= UNROLLED_RECURRENCES;
+  program->products_begin_together = series != NULL && program->equations->method->series == ALL_TERMS &&
+                                     program->blocks.count == 0 && series->recurrences <= RECURRENCES_TOGETHER;
   size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
       all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);

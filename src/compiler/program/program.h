@@ -29,14 +29,17 @@ struct Program {
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */
   bool derivatives_are_table, series_is_table;
-  bool switches_are_table; /* so are the functions of struct SwitchTable */
-  bool series_is_unrolled; /* the orders of series() get code of their own */
+  bool switches_are_table;      /* so are the functions of struct SwitchTable */
+  bool products_begin_together; /* those of an order of the series, as SERIES_MIDDLES of include/series.h does it */
   const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */
   struct StepWork work;    /* where there is a solver */
   struct OperationCounts operations; /* where it hands over */
 };
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
+
+/* Whether the solutions of a block are statements: it has few rows, of which one is a constraint's. */
+bool program_solves_by_statements(const struct Program *program, size_t block);
 
 /* Visits each routine of the program, with the function that it is of, in the order in which they are built. */
 typedef void RoutineVisitor(void *context, enum FunctionName name, const struct Routine *routine);

@@ -72,8 +72,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
 
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
-  if (program->series != NULL && !program->series_is_table && !program->series_is_unrolled)
-    fputs("#define SERIES_ROLLED 1\n", file);
+  if (program->series != NULL && !program->series_is_table) fputs("#define SERIES_ROLLED 1\n", file);
   if (has_lanes(program))
     fputs("#ifdef LANES /* these functions alone, over lanes */\n#undef FMU_IN_ONE_FILE\n#endif\n", file);
   write_runtime(file, program);
@@ -96,6 +95,25 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
   fputs("};\n\n", file);
 }
 
+/* Solves a small block by its factors, as saddle_solve() does where nothing is to be refined. */
+static void write_small_solve(FILE *file, const struct InertiaBlock *block, size_t number) {
+  size_t n = block->count;
+  const size_t *start = block->start, *column = block->column;
+  fprintf(file,
+          "static inline void solve%zu(const Real *mass, Real *side) {\n"
+          "  if (ANYWHERE(saddle_is_weak(%zu, mass))) {\n"
+          "    saddle_solve(%zu, start%zu, column%zu, mass, side);\n    return;\n  }\n",
+          number, start[n], n, number, number);
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++)
+      fprintf(file, "  side[%zu] -= mass[%zu] * side[%zu];\n", i, k, column[k]);
+  for (size_t i = 0; i < n; i++) fprintf(file, "  side[%zu] /= mass[%zu];\n", i, start[i + 1] - 1);
+  for (size_t i = n; i-- > 0;)
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++)
+      fprintf(file, "  side[%zu] -= mass[%zu] * side[%zu];\n", column[k], k, i);
+  fputs("}\n\n", file);
+}
+
 /* The pattern of each large block's factors, and what its rows are. */
 static void write_blocks(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < program->blocks.count; i++) {
@@ -105,6 +123,7 @@ static void write_blocks(FILE *file, const struct Program *program) {
       write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
     }
     write_numbers(file, format_text("coordinate%zu", i), block, program->equations->count);
+    if (program_solves_by_statements(program, i)) write_small_solve(file, block, i);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "write/instruction_text.h"
 
 #include "algebra/functions.h"
+#include "base/memory.h"
 #include "write/c_text.h"
 #include "write/parts.h"
 
@@ -51,23 +52,29 @@ static bool has_only_numbers(const struct Instruction *instruction) {
   return arity > 0;
 }
 
-/* The statement of opcode_facts() with its operands. */
-static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
-                             const char *target) {
+/* A text of opcode_facts() with the operands of an instruction. */
+static void write_text(FILE *file, const struct Program *program, const struct Instruction *instruction,
+                       const char *text, const char *target, const char *opening) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
-  bool is_number = has_only_numbers(instruction);
-  if (is_number) fputs("REAL(", file);
-  for (const char *text = facts->statement; *text != '\0'; text++) {
+  for (; *text != '\0'; text++) {
     if (*text != '$') {
       fputc(*text, file);
       continue;
     }
     text++;
     if (*text == 'f') fputs(function_in_c(instruction->function), file);
+    else if (*text == '(') fputs(opening, file);
     else if (*text == '0' && facts->result == NUMBER) fprintf(file, "%u", instruction->result);
     else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
     else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);
   }
+}
+
+static void write_expression(FILE *file, const struct Program *program, const struct Instruction *instruction,
+                             const char *target, const char *opening) {
+  bool is_number = has_only_numbers(instruction);
+  if (is_number) fputs("REAL(", file);
+  write_text(file, program, instruction, opcode_facts(instruction->opcode)->statement, target, opening);
   if (is_number) fputs(")", file);
 }
 
@@ -93,6 +100,11 @@ static void write_block_statement(FILE *file, const struct Program *program, con
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
     bool is_least = instruction->opcode == LEAST_FORCES;
+    if (!is_least && program_solves_by_statements(program, number)) {
+      const struct LoopedBlock *looped = &program->blocks.items[number];
+      fprintf(file, "solve%u(mass + %zu, side + %zu)", number, looped->first_mass, looped->first_side);
+      return;
+    }
     const char *solve = is_oblique ? "oblique_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
     write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_oblique, number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
@@ -100,7 +112,7 @@ static void write_block_statement(FILE *file, const struct Program *program, con
 }
 
 static void write_statement(FILE *file, const struct Program *program, const struct Instruction *instruction,
-                            const char *target) {
+                            const char *target, const char *opening) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
   if (facts->result == BLOCK) {
     write_block_statement(file, program, instruction);
@@ -113,13 +125,42 @@ static void write_statement(FILE *file, const struct Program *program, const str
     write_place(file, program, instruction->result, facts->result == ROW ? COEFFICIENT : facts->result, target);
     fputs(" = ", file);
   }
-  write_expression(file, program, instruction, target);
+  write_expression(file, program, instruction, target, opening);
 }
 
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target) {
   for (size_t i = 0; i < routine->count; i++) {
     fputs("  ", file);
-    write_statement(file, program, &routine->instructions[i], target);
+    write_statement(file, program, &routine->instructions[i], target, "(");
     fputs(";\n", file);
   }
+}
+
+static bool is_product(const struct Instruction *instruction) {
+  return opcode_facts(instruction->opcode)->factors != NULL;
+}
+
+void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine) {
+  size_t products = 0;
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    fputs("    ", file);
+    bool has_middle = is_product(instruction);
+    write_statement(file, program, instruction, NULL, has_middle ? format_text("_around(m[%zu], ", products++) : "(");
+    fputs(";\n", file);
+  }
+}
+
+size_t write_products(FILE *file, const struct Program *program, const struct Routine *routine) {
+  size_t products = 0;
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (!is_product(instruction)) continue;
+    if (products == 0) fputs("/* The products of an order: number and factors */\n#define SERIES_PRODUCTS(EACH)", file);
+    fprintf(file, " \\\n  EACH(%zu, ", products++);
+    write_text(file, program, instruction, opcode_facts(instruction->opcode)->factors, NULL, "(");
+    fputs(")", file);
+  }
+  if (products > 0) fputs("\n\n", file);
+  return products;
 }

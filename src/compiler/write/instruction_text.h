@@ -10,3 +10,9 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
 
 /* The statements of a routine; without a target, values for it are returned. */
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target);
+
+/* The statements of an order of series, whose products have their middle terms in m (SERIES_MIDDLES of include/series.h). */
+void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine);
+
+/* The macro that lists these products; returns how many there are. */
+size_t write_products(FILE *file, const struct Program *program, const struct Routine *routine);

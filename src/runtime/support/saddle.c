@@ -15,9 +15,6 @@ static const double smallest_share_of_mass = 1e-14;
  */
 static const double smallest_share = 1e-12;
 
-/* Solutions keep most of their digits where the weakest constraint has more than this share. */
-static const double weak_share = 1e-3;
-
 /* What rounding may make of such a share where those before it have much hold, and where one of them has the share 1 only. */
 static const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
 
@@ -108,7 +105,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
 
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x) {
   Real *rest = x + n;
-  Condition is_weak = m[2 * start[n]] < weak_share;
+  Condition is_weak = saddle_is_weak(start[n], m);
   bool is_refined = ANYWHERE(is_weak);
   if (is_refined) memcpy(rest, x, n * sizeof *rest);
   ldlt_solve(n, start, column, m, x);

@@ -58,10 +58,11 @@ enum Role {
 
 /* What the writers need to know of an opcode. */
 struct OpcodeFacts {
-  const char *statement; /* of C: $0 is the result, $1, $2, $3 the operands, $f the function */
+  const char *statement; /* of C: $0 is the result, $1, $2, $3 the operands, $f the function, $( opens the arguments */
   enum Role result, operands[OPERAND_LIMIT];
   size_t operations;
   bool is_recurrence;
+  const char *factors; /* of its product of two rows, as SERIES_MIDDLES of include/series.h takes them; NULL for none */
 };
 
 const struct OpcodeFacts *opcode_facts(enum Opcode opcode);
