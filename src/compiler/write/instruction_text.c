@@ -137,7 +137,7 @@ void write_statements(FILE *file, const struct Program *program, const struct Ro
 }
 
 static bool is_product(const struct Instruction *instruction) {
-  return opcode_facts(instruction->opcode)->factors != NULL;
+  return opcode_factors(instruction->opcode) != NULL;
 }
 
 void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine) {
@@ -158,7 +158,7 @@ size_t write_products(FILE *file, const struct Program *program, const struct Ro
     if (!is_product(instruction)) continue;
     if (products == 0) fputs("/* The products of an order: number and factors */\n#define SERIES_PRODUCTS(EACH)", file);
     fprintf(file, " \\\n  EACH(%zu, ", products++);
-    write_text(file, program, instruction, opcode_facts(instruction->opcode)->factors, NULL, "(");
+    write_text(file, program, instruction, opcode_factors(instruction->opcode), NULL, "(");
     fputs(")", file);
   }
   if (products > 0) fputs("\n\n", file);

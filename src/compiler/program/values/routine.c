@@ -38,15 +38,14 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_NEGATION] = {"-$1", COEFFICIENT, {COEFFICIENT}, 1, false},
     [SERIES_MULTIPLE] = {"$1 * $2", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
     [SERIES_SHARE] = {"$1 / $2", COEFFICIENT, {COEFFICIENT, VALUE}, 1, false},
-    [SERIES_PRODUCT] = {"series_product$(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true, "$1, 1, $2"},
-    [SERIES_SQUARE] = {"series_square$(k, $1)", COEFFICIENT, {ROW}, 1, true, "$1, 1, $1"},
-    [SERIES_QUOTIENT] = {"series_quotient$(k, $1, $3, $2, $0)", ROW, {COEFFICIENT, ROW, VALUE}, 1, true, "$2, 1, $0"},
-    [SERIES_ROOT] = {"series_root$(k, $1, $0)", ROW, {ROW}, 1, true, "$0, 1, $0"},
+    [SERIES_PRODUCT] = {"series_product$(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},
+    [SERIES_SQUARE] = {"series_square$(k, $1)", COEFFICIENT, {ROW}, 1, true},
+    [SERIES_QUOTIENT] = {"series_quotient$(k, $1, $3, $2, $0)", ROW, {COEFFICIENT, ROW, VALUE}, 1, true},
+    [SERIES_ROOT] = {"series_root$(k, $1, $0)", ROW, {ROW}, 1, true},
     [SERIES_POWER] = {"series_power(k, $2, $1, $0)", ROW, {ROW, VALUE}, 1, true},
     [SERIES_RATE] = {"k * $1", PAST_COEFFICIENT, {COEFFICIENT}, 1, false},
-    [SERIES_INTEGRAL] = {"series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true, "$1, 0, $2"},
-    [SERIES_NEGATIVE_INTEGRAL] =
-        {"-series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true, "$1, 0, $2"},
+    [SERIES_INTEGRAL] = {"series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
+    [SERIES_NEGATIVE_INTEGRAL] = {"-series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
     [SERIES_TURN] = {"$1 * $2[k - 1] * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
     [SERIES_NEGATIVE_TURN] = {"-($1 * $2[k - 1]) * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
     [SERIES_RATIO_INTEGRAL] = {"series_ratio_integral(k, $1, $2, $0)", ROW, {COEFFICIENT, ROW_OF_PAST}, 1, true},
@@ -58,15 +57,24 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_SMALLER] =
         {"WHERE(series_sign(k, $1) < 0.0, $2, $3)", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
     [SERIES_GATE] = {"WHERE($1 > 0.0, $2, 0.0)", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
-    [SERIES_REST] =
-        {"$1 - series_rest$(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true, "$2, 1, $3"},
+    [SERIES_REST] = {"$1 - series_rest$(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
     [SERIES_SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SERIES_STATE] = {"$1 * (1.0 / (k + 1))", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
     [SERIES_SLOPE] = {"(k + 1) * $1", COEFFICIENT, {NEXT_COEFFICIENT}, 1, false},
 };
 
+static const char *const factors[OPCODE_COUNT] = {
+    [SERIES_PRODUCT] = "$1, 1, $2", [SERIES_SQUARE] = "$1, 1, $1",   [SERIES_QUOTIENT] = "$2, 1, $0",
+    [SERIES_ROOT] = "$0, 1, $0",    [SERIES_INTEGRAL] = "$1, 0, $2", [SERIES_NEGATIVE_INTEGRAL] = "$1, 0, $2",
+    [SERIES_REST] = "$2, 1, $3",
+};
+
 const struct OpcodeFacts *opcode_facts(enum Opcode opcode) {
   return &facts[opcode];
+}
+
+const char *opcode_factors(enum Opcode opcode) {
+  return factors[opcode];
 }
 
 bool opcode_has_result(enum Opcode opcode) {

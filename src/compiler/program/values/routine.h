@@ -62,10 +62,12 @@ struct OpcodeFacts {
   enum Role result, operands[OPERAND_LIMIT];
   size_t operations;
   bool is_recurrence;
-  const char *factors; /* of its product of two rows, as SERIES_MIDDLES of include/series.h takes them; NULL for none */
 };
 
 const struct OpcodeFacts *opcode_facts(enum Opcode opcode);
+
+/* Of its product of two rows, as SERIES_MIDDLES of include/series.h takes them; NULL for none. */
+const char *opcode_factors(enum Opcode opcode);
 
 /* Whether the opcode has a place for its result. */
 bool opcode_has_result(enum Opcode opcode);
