@@ -16,18 +16,13 @@ enum { SERIES_LENGTH = 24 };
 
 typedef Real Series[SERIES_LENGTH];
 
-/* For functions that are compiled anew for each order; with SERIES_ROLLED one copy serves all orders. */
+/* Functions with the switch over all orders stand once. */
 #ifdef __GNUC__
 #define SERIES_INLINE inline __attribute__((always_inline))
 #define SERIES_NOT_INLINE __attribute__((noinline, unused))
 #else
 #define SERIES_INLINE inline
 #define SERIES_NOT_INLINE inline
-#endif
-#if defined(__GNUC__) && !defined(SERIES_ROLLED)
-#define SERIES_IS_CONSTANT(n) __builtin_constant_p(n)
-#else
-#define SERIES_IS_CONSTANT(n) 0
 #endif
 
 #ifdef __has_builtin
@@ -184,13 +179,8 @@ static SERIES_INLINE double series_dot_by_size(int n, const double *a, const dou
   }
 }
 
-/* One function for all orders, where the order is not known to the compiler. */
-static SERIES_NOT_INLINE double series_dot_of_any_size(int n, const double *a, const double *b) {
+static SERIES_NOT_INLINE double series_dot(int n, const double *a, const double *b) {
   return series_dot_by_size(n, a, b);
-}
-
-static SERIES_INLINE double series_dot(int n, const double *a, const double *b) {
-  return SERIES_IS_CONSTANT(n) ? series_dot_by_size(n, a, b) : series_dot_of_any_size(n, a, b);
 }
 
 static SERIES_INLINE double series_middle_by_size(int k, const double *a, const double *b) {
@@ -198,16 +188,12 @@ static SERIES_INLINE double series_middle_by_size(int k, const double *a, const 
   return series_dot_by_size(k - 3, a + 2, b + k - 2) + (a[1] * b[k - 1] + a[k - 1] * b[1]);
 }
 
-static SERIES_NOT_INLINE double series_middle_of_any_size(int k, const double *a, const double *b) {
-  return series_middle_by_size(k, a, b);
-}
-
 /*
  * The sum of a_j b_(k-j) without the ends j = 0 and j = k. The newest coefficients stand alone: a pair that holds one
  * would wait until it has reached memory.
  */
-static SERIES_INLINE double series_middle(int k, const double *a, const double *b) {
-  return SERIES_IS_CONSTANT(k) ? series_middle_by_size(k, a, b) : series_middle_of_any_size(k, a, b);
+static SERIES_NOT_INLINE double series_middle(int k, const double *a, const double *b) {
+  return series_middle_by_size(k, a, b);
 }
 
 /*
@@ -245,17 +231,9 @@ static SERIES_INLINE double series_product_around(double middle, int k, const do
   return (middle + a[k] * b[0]) + a[0] * b[k];
 }
 
-static SERIES_INLINE double series_product_by_size(int k, const double *a, const double *b) {
-  return series_middle_by_size(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
-}
-
-static SERIES_NOT_INLINE double series_product_of_any_size(int k, const double *a, const double *b) {
-  return series_product_by_size(k, a, b);
-}
-
 /* (a b)_k, of rows in any order. */
-static SERIES_INLINE double series_product(int k, const double *a, const double *b) {
-  return SERIES_IS_CONSTANT(k) ? series_product_by_size(k, a, b) : series_product_of_any_size(k, a, b);
+static SERIES_NOT_INLINE double series_product(int k, const double *a, const double *b) {
+  return series_middle_by_size(k, a, b) + (a[0] * b[k] + a[k] * b[0]);
 }
 
 /* (a b)_k without its first term a_0 b_k */

@@ -15,7 +15,7 @@ RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*
 LANES_HEAD = '#include "generated.h"\n'
 ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone
 SYSTEM, NO_SYSTEM = '#include "system.c"\n', "const struct Lagrangian lagrangian = {0};\n"
-ONE_HEAD = '#undef LANES\n#define LANES 1\n#define SERIES_ROLLED 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
+ONE_HEAD = '#undef LANES\n#define LANES 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
 
 
 def lanes_here(runner):

@@ -88,7 +88,7 @@ def test_one_piece_has_all_that_it_calls(kind, tmp_path):
     libraries = [word for word in runtime(version) if not str(word).endswith(".o") and word != BUILD / "libsolvers.a"]
     headers = [f"-I{folder}" for folder in (ROOT / "include", ROOT / "src" / "runtime")]
     headers += [f"-isystem{folder}" for folder in (ROOT / "build" / "sundials" / "include", "/usr/include/suitesparse")]
-    compiled = ["gcc", "-std=c11", "-O0", "-fPIC", "-shared", "-DFMU_IN_ONE_FILE", "-DSERIES_ROLLED", *headers, *layer, tmp_path / "system.c"]
+    compiled = ["gcc", "-std=c11", "-O0", "-fPIC", "-shared", "-DFMU_IN_ONE_FILE", *headers, *layer, tmp_path / "system.c"]
     result = subprocess.run([*compiled, *libraries, "-Wl,--no-undefined", "-o", tmp_path / "fmu.so"], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr[:2000]
 
@@ -96,7 +96,7 @@ def test_one_piece_has_all_that_it_calls(kind, tmp_path):
 def test_global_names_are_those_of_the_fmu(tmp_path):
     """FMI 2.0.4, section 2.1.2: sources of several FMUs may become one program."""
     for name in ("SimplePendulum", "SimplePendulumLinear", "StateFeedback", "ChainPendulum"):
-        words = ["gcc", "-std=c11", "-O0", "-DSERIES_ROLLED", "-c", source_of(name), "-o", tmp_path / "fmu.o"]
+        words = ["gcc", "-std=c11", "-O0", "-c", source_of(name), "-o", tmp_path / "fmu.o"]
         subprocess.run([*words, f"-DFMI2_FUNCTION_PREFIX={name}_"], check=True)
         symbols = subprocess.run(["nm", "-g", "--defined-only", tmp_path / "fmu.o"], capture_output=True, text=True).stdout
         defined = [line.split()[-1] for line in symbols.splitlines()]
@@ -111,7 +111,7 @@ def test_two_fmus_in_one_program(names, tmp_path, open_fmu):
     objects = [tmp_path / f"{name}.o" for name in names]
     for name, compiled in zip(names, objects):
         prefix = f"-DFMI2_FUNCTION_PREFIX={name}_"
-        subprocess.run(["gcc", "-std=c11", "-O0", "-DSERIES_ROLLED", "-c", prefix, source_of(name), "-o", compiled], check=True)
+        subprocess.run(["gcc", "-std=c11", "-O0", "-c", prefix, source_of(name), "-o", compiled], check=True)
     main = [ROOT / "tests" / "c" / "two_in_one.c", f"-DFIRST={names[0]}", f"-DSECOND={names[1]}", f"-I{ROOT}/include"]
     subprocess.run(["gcc", *main, *objects, "-o", program, "-lm"], check=True)
     steps, size = 20, 0.05

@@ -23,8 +23,7 @@ WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-p
 COMPILED = "-std=gnu11 -ffp-contract=off -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables".split()
 LINKED = "-shared -s -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--no-undefined".split()
 LINKED += [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]
-# Series that are not unrolled for each order: half the time of the compiler. The systems of fmu/ are built as users get them.
-SPEED = ["-O1", "-DSERIES_ROLLED"]
+SPEED = ["-O1"]  # half the time of the compiler; the systems of fmu/ are built as users get them
 
 built_by_tests = {}  # name of a system: its archive
 

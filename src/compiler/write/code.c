@@ -72,7 +72,6 @@ static void write_runtime(FILE *file, const struct Program *program) {
 
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
-  if (program->series != NULL && !program->series_is_table) fputs("#define SERIES_ROLLED 1\n", file);
   if (has_lanes(program))
     fputs("#ifdef LANES /* these functions alone, over lanes */\n#undef FMU_IN_ONE_FILE\n#endif\n", file);
   write_runtime(file, program);
