@@ -285,7 +285,7 @@ def test_lagc_for_windows(tmp_path):
     folder = FOLDER / "lagc-win64"
     compiler = f"{sys.executable};-m;ziglang;cc;-target;x86_64-windows-gnu"
     with alone(FOLDER / "lagc.lock"):
-        words = [] if folder.exists() else ["-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={compiler}"]
+        words = [] if (folder / "CMakeCache.txt").exists() else ["-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={compiler}"]
         subprocess.run(["cmake", "-S", ROOT / "scripts" / "lagc", "-B", folder, *words], check=True, capture_output=True)
         subprocess.run(["cmake", "--build", folder, "--target", "lagc", "--parallel", "2"], check=True, capture_output=True)
     systems = {name: ROOT / "fmu" / name / "system.xml" for name in fmu.all_names()}

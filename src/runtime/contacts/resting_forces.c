@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "arithmetic.h"
 #include "contacts/complementarity.h"
 
 /* Of so many contacts that act on one another all combinations are tried out. */
