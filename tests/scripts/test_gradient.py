@@ -8,7 +8,7 @@ import pytest
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, Counted, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
+from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, allow_calls, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
 
 HELD = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('name="PendulumCartesian"', 'name="Held"')
 MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant name="k" value="10" unit="N/m"/>
@@ -54,7 +54,7 @@ def test_of_what_is_stiff(lagrange_fmu, monkeypatch):  # noqa: F811
     from lagrange_fmu.adjoint import Motion, WayBack
 
     for owner in (Motion, WayBack):
-        Counted(monkeypatch, owner, "rates", 20000)
+        allow_calls(monkeypatch, owner, "rates", 20000)
     at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
     found = lagrange_fmu.gradient(archive("Stiff"), "x", list(at), 2)
     assert found.derivatives == pytest.approx(slopes(lambda *values: creep(mpmath.mpf(2), *values), at), rel=1e-7, abs=1e-11)

@@ -110,7 +110,6 @@ TOWER = """<system name="BallOnBall" description="Two balls on top of each other
 </system>"""
 
 
-
 def sledge(name, n):
     """n masses of 1 kg that slide with a sledge of 10 kg, each down a slope of its own: the friction of each presses all."""
     parts = "".join(

@@ -140,7 +140,7 @@ class _Search:
             own = len(vary) + number * len(each)
             self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise))
         check_noise(noise, self.experiments)
-        self.begin = dict(zip(self.names, point.given(self.kinds)))
+        self.begin = dict(zip(self.names, point.given(self.kinds, point.start())))
         for experiment in self.experiments:
             measured = {self.names[place]: experiment.first(self.kinds[place]) for place in experiment.places[len(vary) :]}
             self.begin |= {name: value for name, value in measured.items() if value is not None}

@@ -53,10 +53,9 @@ class Point:
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
 
-    def given(self, names, values=None):
-        """What these start at, a list, where values by name are set; a state: before constraints move it."""
+    def given(self, names, states, values=None):
+        """What these started at, a list, where values by name were set and made these states; a state: before constraints moved it."""
         known = self.values | (values or {})
-        states = self.start(values=values)
         read = dict(zip(names, self.read(names)))
         return [known[name] if name in known else self._unmoved(name, read[name], known, states) if name in self.states else read[name] for name in names]
 

@@ -23,8 +23,8 @@ class Start:
 
     def __init__(self, point, by, values):
         self.point, self.values = point, values
-        self.at = dict(zip(by, point.given(by, values)))
         self.states, self.modes, self.sides = self.found(values)
+        self.at = dict(zip(by, point.given(by, self.states, values)))
         self.step = {name: STEP * (abs(value) or 1.0) for name, value in self.at.items()}
         self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
 
@@ -107,8 +107,7 @@ class Motion:
         """Of the rates; without that of the slopes by the states, which are alone then: corrections converge in a few rounds more."""
         count = len(self.state_references)
         self.place(time, both[:count], inputs)
-        columns = [self.model.getDirectionalDerivative(self.rate_references, [state], [1.0]) for state in self.state_references]
-        return np.kron(np.eye(len(both) // count), np.array(columns).T)
+        return np.kron(np.eye(len(both) // count), self.point.jacobian(self.point.derivatives, self.point.states))
 
     def start(self, values):
         """The states that initialization makes of these values, and their derivatives."""
@@ -120,12 +119,11 @@ class Motion:
         self.place(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
         values = np.array(self.model.getReal(self.read_references))
-        derivatives = np.empty((len(self.by), len(values)))
         unknowns = [reference for reference in self.read_references if reference not in self.hidden]
-        found = iter(self.along(unknowns, slopes).T if self.by and unknowns else derivatives.T)
-        for i, reference in enumerate(self.read_references):
-            derivatives[:, i] = slopes[:, self.hidden[reference]] if reference in self.hidden else next(found)
-        return values, derivatives.T
+        derivatives = {reference: slopes[:, place] for reference, place in self.hidden.items()}
+        if self.by and unknowns:
+            derivatives |= zip(unknowns, self.along(unknowns, slopes).T)
+        return values, np.array([derivatives[reference] for reference in self.read_references if self.by]).reshape(len(values), len(self.by))
 
     def over(self, times, values=None, inputs=None, kinks=()):
         """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, smooth between the kinks."""
