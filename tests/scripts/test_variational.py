@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, DOUBLE, DOUBLE_AT, OSCILLATOR, energy_of_double, lagrange_fmu, oscillation, slopes  # noqa: F401
+from motions import BALL, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, energy_of_double, lagrange_fmu, oscillation, slopes, work  # noqa: F401
 
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
@@ -23,7 +23,7 @@ HELD = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter
 HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
 HELD_BY = ["l", "g", "x", "vx"]
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
-           "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY)}  # fmt: skip
+           "Worked": (WORKED, list(AT)), "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY)}  # fmt: skip
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -53,6 +53,15 @@ def test_an_oscillation(lagrange_fmu):  # noqa: F811
         assert values[i, 0] == pytest.approx(float(oscillation(t, *AT.values())), rel=1e-10)
         assert dict(zip(AT, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: oscillation(mpmath.mpf(t), *at), AT), rel=1e-9, abs=1e-12)
     assert derivatives[0, 1, 1] == pytest.approx(-0.3 / 2, rel=1e-12)  # m a = F - k x - d v at the start
+
+
+def test_work(lagrange_fmu):  # noqa: F811
+    """Of the damper and the force, a state without which the others move."""
+    times = [0.0, 0.7, 4.0]
+    values, derivatives = motion("Worked", ["nonConservativeWork"], list(AT), times, {"F": 4.0})
+    for i, t in enumerate(times):
+        assert values[i, 0] == pytest.approx(float(work(t, *AT.values())), rel=1e-9, abs=1e-12)
+        assert dict(zip(AT, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: work(t, *at), AT), rel=1e-8, abs=1e-11)
 
 
 def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
@@ -134,10 +143,8 @@ def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
     """Is refused by lagc, so that the package goes another way."""
     from lagrange_fmu.variational import _is_smooth
 
-    work = OSCILLATOR.replace("<experiment", "<work/><experiment")
     massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
-    for text, by, why in ((BALL, "g", "without what switches"), (massless, "l", "without coordinates without mass"), (work, "k", "without <work/>"),
-                          (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
+    for text, by, why in ((BALL, "g", "without what switches"), (massless, "l", "without coordinates without mass"), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
         (tmp_path / "system.xml").write_text(text)
         result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)
         assert (result.returncode == 0) == (why is None) == _is_smooth(tmp_path / "system.xml", [by])

@@ -216,9 +216,9 @@ static const char *total_energy_description(const struct Model *model, const str
                  model->given.constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
                  graph_depends_on(graph, model->energies.potential.node, TIME) || steps_in_time(model);
-  if (changes || (model->forces.any && !equations->has_work)) return "kinetic and potential energy";
-  return equations->has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
-                             : "kinetic and potential energy; constant";
+  if (changes || (model->forces.any && equations->integrands.count == 0)) return "kinetic and potential energy";
+  return equations->integrands.count > 0 ? "kinetic and potential energy; changes by nonConservativeWork alone"
+                                         : "kinetic and potential energy; constant";
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */
@@ -290,22 +290,18 @@ static Node acceleration_of(const struct Model *model, const struct Equations *e
 /* Coordinates, velocities and the work of forces, then the derivatives of each. */
 static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   size_t n = model->coordinates.count;
-  struct Variable work =
-      variable_create(copy_text("nonConservativeWork"), copy_text("work of the non-conservative forces"), 0);
-  work.start = 0.0;
-  work.dimension = unit_of("J");
+  const struct VariableList *works = &model->forces.works;
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
-  if (equations->has_work) {
-    append_list(interface, model, &(struct VariableList){&work, 1}, VARIABLE_STATE, 2 * n);
-    interface->variables[interface->count - 1].entry.is_output = false;
-  }
+  append_list(interface, model, works, VARIABLE_STATE, 2 * n);
+  for (size_t i = 0; i < works->count; i++) interface->variables[interface->count - 1 - i].entry.is_output = false;
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, acceleration_of(model, equations, i));
-  if (equations->has_work) append_derivative(interface, &work, 2 * n, equations->power);
-  interface->state_count = 2 * n + (equations->has_work ? 1 : 0);
+  for (size_t i = 0; i < works->count; i++)
+    append_derivative(interface, &works->items[i], 2 * n + i, equations->integrands.nodes[i]);
+  interface->state_count = 2 * n + works->count;
 }
 
 static void append_outputs(struct Interface *interface, const struct Model *model, const struct Equations *equations) {

@@ -1,6 +1,7 @@
 /* The equations of motion, and all that is computed beside them. */
 #pragma once
 
+#include "algebra/node_list.h"
 #include "mechanics/constraints.h"
 #include "mechanics/mass_matrix/inertia.h"
 
@@ -18,7 +19,8 @@ struct Equations {
   Node *right_side, *residual, *acceleration;
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
-  bool has_work; /* the work of the non-conservative forces is a state */
+  /* The rates of the states behind the velocities: with <work/> the power, and its derivatives that variations.h adds. */
+  struct NodeList integrands;
   /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
   Node power;
   Node stated_power;                            /* the same, which may hold the acceleration symbols */

@@ -180,7 +180,10 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   power = add(graph, power, moving_power(model));
   equations->stated_power = add(graph, power, model->forces.driven_power.node);
   equations->power = equations->stated_power;
-  if (equations->has_work) equations->power = with_accelerations(model, equations, equations->power);
+  const struct VariableList *works = &model->forces.works;
+  if (works->count > 0) equations->power = with_accelerations(model, equations, equations->power);
+  for (size_t i = 0; i < works->count; i++)
+    append_node(&equations->integrands, i == 0 ? equations->power : works->items[i].node);
   equations->kinetic = model->energies.kinetic_energy.node;
   equations->potential = stored_energy(model, model->energies.potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
@@ -207,7 +210,6 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
   Node stillness = energy_of_stillness(model), kinetic = add(graph, model->energies.kinetic.node, stillness);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
-  equations->has_work = model->forces.work_line > 0;
   const struct Constraints *constraints = equations->constraints;
   const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
   equations->inertia = inertia_derive(model, momentum, stillness, &border, diagnostics);

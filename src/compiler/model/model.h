@@ -158,7 +158,8 @@ struct Forces {
   size_t torque_count;
   struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
   bool any;                     /* some force, dissipation or drive was given */
-  long work_line;               /* of <work/>, which asks for nonConservativeWork; 0 for none */
+  /* Where <work/> asks for it, nonConservativeWork, whose rate is the power, and its derivatives, whose rates are the nodes. */
+  struct VariableList works;
 };
 
 /* The symbols that the equations of motion are solved for. */

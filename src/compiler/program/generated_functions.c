@@ -26,9 +26,10 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   struct Routine *routine = values_begin(values);
   size_t n = program->equations->count;
   append_accelerations(values, program->equations, &program->blocks, false);
-  if (program->equations->has_work) values_compute(values, &program->equations->power, 1, false);
+  const struct NodeList *integrands = &program->equations->integrands;
+  values_compute(values, integrands->nodes, integrands->count, false);
   for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_STATE, n + i));
-  if (program->equations->has_work) values_copy(values, target_place(2 * n), program->equations->power);
+  for (size_t i = 0; i < integrands->count; i++) values_copy(values, target_place(2 * n + i), integrands->nodes[i]);
   return routine;
 }
 
@@ -83,9 +84,11 @@ static struct Routine *directional_routine(const struct Program *program, struct
   const struct Expressions *expressions = program->expressions;
   size_t n = program->equations->count;
   append_along(program, values, n, n);
-  if (expressions->equations->has_work) values_compute(values, &expressions->power_along, 1, false);
+  size_t integrands = program->equations->integrands.count;
+  values_compute(values, expressions->integrands_along, integrands, false);
   for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_SEED_STATE, n + i));
-  if (expressions->equations->has_work) values_copy(values, target_place(2 * n), expressions->power_along);
+  for (size_t i = 0; i < integrands; i++)
+    values_copy(values, target_place(2 * n + i), expressions->integrands_along[i]);
   return routine;
 }
 

@@ -18,16 +18,16 @@ static void check_content(const struct Reader *reader) {
   if (coordinates == 0 && reader->has_solver)
     report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates has nothing to solve; expected no <solver>");
-  if (model->forces.work_line > 0 && !model->forces.any)
-    report_error(reader->diagnostics, model->forces.work_line,
+  if (model->forces.works.count > 0 && !model->forces.any)
+    report_error(reader->diagnostics, model->forces.works.items[0].line,
                  "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && model->forces.work_line > 0 &&
+  if (model->constraints.count > 0 && model->forces.works.count > 0 &&
       (model->given.inputs_move || model->given.drive_count > 0))
-    report_error(reader->diagnostics, model->forces.work_line,
+    report_error(reader->diagnostics, model->forces.works.items[0].line,
                  "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
                  model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
-  if (model->forces.work_line > 0 && model->given.constraint != NULL)
-    report_error(reader->diagnostics, model->forces.work_line,
+  if (model->forces.works.count > 0 && model->given.constraint != NULL)
+    report_error(reader->diagnostics, model->forces.works.items[0].line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
                  "<work/>, or a coordinate that is moved so in place of the constraint",
                  model->given.constraint->name);

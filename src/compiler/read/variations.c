@@ -40,7 +40,6 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   model->unknowns.accelerations[place] =
       graph_symbol(graph, ACCELERATION, (int)place, format_text("der(%s)", velocity.name));
   model->given.drives[place] = (struct Drive){.given = true, .reaction = reaction};
-  model->given.drive_count++;
 }
 
 /* The direction of the motion of neighbours: one node for each symbol; first: of the coordinates for this value. */
@@ -68,10 +67,18 @@ static void append_outputs(struct Model *model, const struct Equations *equation
   }
 }
 
+/* Its rate is the derivative of the power. */
+static void append_work(struct Model *model, const struct Equations *equations, const struct Variable *by,
+                        const Node *seeds) {
+  if (equations->integrands.count == 0) return;
+  struct Variable work = derivative_of(model, &model->forces.works.items[0], by);
+  derivative_along(model->graph, &equations->power, 1, seeds, &work.node);
+  append_variable(&model->forces.works, work);
+}
+
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
   if (equations->switching != NULL) return "what switches";
   if (equations->explicit_form) return "a linearization";
-  if (equations->has_work) return "<work/>";
   if (model->mechanism.stillness_count > 0) return "coordinates without mass";
   return NULL;
 }
@@ -109,6 +116,7 @@ static void add_variation(struct Model *model, const struct Equations *equations
   for (size_t j = count; j < rows; j++)
     seeds[model->graph->vertices[model->unknowns.forces[j - count]].left] = along[j];
   append_outputs(model, equations, outputs, &by, seeds);
+  append_work(model, equations, &by, seeds);
 }
 
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,

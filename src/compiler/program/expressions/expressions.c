@@ -168,7 +168,9 @@ static void create_directional(struct Expressions *expressions, struct Extras ex
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
-  derivative_along(graph, &expressions->equations->power, 1, seeds, &expressions->power_along);
+  const struct NodeList *integrands = &expressions->equations->integrands;
+  expressions->integrands_along = allocate(integrands->count, sizeof(Node));
+  derivative_along(graph, integrands->nodes, integrands->count, seeds, expressions->integrands_along);
   const struct Elements *jacobian = &expressions->equations->constraints->jacobian;
   expressions->constraints_along = allocate(jacobian->count, sizeof(Node));
   derivative_along(graph, jacobian->nodes, jacobian->count, seeds, expressions->constraints_along);
@@ -187,7 +189,7 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
     report_error(diagnostics, model->solver.line,
                  "the method 'exact' cannot have events; expected another method for a system that switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
-  if (expressions->equations->has_work)
+  if (expressions->equations->integrands.count > 0)
     report_error(diagnostics, model->solver.line,
                  "<work/> is not linear in the state; expected a method other than 'exact'");
 }
@@ -212,8 +214,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   const struct Equations *equations = expressions->equations;
   const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));
   bool is_taylor = expressions->equations->method->series == ALL_TERMS;
-  if (kink == NULL || !is_taylor)
-    expressions->series = series_plan_of_motion(model->graph, equations, expressions->equations->has_work);
+  if (kink == NULL || !is_taylor) expressions->series = series_plan_of_motion(model->graph, equations);
   else
     report_error(diagnostics, model->solver.line,
                  "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
@@ -267,8 +268,8 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.push, equations->count);
   }
-  if (expressions->equations->has_work)
-    append_nodes(&targets, (const Node[]){equations->power, expressions->power_along}, 2);
+  append_nodes(&targets, equations->integrands.nodes, equations->integrands.count);
+  append_nodes(&targets, expressions->integrands_along, equations->integrands.count);
   if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);

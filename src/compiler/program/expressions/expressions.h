@@ -52,7 +52,7 @@ struct Expressions {
   Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
   Node *constraints_along;              /* of the elements of the constraints' J */
   struct Corrections corrections;       /* NULL without constraints */
-  Node power_along;                     /* of the power of the forces */
+  Node *integrands_along;               /* of the rates of the states behind the velocities */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
   Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */

@@ -43,7 +43,7 @@ static void append_column(struct ElementList *list, struct Graph *graph, const s
   if (block->is_unrolled) block_solve(graph, block, right);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
-    if (row >= equations->count) row += equations->has_work; /* behind all states */
+    if (row >= equations->count) row += equations->integrands.count; /* behind all states */
     if (!block->is_unrolled || right[i] != ZERO) append(list, equations->count + row, column, right[i]);
   }
 }
@@ -104,6 +104,12 @@ static void append_pattern(struct ElementList *list, struct Graph *graph, const 
   }
 }
 
+/* The rows behind the velocities. */
+static void append_integrands(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
+  for (size_t i = 0; i < equations->integrands.count; i++)
+    append_gradient(list, graph, equations->count, equations->integrands.nodes[i], 2 * equations->count + i);
+}
+
 /* Where accelerations are found by articulated inertias, directions cost less than a formula for each element. */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
   struct ElementList list = {0};
@@ -111,9 +117,9 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
   for (size_t i = 0; i < equations->inertia->block_count; i++)
     append_pattern(&list, graph, equations, &equations->inertia->blocks[i]);
-  if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
+  append_integrands(&list, graph, equations);
   if (list.count > JACOBIAN_LIMIT) return NULL;
-  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->has_work);
+  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->integrands.count);
   jacobian->value = NULL;
   return jacobian;
 }
@@ -128,8 +134,8 @@ struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Eq
     append_gradient(&list, graph, n, equations->acceleration[i], n + i);
   for (size_t i = 0; !equations->explicit_form && i < equations->inertia->block_count; i++)
     append_block(&list, graph, equations, &equations->inertia->blocks[i]);
-  if (equations->has_work) append_gradient(&list, graph, n, equations->power, 2 * n);
+  append_integrands(&list, graph, equations);
   struct JacobianExpressions *jacobian =
-      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->has_work);
+      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->integrands.count);
   return jacobian;
 }

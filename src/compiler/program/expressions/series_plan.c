@@ -85,10 +85,10 @@ static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
   return plan;
 }
 
-struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power) {
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations) {
   struct SeriesPlan *plan = allocate(1, sizeof *plan);
   append_equations(plan, equations);
-  if (with_power) append_node(&plan->targets, equations->power);
+  append_nodes(&plan->targets, equations->integrands.nodes, equations->integrands.count);
   return finish(plan, graph);
 }
 

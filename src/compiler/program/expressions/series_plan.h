@@ -17,7 +17,7 @@ struct SeriesPlan {
 };
 
 /* For the motion; the equations have no kink without a series. */
-struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations, bool with_power);
+struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations);
 
 /* For expressions of the motion, without kinks. */
 struct SeriesPlan *series_plan_of_outputs(struct Graph *graph, const Node *outputs, size_t count);

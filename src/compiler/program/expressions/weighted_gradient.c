@@ -23,7 +23,7 @@ static bool is_symmetric(const struct Inertia *inertia) {
   return true;
 }
 
-/* The outputs, and the power whose integral is a state. */
+/* The outputs, and the rates of the states behind the velocities. */
 static struct WeightedSum what_is_read(struct Graph *graph, const struct Equations *equations,
                                        const struct Interface *interface, const Node *result) {
   struct WeightedSum sum = {0};
@@ -33,8 +33,9 @@ static struct WeightedSum what_is_read(struct Graph *graph, const struct Equatio
     char *name = format_text("d %s", entry->name);
     append_term(&sum, result[entry->index], graph_symbol(graph, SEED_RESULT, (int)entry->index, name));
   }
-  if (equations->has_work)
-    append_term(&sum, equations->power, graph_symbol(graph, SEED_VELOCITY, (int)equations->count, "d work"));
+  for (size_t i = 0; i < equations->integrands.count; i++)
+    append_term(&sum, equations->integrands.nodes[i],
+                graph_symbol(graph, SEED_VELOCITY, (int)(equations->count + i), format_text("d integral %zu", i + 1)));
   return sum;
 }
 

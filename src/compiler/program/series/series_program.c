@@ -134,13 +134,14 @@ static void append_state(struct SeriesBuilder *builder, size_t state, Place deri
 }
 
 /* The coefficient k + 1 of the state from coefficient k of its derivative. */
-static void append_states(struct SeriesBuilder *builder, const struct Equations *equations, bool with_work) {
+static void append_states(struct SeriesBuilder *builder, const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
     append_state(builder, i, place_in(SPACE_STATE_ROW, n + i));
     append_state(builder, n + i, series_coefficient(builder, equations->acceleration[i]));
   }
-  if (with_work) append_state(builder, 2 * n, series_coefficient(builder, equations->power));
+  for (size_t i = 0; i < equations->integrands.count; i++)
+    append_state(builder, 2 * n + i, series_coefficient(builder, equations->integrands.nodes[i]));
 }
 
 /* Where the spaces of an incomplete routine have gone. */
@@ -267,12 +268,12 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   program->limit = limits_of(builder);
   append_nodes_of_order(builder);
   for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
-  append_states(builder, equations, expressions->equations->has_work);
+  append_states(builder, equations);
   struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
   complete(program, &rows);
 
   program->start = values_begin(values);
-  compute_first(builder, values, &equations->power, expressions->equations->has_work);
+  compute_first(builder, values, equations->integrands.nodes, equations->integrands.count);
   append_accelerations(values, equations, blocks, false);
   copy_first(&rows, values);
   for (size_t i = 0; i < n; i++) routine_copy(program->start, target_place(i), place_in(SPACE_STATE, n + i));
@@ -282,7 +283,8 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
       routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i));
   }
-  if (expressions->equations->has_work) values_copy(values, target_place(2 * n), equations->power);
+  for (size_t i = 0; i < equations->integrands.count; i++)
+    values_copy(values, target_place(2 * n + i), equations->integrands.nodes[i]);
   return program;
 }
 
