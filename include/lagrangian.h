@@ -380,6 +380,8 @@ struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t work_count; /* of Point.work */
+  /* Of the coordinates the last ones, which are derivatives of others by values: an importer may set them at events. */
+  size_t variation_count;
   size_t variable_count, array_count;
   const struct ScalarVariable *variables;
   const struct ArrayVariable *arrays; /* ascending; NULL where there are none */

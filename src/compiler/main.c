@@ -42,7 +42,7 @@ static const char usage[] =
     "  --scalars        what <for> makes are scalars in FMI 3.0 too, not arrays\n"
     "  --along NAME     adds the derivatives of coordinates and outputs by a parameter, an input or a start value, "
     "X.by.NAME,\n"
-    "                   by the variational equations, to a system without events\n"
+    "                   by the variational equations\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, energy_of_double, lagrange_fmu, oscillation, slopes, work  # noqa: F401
+from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, belt, bounce, energy_of_double, lagrange_fmu, oscillation, slopes, work  # noqa: F401
 
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
@@ -22,6 +22,7 @@ HELD = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter
   <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><output name="pull" unit="N">rod.force</output></system>"""
 HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
 HELD_BY = ["l", "g", "x", "vx"]
+SWITCHED = {"Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
            "Worked": (WORKED, list(AT)), "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY)}  # fmt: skip
 
@@ -30,6 +31,11 @@ SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Doub
 def built():
     for name, (text, by) in SYSTEMS.items():
         build_systems(f"variational_{name}", {name: text.replace('name="Oscillator"', f'name="{name}"')}, *(word for value in by for word in ("--along", value)))
+
+
+    build_systems("variational_switched", {name: text for name, (text, _) in SWITCHED.items()})
+    for name, (text, by) in SWITCHED.items():
+        build_systems(f"variational_{name}", {name: text}, "--scalars", *(word for value in by for word in ("--along", value)), versions=(3,))
 
 
 def archive(name):
@@ -53,6 +59,41 @@ def test_an_oscillation(lagrange_fmu):  # noqa: F811
         assert values[i, 0] == pytest.approx(float(oscillation(t, *AT.values())), rel=1e-10)
         assert dict(zip(AT, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: oscillation(mpmath.mpf(t), *at), AT), rel=1e-9, abs=1e-12)
     assert derivatives[0, 1, 1] == pytest.approx(-0.3 / 2, rel=1e-12)  # m a = F - k x - d v at the start
+
+
+def motion_through_events(name, of, times, start, monkeypatch, ways):
+    """Values and derivatives at the times; ways: where SciPy went on from, as it does where the series cannot."""
+    from lagrange_fmu.event_motion import EventMotion
+    from lagrange_fmu.model_exchange import opened
+    from lagrange_fmu.sensitivity import Motion
+
+    by, go_on = SWITCHED[name][1], Motion.go_on
+    monkeypatch.setattr(EventMotion, "go_on", lambda self, begin, *words: ways.append(begin) or go_on(self, begin, *words))
+    with opened(archive_of(BUILD / "variational_switched", name), start) as point, opened(archive_of(BUILD / f"variational_{name}", name, 3), start, by=by, stops_at_events=True) as point.in_series:
+        return EventMotion(point, of, by, 1e-11).over(np.array(times))
+
+
+def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
+    """In the series alone; where the ball has come to rest SciPy goes on."""
+    at, ways = {"h": 1.3, "g": 9.81, "e": 0.7}, []
+    fall = np.sqrt(2 * at["h"] / at["g"])
+    times = [0.0, 0.3, 1.9 * fall, fall + 1.7 * 0.7 * fall, 4.0]
+    _, derivatives = motion_through_events("Ball", ["h"], times[:-1], at, monkeypatch, ways)
+    assert ways == []
+    for t, bounces, row in zip(times, (0, 0, 1, 1), derivatives):
+        assert dict(zip(at, row[0])) == pytest.approx(slopes(lambda *at: bounce(mpmath.mpf(t), *at, bounces), at), rel=1e-8, abs=1e-10)
+    _, derivatives = motion_through_events("Ball", ["h", "v"], times, at, monkeypatch, ways)
+    assert len(ways) == 1 and 0.999 < ways[0] / (fall * (1 + 2 * 0.7 / 0.3)) < 1
+    assert derivatives[-1] == pytest.approx(np.zeros((2, 3)), abs=1e-4)
+
+
+def test_through_friction(lagrange_fmu, monkeypatch):  # noqa: F811
+    """That sticks from 0.09 s on, and slides again from 0.52 s on."""
+    at, times, ways = {"k": 20.0, "F": 3.0, "u": 0.4}, [0.0, 0.05, 0.3, 0.9], []
+    _, derivatives = motion_through_events("Belt", ["x"], times, at, monkeypatch, ways)
+    assert ways == []
+    for i, t in enumerate(times):
+        assert dict(zip(at, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: belt([mpmath.mpf(t)], *at)[0], at), rel=1e-8, abs=1e-10)
 
 
 def test_work(lagrange_fmu):  # noqa: F811
@@ -128,7 +169,7 @@ def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
     from lagrange_fmu import variational
 
     monkeypatch.setattr(variational, "is_fmu", lambda system: False)
-    monkeypatch.setattr(variational, "_is_smooth", lambda system, by: True)
+    monkeypatch.setattr(variational, "_indicators_of", lambda system, by: 0)
     times = np.linspace(0.5, 4, 36)
     force = np.interp(times, [0.5, 1, 1.5, 2.5, 4], [0, 6, -3, -3, 5])
     rates = lambda t, state: [state[1], (np.interp(t, times, force) - 61 * state[0] - 0.8 * state[1]) / 2]
@@ -141,11 +182,12 @@ def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
 
 def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
     """Is refused by lagc, so that the package goes another way."""
-    from lagrange_fmu.variational import _is_smooth
+    from lagrange_fmu.variational import _indicators_of
 
     massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
-    for text, by, why in ((BALL, "g", "without what switches"), (massless, "l", "without coordinates without mass"), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
+    rubbed = BALL.replace("</system>", '<coordinate name="x" velocity="u" unit="m"/><particle mass="1" x="x"/><friction name="rub" velocity="u" force="0.5*floor.force"/></system>')
+    for text, by, why in ((rubbed, "g", "cannot follow frictions that follow from forces"), (massless, "l", "cannot follow coordinates without mass"), (BALL, "g", None), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
         (tmp_path / "system.xml").write_text(text)
         result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)
-        assert (result.returncode == 0) == (why is None) == _is_smooth(tmp_path / "system.xml", [by])
+        assert (result.returncode == 0) == (why is None) == (_indicators_of(tmp_path / "system.xml", [by]) is not None)
         assert why is None or why in result.stderr

@@ -89,7 +89,7 @@ def sensitivities(
 ) -> Sensitivities:
     """
     The derivatives of outputs and states `of`, at increasing times in s of a motion that starts at 0 s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
-    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for systems in XML that nothing switches, else with SciPy; events change
+    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for systems in XML, else with SciPy; events change
     them by what they make of neighbouring motions; at the time of an event they are those before it. Several events at once, one that is only touched,
     and one behind which neighbours are in other modes are refused.
     """

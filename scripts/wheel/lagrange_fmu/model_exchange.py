@@ -7,13 +7,14 @@ import numpy as np
 from fmpy import extract
 from fmpy.fmi1 import FMICallException
 
-from .models import Model2, Model3, Slave2
+from .models import Model2, Model3, Slave2, Slave3
 from .problem import Problem
 from .running import fmu_of, is_fmu
 from .simulation import check_start, described, units_of
 from .variables import settable
 
-ADJOINT = ("--adjoint", "--scalars")  # words for lagc
+SCALARS = ("--scalars",)  # words for lagc
+ADJOINT = ("--adjoint", *SCALARS)
 COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # what is discrete beside modes
 
 
@@ -33,6 +34,7 @@ class Point:
     def __init__(self, model, description, values, by=(), messages=()):
         """messages: what the model logs."""
         self.model, self.values, self.messages = model, values, messages
+        self.in_series = None  # the same in co-simulation, where the derivatives are in its series and it stops at events
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         self.names = {reference: name for name, reference in self.references.items()}
         outputs = [v.name for v in description.modelVariables if v.causality == "output"]
@@ -101,7 +103,7 @@ class Point:
 def _opened(fmu, description, in_series):
     """The FMU as a model, and what it logs."""
     folder, messages = extract(str(fmu)), []
-    kind = Slave2 if in_series else Model3 if description.fmiVersion == "3.0" else Model2
+    kind = {("2.0", False): Model2, ("2.0", True): Slave2, ("3.0", False): Model3, ("3.0", True): Slave3}[description.fmiVersion, in_series]
     try:
         model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
         model.begin(messages)
@@ -123,14 +125,17 @@ def _check_abilities(fmu, description, adjoint):
 
 
 @contextmanager
-def opened(system, values, method=None, what="be linearized there", adjoint=False, by=()):
+def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False):
     """
     The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
-    as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables.
+    as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables, of FMI 3.0 where
+    it is to stop at events.
     """
-    with fmu_of(system, method=method, fmi=3 if adjoint and not is_fmu(system) else None, words=ADJOINT if adjoint else words_for(by)) as fmu:
+    words = ADJOINT if adjoint else [*words_for(by), *SCALARS] if stops_at_events else words_for(by)
+    with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=words) as fmu:
         description = described(fmu)
-        _check_abilities(fmu, description, adjoint)
+        if not stops_at_events:
+            _check_abilities(fmu, description, adjoint)
         check_start(values, description)
         with _opened(fmu, description, bool(by)) as (model, messages):
             try:

@@ -12,7 +12,7 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
-from fmpy.fmi3 import FMU3Model
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 DISCARD = 2  # fmi3Discard; what is less is no problem
 
@@ -78,8 +78,8 @@ class Slave2(_Model2):
         pass
 
 
-class Model3(Model):
-    kind = FMU3Model
+class _Model3(Model):
+    options = {}  # of an instance
 
     def begin(self, messages):
         """Instantiates it; the problems that it logs are appended to the list."""
@@ -88,18 +88,10 @@ class Model3(Model):
             if status >= DISCARD:
                 messages.append(message.decode())
 
-        self.instantiate(loggingOn=True, logMessage=log)
+        self.instantiate(loggingOn=True, logMessage=log, **self.options)
 
     def start_over(self):
         self.reset()
-
-    def set_states(self, values):
-        self.fmi3SetContinuousStates(self.component, numbers_of(values), len(values))
-
-    def indicators(self, count):
-        values = np.zeros(count)
-        self.fmi3GetEventIndicators(self.component, numbers_of(values), count)
-        return values
 
     def getReal(self, references):
         return self.fmu.getFloat64(references)
@@ -113,6 +105,32 @@ class Model3(Model):
     def newDiscreteStates(self):
         return self.fmu.updateDiscreteStates()
 
+
+class Model3(_Model3):
+    kind = FMU3Model
+
+    def set_states(self, values):
+        self.fmi3SetContinuousStates(self.component, numbers_of(values), len(values))
+
+    def indicators(self, count):
+        values = np.zeros(count)
+        self.fmi3GetEventIndicators(self.component, numbers_of(values), count)
+        return values
+
     def adjoint(self, unknowns, knowns, seed):
         """seed^T d unknowns / d knowns, as an array."""
         return np.array(self.getAdjointDerivative(unknowns, knowns, seed, len(knowns)))
+
+
+class Slave3(_Model3):
+    """In co-simulation, which ends its steps at events."""
+
+    kind = FMU3Slave
+    options = {"eventModeUsed": True, "earlyReturnAllowed": True}
+    start_time, tolerance = 0.0, None
+
+    def enterInitializationMode(self):
+        self.fmu.enterInitializationMode(tolerance=self.tolerance, startTime=self.start_time)
+
+    def enterContinuousTimeMode(self):
+        self.enterStepMode()

@@ -131,6 +131,12 @@ class Saltation:
 
     def pass_over(self, slopes, acting):
         """Leaves the FMU behind the event. Returns its state there, and the slopes of that; acting: of each slope, the parameters that change with it."""
+        try:
+            return self._pass_over(slopes, acting)
+        finally:
+            self.model.freeFMUState(self.saved)
+
+    def _pass_over(self, slopes, acting):
         alone = [references[0] for direction, references in zip(slopes, acting) if references and not direction.any()]
         idle = {*alone} - {*relevant(self.change_anything, alone)}
         found = []
@@ -140,7 +146,6 @@ class Saltation:
         self.model.setFMUState(self.saved)
         self.motion.place(self.time, self.state, self.inputs)
         state = self.update()
-        self.model.freeFMUState(self.saved)
         self.motion.place(self.time, state, self.inputs)
         rates = np.array(self.model.getReal(self.motion.rate_references))
         return state, np.array([change[:-1] - change[-1] * rates for change in found]).reshape(-1, len(state))

@@ -128,13 +128,15 @@ class Motion:
     def over(self, times, values=None, inputs=None, kinks=()):
         """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, smooth between the kinks."""
         both = self.start(values or {})
-        rows, begin = [self.read(times[0], both, inputs)], times[0]
-        due = [time for time in times if time > begin]
-        for end in [*kinks, times[-1]]:
+        return as_arrays([self.read(times[0], both, inputs), *self.go_on(times[0], both, times[1:], inputs, kinks)])
+
+    def go_on(self, begin, both, times, inputs=None, kinks=()):
+        """From there to these times: of each the values and derivatives."""
+        due, rows = [*times], []
+        for end in [*kinks, *times[-1:]]:
             while begin < end:
                 begin, both = self.follow(begin, both, end, inputs, due, rows)
-        found = [np.array(part) for part in zip(*rows)]
-        return found[0], found[1]
+        return rows
 
     def follow(self, begin, both, end, inputs, due, rows):
         """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
@@ -182,6 +184,12 @@ class Motion:
         slopes = dense(event[0])[count:].reshape(len(self.by), count)
         state, slopes = self.saltation(event, dense, before, inputs).pass_over(slopes, self.acting)
         return np.concatenate([state, slopes.ravel()])
+
+
+def as_arrays(rows):
+    """Of values and derivatives at each time: n x of, and n x of x by."""
+    values, derivatives = zip(*rows)
+    return np.array(values), np.array(derivatives)
 
 
 def check_once(names):

@@ -1,5 +1,5 @@
 """
-Motions with their derivatives by the FMU's own solver: of smooth systems, with constraints too, which lagc derives so that the variational equations are a part of the motion.
+Motions with their derivatives by the FMU's own solver: of systems that lagc derives so that the variational equations are a part of the motion.
 """
 
 import tempfile
@@ -12,6 +12,7 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 
 from .building import derive
+from .event_motion import EventMotion
 from .model_exchange import along, opened, words_for
 from .models import Slave2
 from .problem import Problem
@@ -22,15 +23,15 @@ CHECKED = 1e-6  # relative, to which rates are right at the start
 LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
 
 
-def _is_smooth(system, by):
-    """Whether lagc derives it so; what is wrong otherwise, is told where it is built without derivatives."""
+def _indicators_of(system, by):
+    """How many events may come from, where lagc derives it so; None where not: what is wrong is told where it is built without derivatives."""
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            derive(system, Path(folder), None, words_for(by))
+            description = derive(system, Path(folder), None, words_for(by))
         except Problem:
-            return False
-        return (Path(folder) / "system.c").stat().st_size < LARGEST
+            return None
+        return int(description.get("numberOfEventIndicators", 0)) if (Path(folder) / "system.c").stat().st_size < LARGEST else None
 
 
 @dataclass(frozen=True)
@@ -45,17 +46,23 @@ class Sensitivities:
 @contextmanager
 def followed(system, values, by):
     """The Point of a system or an FMU, of which motion() makes motions with derivatives by these names."""
-    if not is_fmu(system) and by and _is_smooth(system, by):
+    indicators = None if is_fmu(system) or not by else _indicators_of(system, by)
+    if indicators == 0:
         with opened(system, values, what="be followed", by=by) as point:
             if SeriesMotion(point, [], by, CHECKED).begins_right():
                 yield point
                 return
     with opened(system, values, what="be followed") as point:
-        yield point
+        if not indicators:
+            yield point
+            return
+        with opened(system, values, what="be followed", by=by, stops_at_events=True) as point.in_series:
+            yield point
 
 
 def motion(point, of, by, tolerance):
-    return (SeriesMotion if isinstance(point.model, Slave2) else Motion)(point, of, by, tolerance)
+    kind = SeriesMotion if isinstance(point.model, Slave2) else EventMotion if point.in_series is not None else Motion
+    return kind(point, of, by, tolerance)
 
 
 class SeriesMotion:

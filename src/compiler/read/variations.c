@@ -37,6 +37,7 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   velocity.node = graph_symbol(graph, VELOCITY, (int)place, velocity.name);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
+  model->variation_count++;
   model->unknowns.accelerations[place] =
       graph_symbol(graph, ACCELERATION, (int)place, format_text("der(%s)", velocity.name));
   model->given.drives[place] = (struct Drive){.given = true, .reaction = reaction};
@@ -77,8 +78,10 @@ static void append_work(struct Model *model, const struct Equations *equations, 
 }
 
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
-  if (equations->switching != NULL) return "what switches";
-  if (equations->explicit_form) return "a linearization";
+  for (size_t i = 0; i < model->switches.friction_count; i++)
+    if (graph_depends_on(model->graph, model->switches.frictions[i].sliding, ACCELERATION))
+      return "frictions that follow from forces";
+  if (equations->explicit_form) return "linearizations";
   if (model->mechanism.stillness_count > 0) return "coordinates without mass";
   return NULL;
 }
@@ -122,7 +125,7 @@ static void add_variation(struct Model *model, const struct Equations *equations
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
                     struct Diagnostics *diagnostics) {
   const char *reason = why_not(model, equations);
-  if (reason != NULL) report_error(diagnostics, 0, "--along is for smooth systems; expected one without %s", reason);
+  if (reason != NULL) report_error(diagnostics, 0, "--along cannot follow %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
       report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate or a velocity", names[k]);

@@ -8,9 +8,10 @@
 
 /*
  * Adds to the model, for each of the names, the coordinates COORDINATE.by.NAME with their velocities, and the outputs
- * OUTPUT.by.NAME; the equations are those of the model without them, their accelerations all expressions. They start with 0,
- * or 1 of the start value itself, and stay on the linearised constraints as they begin. They are wrong where constraints
- * follow from others, which no expression shows. Reports what cannot be differentiated so.
+ * OUTPUT.by.NAME, and of <work/> its derivative; the equations are those of the model without them, their accelerations all
+ * expressions. They start with 0, or 1 of the start value itself, and stay on the linearised constraints as they begin; at
+ * events, where they jump, they are set. They are wrong where constraints follow from others, which no expression shows.
+ * Reports what cannot be differentiated so.
  */
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
                     struct Diagnostics *diagnostics);

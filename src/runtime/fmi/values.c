@@ -92,13 +92,25 @@ static bool is_exchanged(const struct Instance *instance) {
   return instance->situation->phase == PHASE_CONTINUOUS_TIME;
 }
 
+/* Whether it jumps at events by what the importer knows of it, as nothing here does. */
+static bool is_variation(const struct ScalarVariable *variable) {
+  size_t n = lagrangian.coordinate_count, first = n - lagrangian.variation_count, state = variable->index;
+  if (lagrangian.variation_count == 0 || variable->kind != VARIABLE_STATE) return false;
+  return state < 2 * n ? state % n >= first : state > 2 * n;
+}
+
+static bool is_variation_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
+  return instance->situation->phase == PHASE_EVENT && is_variation(variable);
+}
+
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return instance->situation->phase != PHASE_CONTINUOUS_TIME;
   case VARIABLE_MODE: return is_before_start(instance);
-  case VARIABLE_STATE: return is_before_start(instance) || is_exchanged(instance);
+  case VARIABLE_STATE:
+    return is_before_start(instance) || is_exchanged(instance) || is_variation_at_event(instance, variable);
   default: return false;
   }
 }
@@ -143,6 +155,11 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
   if (variable->kind == VARIABLE_STATE && is_exchanged(instance)) {
     instance->state[variable->index] = value;
+    return;
+  }
+  if (is_variation_at_event(instance, variable)) {
+    instance->state[variable->index] = value;
+    if (instance->situation->changed == CHANGED_NOTHING) instance->situation->changed = CHANGED_COURSE;
     return;
   }
   if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);

@@ -1,5 +1,6 @@
 #include "mechanics/mass_matrix/inertia_derivation.h"
 
+#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/mass_matrix/pivots.h"
@@ -128,10 +129,27 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
   }
 }
 
+/* What does not hold has a row of zeros: solved symbolically, it takes a diagonal, by which its force is 0. */
+static void append_open_rows(const struct Model *model, struct Elements *elements) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t row = model->coordinates.count + switches->contacts[i].constraint;
+    elements_append(elements, row, row, subtract(graph, switches->contacts[i].mode, ONE));
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t row = model->coordinates.count + switches->frictions[i].constraint;
+    elements_append(elements, row, row, negate(graph, power_number(graph, switches->frictions[i].mode, 2.0)));
+  }
+}
+
 /* The same matrix with the borders J and J^T. */
-static struct Inertia *create_bordered(const struct Graph *graph, size_t count, struct Elements *elements,
+static struct Inertia *create_bordered(const struct Model *model, struct Elements *elements,
                                        const struct Border *border, const struct Trees *trees) {
+  const struct Graph *graph = model->graph;
   const struct Elements *jacobian = border->jacobian;
+  size_t count = model->coordinates.count;
+  if (model->unrolled) append_open_rows(model, elements);
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
   struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements, trees);
@@ -151,8 +169,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   couple_trees(&trees, count, &elements);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
-  if (!is_right || border->count > 0)
-    inertia = is_right ? create_bordered(model->graph, count, &elements, border, &trees) : NULL;
+  if (!is_right || border->count > 0) inertia = is_right ? create_bordered(model, &elements, border, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
   bool power_has_accelerations =
