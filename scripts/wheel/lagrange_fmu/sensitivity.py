@@ -16,6 +16,7 @@ from .saltation import Saltation, crossing_of
 
 LOOKS = 8  # at what events look at, in a step
 STEP = 1e-3  # relative, of differences through initialization
+AWAY = 1e-3  # of the states, by which constraints are left
 
 
 class Start:
@@ -140,7 +141,7 @@ class Motion:
 
     def follow(self, begin, both, end, inputs, due, rows):
         """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
-        steps = Steps(lambda time, both: self.rates(time, both, inputs), lambda time, both: self.jacobian(time, both, inputs), (begin, end), both, self.tolerance, "the motion cannot be followed")
+        steps = Steps(lambda time, both: self.rates(time, both, inputs), lambda time, both: self.jacobian(time, both, inputs), (begin, end), both, self.tolerance, "the motion cannot be followed", obstacle=lambda time, both: self.obstacle(time, both, inputs))
         self.begin_phase(begin)
         while steps.take():
             solver = steps.solver
@@ -153,6 +154,20 @@ class Motion:
             if event:
                 return event[0], self.pass_over(event, dense, solver.t_old, inputs)
         return end, steps.solver.y
+
+    def obstacle(self, time, both, inputs):
+        """What makes steps of systems with constraints come to nearly nothing, whose states would be wrong behind it; None of others."""
+        state = both[: len(self.state_references)]
+        self.place(time, state * (1 + AWAY) + AWAY, inputs)
+        is_held, _ = self.model.completedIntegratorStep()
+        if not is_held or self.point.indicator_count > 0:
+            return None
+        self.place(time, state, inputs)
+        steepest = np.argmax(np.max(np.abs(self.point.jacobian(self.point.derivatives, self.point.states)), axis=1))
+        return (
+            f"constraints hold it ever more weakly there, and {self.point.derivatives[steepest]} changes ever more with the states, as where a mechanism lies flat or comes to the limit of its reach, through which "
+            "there are no derivatives"
+        )
 
     def begin_phase(self, time):
         """Of smooth motion, of which each step is added next: those may note it who go back."""

@@ -105,9 +105,17 @@ class SeriesMotion:
             if begin in times:
                 rows.append(self.model.getReal(self.references))
             if end is not None:
-                self.model.doStep(begin, end - begin)
+                self.step(begin, end)
         found = np.array(rows)
         return found[:, : len(self.of)], found[:, len(self.of) :].reshape(len(rows), len(self.of), len(self.by))
+
+    def step(self, begin, end):
+        try:
+            self.model.doStep(begin, end - begin)
+        except FMICallException:
+            why = "; ".join(self.point.messages)
+            self.point.messages.clear()
+            raise Problem(f"the motion cannot be followed with its derivatives: {why}; expected an earlier end") from None
 
     def set_inputs(self, begin, end, inputs):
         if inputs is None:
