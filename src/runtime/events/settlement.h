@@ -54,6 +54,8 @@ struct ContactLaws {
   bool (*part)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
+  /* Logs the contact that jams where the solver stopped; false where none does. */
+  bool (*explain)(struct Settlement *settlement);
 };
 
 /* What frictions do; FMUs without any do not hold it. */
