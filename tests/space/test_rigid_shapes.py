@@ -149,6 +149,15 @@ def test_ball_on_a_slope(name, velocity):
             assert whole(instance, "touch.friction.sliding") == [0 if rolls else 1]
 
 
+def test_ball_that_falls_along_a_slope():
+    """From rest above it: as it flies, however fast, its friction has nothing to do."""
+    slope, time = -0.5, 0.45
+    with Running("OnPlane", {"slope": slope, "turned": 1, "az": 1.1}) as instance:
+        instance.run(time, 0.1)
+        fall = G * time**2 / 2
+        assert instance.get("ax", "az") == pytest.approx([math.sin(slope) * fall, 1.1 - math.cos(slope) * fall], rel=1e-12)
+
+
 def test_box_that_slides_and_stops():
     """Flat, after v^2/(2 mu g), under the forces of corners that the moment of the friction presses down; at rest these share the weight."""
     m, mu, speed, sizes = 2.0, 0.3, np.array([1.0, 0.5]), np.array([0.4, 0.6, 0.2])

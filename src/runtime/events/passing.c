@@ -3,6 +3,8 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -207,6 +209,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
                     time - (step->start + progress->last) <= crowding_share * fabs(time);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->crowded = is_crowded ? progress->crowded + 1 : 0;
+  if (getenv("DBG")) { fprintf(stderr, "EV t=%.17g ind=%zu atzero=%d gathered=%d crowded=%d modes", time, indicator, instance->was_at_zero, progress->gathered, progress->crowded); for (size_t k = 0; k < lagrangian.switches->mode_count; k++) fprintf(stderr, " %.6g", instance->parameter[lagrangian.parameter_count - lagrangian.switches->mode_count + k]); fprintf(stderr, "\n"); }
   progress->distance = since_last;
   progress->last = time - step->start;
   progress->count++;
@@ -316,4 +319,17 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
   log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of %s%s",
               instance->situation->last_step.end, progress->count, name,
               is_branch ? " as where the motion follows a switch by going back and forth" : "");
+}
+
+bool events_explain_stop(struct Instance *instance, double time) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
+  struct Point point = solver_point(instance, time, instance->state);
+  /* Beside a jam forces may be too large to be told: without any. */
+  memset(settlement.acceleration, 0,
+         (lagrangian.coordinate_count + lagrangian.constraints.count) * sizeof *settlement.acceleration);
+  memset(settlement.noise, 0, settlement_value_count(lagrangian.switches) * sizeof *settlement.noise);
+  lagrangian.switches->switching_values(&point, settlement.acceleration, settlement.value);
+  return laws->explain(&settlement);
 }
