@@ -9,6 +9,7 @@
 #define SERIES_H
 
 #include <math.h>
+#include <stddef.h>
 
 #include "real.h"
 
@@ -222,6 +223,21 @@ static SERIES_NOT_INLINE double series_middle(int k, const double *a, const doub
 #define SERIES_MIDDLE_OF_PAIRS(i, a, from, b)                                                                          \
   m[i] = pair_total(pairs##i) + ((a)[from] * (b)[k - 1] + (a)[(from) + k - 2] * (b)[1]);
 #define SERIES_TERM_WITHOUT_NEIGHBOUR(i, a, from, b) m[i] += (a)[(from) + k - 3] * (b)[2];
+
+/* The same for so many products that the code of each would leave the processor's caches: from a list, by fours. */
+struct SeriesFactors {
+  const double *a, *b;
+};
+#define SERIES_FACTORS(i, a, from, b) {(a) + (from), (b)},
+#define SERIES_NEXT(EACH) EACH(0, next[0].a, 0, next[0].b)
+#define SERIES_NEXT_FOUR(EACH)                                                                                         \
+  SERIES_NEXT(EACH)                                                                                                    \
+  EACH(1, next[1].a, 0, next[1].b) EACH(2, next[2].a, 0, next[2].b) EACH(3, next[3].a, 0, next[3].b)
+
+static SERIES_NOT_INLINE void series_middles(int k, size_t count, const struct SeriesFactors *next, double *m) {
+  for (; count >= 4; count -= 4, next += 4, m += 4) SERIES_MIDDLES(SERIES_NEXT_FOUR);
+  for (; count > 0; count--, next++, m++) SERIES_MIDDLES(SERIES_NEXT);
+}
 
 /*
  * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has

@@ -24,6 +24,15 @@ LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
 #define SERIES_MIDDLES(PRODUCTS) PRODUCTS(SERIES_MIDDLE)
 #define SERIES_MIDDLE(i, a, from, b) m[i] = series_dot(k - 1, (a) + (from), (b) + k - 1);
 
+struct SeriesFactors {
+  const Lanes *a, *b;
+};
+#define SERIES_FACTORS(i, a, from, b) {(a) + (from), (b)},
+
+LANES_INLINE void series_middles(int k, size_t count, const struct SeriesFactors *factors, Lanes *m) {
+  for (size_t i = 0; i < count; i++) m[i] = series_dot(k - 1, factors[i].a, factors[i].b + k - 1);
+}
+
 /*
  * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has
  * the middle terms.

@@ -10,8 +10,12 @@ static void declare_time(FILE *file, bool is_used) {
 }
 
 static void write_orders(FILE *file, const struct Program *program, size_t products) {
+  bool are_listed = products > 0 && program->products == PRODUCTS_LISTED;
+  if (are_listed) fputs("  const struct SeriesFactors factors[] = {SERIES_PRODUCTS(SERIES_FACTORS)};\n", file);
   fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n", file);
-  if (products > 0) fprintf(file, "    Real m[%zu];\n    SERIES_MIDDLES(SERIES_PRODUCTS);\n", products);
+  if (products > 0) fprintf(file, "    Real m[%zu];\n", products);
+  if (are_listed) fprintf(file, "    series_middles(k, %zu, factors, m);\n", products);
+  else if (products > 0) fputs("    SERIES_MIDDLES(SERIES_PRODUCTS);\n", file);
   if (products > 0) write_statements_around(file, program, program->series->order);
   else write_statements(file, program, program->series->order, NULL);
   fputs("  }\n", file);
@@ -19,7 +23,7 @@ static void write_orders(FILE *file, const struct Program *program, size_t produ
 
 static void write_series(FILE *file, const struct Program *program) {
   const struct Routine *order = program->series->order;
-  size_t products = program->products_begin_together ? write_products(file, program, order) : 0;
+  size_t products = program->products != PRODUCTS_APART ? write_products(file, program, order) : 0;
   write_head(file, FUNCTION_SERIES, "", order->operation_count);
   declare_time(file, routine_uses(order, SPACE_TIME_ROW));
   statements_declare_point(file, program, order);
