@@ -27,7 +27,7 @@ LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
 struct SeriesFactors {
   const Lanes *a, *b;
 };
-#define SERIES_FACTORS(i, a, from, b) {(a) + (from), (b)},
+#define SERIES_FACTORS(a, from, b) {(a) + (from), (b)},
 
 LANES_INLINE void series_middles(int k, size_t count, const struct SeriesFactors *factors, Lanes *m) {
   for (size_t i = 0; i < count; i++) m[i] = series_dot(k - 1, factors[i].a, factors[i].b + k - 1);
