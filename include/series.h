@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "real.h"
+#include "reciprocals.h"
 
 enum { SERIES_LENGTH = 24 };
 
@@ -220,7 +221,7 @@ static inline double series_power(int k, double n, const double *a, const double
 
 /* c' = a' b: c_k, with the series of a' */
 static SERIES_INLINE double series_integral_around(double middle, int k, const double *rate, const double *b) {
-  return (middle + rate[k - 1] * b[0]) * (1.0 / k);
+  return (middle + rate[k - 1] * b[0]) * reciprocal[k];
 }
 
 static SERIES_INLINE double series_integral(int k, const double *rate, const double *b) {

@@ -3,6 +3,7 @@
 #define SERIES_H
 
 #include "lane_real.h"
+#include "reciprocals.h"
 
 enum { SERIES_LENGTH = 24 };
 
@@ -85,7 +86,7 @@ LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
 
 /* c' = a' b: c_k, with the series of a' */
 LANES_INLINE Lanes series_integral_around(Lanes middle, int k, const Lanes *rate, const Lanes *b) {
-  return (middle + rate[k - 1] * b[0]) * (1.0 / k);
+  return (middle + rate[k - 1] * b[0]) * reciprocal[k];
 }
 
 LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
@@ -96,7 +97,7 @@ LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
 LANES_INLINE Lanes lane_series_ratio_integral(int k, Lanes top, const Lanes *b, const Lanes *c) {
   Lanes sum = {0};
   for (int j = 1; j < k; j++) sum += (double)j * c[j] * b[k - j];
-  return (top - sum * (1.0 / k)) / b[0];
+  return (top - sum * reciprocal[k]) / b[0];
 }
 #define series_ratio_integral(k, top, b, c) lane_series_ratio_integral(k, LANES_OF(top), b, c)
 
@@ -116,7 +117,7 @@ LANES_INLINE Lanes series_absolute(int k, const Lanes *a) {
 LANES_INLINE Lanes series_area(int k, const Lanes *y, const Lanes *x) {
   Lanes sum = {0};
   for (int j = 1; j <= k; j++) sum += (double)j * (y[j] * x[k - j] - x[j] * y[k - j]);
-  return sum * (1.0 / k);
+  return sum * reciprocal[k];
 }
 
 /* The coefficient k of atan2(y, x), with the series of x^2 + y^2 in b */

@@ -165,8 +165,8 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_RATE: EACH(2, (&R)[-1] = k * A);
     case SERIES_INTEGRAL: EACH(3, R = series_integral(k, ROW_A, ROW_B));
     case SERIES_NEGATIVE_INTEGRAL: EACH(3, R = -series_integral(k, ROW_A, ROW_B));
-    case SERIES_TURN: EACH(3, R = *ROW_A * (&B)[-1] * (1.0 / k));
-    case SERIES_NEGATIVE_TURN: EACH(3, R = -(*ROW_A * (&B)[-1]) * (1.0 / k));
+    case SERIES_TURN: EACH(3, R = *ROW_A * (&B)[-1] * reciprocal[k]);
+    case SERIES_NEGATIVE_TURN: EACH(3, R = -(*ROW_A * (&B)[-1]) * reciprocal[k]);
     case SERIES_RATIO_INTEGRAL: EACH(3, R = series_ratio_integral(k, A, ROW_B, ROW_R));
     case SERIES_AREA: EACH(3, R = series_area(k, ROW_A, ROW_B));
     case SERIES_ANGLE: EACH(4, R = series_angle(k, ROW_A, ROW_B, ROW_C, ROW_R));
@@ -175,7 +175,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_SMALLER: EACH(4, R = WHERE(series_sign(k, ROW_A) < 0.0, B, C));
     case SERIES_REST: EACH(4, R = A - series_rest(k, ROW_B, ROW_C));
     case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
-    case SERIES_STATE: EACH(2, (&R)[1] = A * (1.0 / (k + 1)));
+    case SERIES_STATE: EACH(2, (&R)[1] = A * reciprocal[k + 1]);
     case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
     default: return; /* lagc writes no other */
     }
