@@ -144,9 +144,11 @@ void write_statements_around(FILE *file, const struct Program *program, const st
   size_t products = 0;
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
+    const char *opening = "(";
+    if (is_product(instruction) && program->products == PRODUCTS_LISTED) opening = "_around(*next++, ";
+    else if (is_product(instruction)) opening = format_text("_around(m[%zu], ", products++);
     fputs("    ", file);
-    bool has_middle = is_product(instruction);
-    write_statement(file, program, instruction, NULL, has_middle ? format_text("_around(m[%zu], ", products++) : "(");
+    write_statement(file, program, instruction, NULL, opening);
     fputs(";\n", file);
   }
 }
@@ -162,5 +164,20 @@ size_t write_products(FILE *file, const struct Program *program, const struct Ro
     fputs(")", file);
   }
   if (products > 0) fputs("\n\n", file);
+  return products;
+}
+
+size_t write_factors(FILE *file, const struct Program *program, const struct Routine *routine) {
+  size_t products = 0;
+  fputs("  const struct SeriesFactors factors[] = {\n", file);
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (!is_product(instruction)) continue;
+    fputs("      SERIES_FACTORS(", file);
+    write_text(file, program, instruction, opcode_factors(instruction->opcode), NULL, "(");
+    fputs(")\n", file);
+    products++;
+  }
+  fputs("  };\n", file);
   return products;
 }

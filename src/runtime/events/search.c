@@ -46,24 +46,33 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
-/* The values at a time; NAN where there are none. state: there, NULL where it was not looked at yet. */
-static void sample(struct Search *search, double time, const double *state, double *values) {
+/* The values at a time; NAN where there are none. */
+static void sample(struct Search *search, double time, double *values) {
   size_t count = indicator_count(lagrangian.switches);
-  bool known = state != NULL || lagrangian.solver->interpolate(search->instance, time, search->state);
+  bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
   if (search->projects) known = known && solver_project(search->instance, time, search->state) == NULL;
-  known = known && indicators_at(search->instance, time, state != NULL ? state : search->state, values);
+  known = known && indicators_at(search->instance, time, search->state, values);
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
+/* Those at the nodes of a window; states: there, NULL where they are not all known. */
+static void sample_window(struct Search *search, double from, double to, const double *states) {
+  double times[CHEBYSHEV_NODES];
+  size_t count = indicator_count(lagrangian.switches);
+  for (int k = 0; k < CHEBYSHEV_NODES; k++) times[k] = chebyshev_time(from, to, k);
+  if (states != NULL) indicators_at_times(search->instance, times, CHEBYSHEV_NODES, states, search->samples);
+  for (size_t k = 0; k < CHEBYSHEV_NODES && states == NULL; k++) sample(search, times[k], search->samples + k * count);
+}
+
 static double value_at(struct Search *search, size_t indicator, double time) {
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   return search->values[indicator];
 }
 
 static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double *exact = search->exact;
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   indicator_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
   for (size_t i = 0; i < count; i++)
     if (indicator_is_force(search->instance, i)) search->noise[i] = 0.0;
@@ -247,7 +256,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
  */
 static size_t find_passed(struct Search *search, double time) {
   size_t count = lagrangian.switches->branch_count;
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   for (size_t i = 0; i < count; i++)
     if (indicator_sign(search->instance, i) * search->values[i] < 0.0) return i;
   return count;
@@ -300,9 +309,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   struct Search search = search_of(instance);
   search.windows = windows;
   bool knows_noise = false;
-  for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
-    sample(&search, chebyshev_time(from, to, (int)k), samples != NULL ? samples + k * lagrangian.state_count : NULL,
-           search.samples + k * count);
+  sample_window(&search, from, to, samples);
   *time = INFINITY;
   bool leaves = false; /* it is a zero at which the indicator rested */
   for (size_t i = 0; i < count; i++) {
