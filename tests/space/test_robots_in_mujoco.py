@@ -137,6 +137,30 @@ MESHED = """\
 """
 
 
+# Tendons of each kind, which follow one another or stay.
+LINKED = """\
+<mujoco model="linked">
+  <compiler angle="radian"/>
+  <worldbody>
+    <site name="post" pos="0.1 0.5 1"/>
+    <body name="a" pos="0 0 0.2"><joint name="a1" axis="0 1 0" ref="0.2"/><geom type="box" size="0.1 0.2 0.3" pos="0.3 0 0"/><site name="sa" pos="0.1 0.2 0.3"/><site name="sb" pos="0.3 0.2 0.3"/>
+      <body name="b" pos="0.4 0 0"><joint name="b1" axis="0 1 1"/><joint name="b2" type="slide" axis="1 0 0.2" ref="0.1"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.1 0.3"/><site name="sc" pos="0.1 -0.2 0.4"/>
+        <body name="c" pos="0 0 0.4"><joint name="c1" axis="1 0 1"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.2 0"/><site name="sd" pos="0.3 0.1 0.2"/></body>
+      </body>
+    </body>
+    <body name="d" pos="0.3 0.2 0.5"><joint name="d1" type="slide" axis="1 1 0"/><joint name="d2" axis="0 0 1"/><geom type="box" size="0.2 0.1 0.3"/><site name="se" pos="0 0.1 0"/></body>
+  </worldbody>
+  <tendon>
+    <spatial name="t1"><site site="post"/><site site="sa"/><site site="sb"/><site site="sc"/></spatial>
+    <spatial name="t2" stiffness="30" damping="0.3" springlength="0.2 0.9"><site site="sd"/><site site="se"/></spatial>
+    <fixed name="t3"><joint joint="a1" coef="0.5"/><joint joint="b1" coef="-1.2"/></fixed>
+    <fixed name="t4"><joint joint="d1" coef="0.5"/><joint joint="b2" coef="-1.2"/></fixed>
+  </tendon>
+  <equality><tendon tendon1="t3" tendon2="t1" polycoef="0.1 0.7 0.3"/><tendon name="e" tendon1="t2" tendon2="t4" polycoef="0 0.7 0 0.2 -0.1"/></equality>
+</mujoco>
+"""
+
+
 # Between two lengths the spring of its tendon is slack.
 SLACK = """\
 <mujoco model="slack">
@@ -155,7 +179,7 @@ class Generator:
     """Random files: trees of at most five bodies."""
 
     def __init__(self, seed):
-        self.random, self.bodies, self.joints, self.tendons, self.singles = np.random.default_rng(seed), 0, 0, 0, []
+        self.random, self.bodies, self.joints, self.tendons, self.singles, self.sites = np.random.default_rng(seed), 0, 0, 0, [], []
 
     def numbers(self, count, low=-1.0, high=1.0):
         return " ".join(f"{x:.6g}" for x in self.random.uniform(low, high, count))
@@ -206,6 +230,7 @@ class Generator:
             given = f'stiffness="0" damping="{self.numbers(1, 0, 2)}" armature="{self.choice("0", self.numbers(1, 0, 0.5))}"'
             inside.append(f'<joint name="ball{self.joints}" type="ball" pos="{self.numbers(3)}" {given}/>')
         inside += [self.geom() for _ in range(self.random.integers(1, 3))]
+        inside.append(self.site())
         if self.random.random() < 0.4:
             inside.append(self.inertial())
         while self.bodies < 5 and self.random.random() < 0.6:
@@ -219,6 +244,16 @@ class Generator:
         law = self.choice("motor", f'position kp="{self.numbers(1, 1, 9)}" kv="{self.numbers(1, 0, 2)}"', f'velocity kv="{self.numbers(1, 0, 2)}"',
                           f'general gainprm="{self.numbers(1)}" biastype="affine" biasprm="{self.numbers(3)}"')  # fmt: skip
         return f"<{law} {transmission} {gear} {limits}/>"
+
+    def site(self):
+        self.sites.append(f"s{len(self.sites) + 1}")
+        return f'<site name="{self.sites[-1]}" pos="{self.numbers(3)}"/>'
+
+    def path(self):
+        sites = self.random.permutation(self.sites)[: self.random.integers(2, 5)]
+        given = "".join(f' {way}="{self.numbers(1, 0, high)}"' for way, high in {"stiffness": 9, "damping": 2}.items() if self.random.random() < 0.6)
+        self.tendons += 1
+        return f'<spatial name="t{self.tendons}" springlength="{self.numbers(1, 0, 2)}"{given}>' + "".join(f'<site site="{site}"/>' for site in sites) + "</spatial>"
 
     def tendon(self):
         joints = self.random.permutation(self.singles)[: self.random.integers(1, 4)]
@@ -234,7 +269,8 @@ class Generator:
     def text(self):
         sequence = "".join(self.choice(*"xyzXYZ") for _ in range(3))
         bodies = "".join(self.body() for _ in range(self.random.integers(1, 3)))
-        tendons = "".join(self.tendon() for _ in range(self.random.integers(0, 4)) if self.singles)
+        post = self.site()
+        tendons = "".join(self.tendon() for _ in range(self.random.integers(0, 4)) if self.singles) + "".join(self.path() for _ in range(self.random.integers(0, 3)))
         transmissions = [f'joint="{joint}"' for joint in self.singles] + [f'tendon="t{i + 1}" name="a{i + 1}"' for i in range(self.tendons)]
         actuators = "".join(self.actuator(transmission) for transmission in transmissions if self.random.random() < 0.7)
         return (
@@ -243,7 +279,7 @@ class Generator:
             f'<default><joint damping="{self.numbers(1, 0, 1)}"/><geom density="700"/>'
             f'<default class="c1"><joint armature="{self.numbers(1, 0, 1)}"/><default class="c2"><joint stiffness="2"/><geom density="90"/></default>'
             f'<tendon damping="{self.numbers(1, 0, 1)}"/></default><tendon stiffness="{self.numbers(1, 0, 2)}"/>'
-            f"</default><worldbody>{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
+            f"</default><worldbody>{post}{bodies}</worldbody><tendon>{tendons}</tendon><actuator>{actuators}</actuator></mujoco>"
         )
 
 
@@ -256,7 +292,8 @@ def robots(tmp_path_factory):
     files = FILES | {"Coupled": COUPLED} | {name: LOOPED.format(text) for name, text in EQUALITIES.items()}
     for name, text in files.items():
         (folder / f"{name}.xml").write_text(text)
-    files |= {"Meshed": MESHED, "Slack": SLACK}
+    files |= {"Meshed": MESHED, "Slack": SLACK, "Linked": LINKED}
+    (folder / "Linked.xml").write_text(LINKED)
     (folder / "Slack.xml").write_text(SLACK)
     (folder / "Meshed.xml").write_text(MESHED)
     (folder / "Started.xml").write_text(LOOPED.format(""))
@@ -410,6 +447,54 @@ def test_joints_that_follow_others(open_fmu):
         instance.fmu.getDerivatives(derivatives, 4)
         found = [derivatives[names.index(f"r.{name}_velocity")] for name in ("lead", "end")]
         assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))
+
+
+class Links:
+    """The constraints of a model's linked tendons, and their Jacobian, from MuJoCo's lengths: its own are soft."""
+
+    def __init__(self, reference):
+        self.model, self.data = reference.model, reference.data
+        self.start = self.lengths(self.model.qpos0)[0]
+
+    def lengths(self, position):
+        model, data = self.model, self.data
+        data.qpos = position
+        mujoco.mj_forward(model, data)
+        rows = np.zeros((model.ntendon, model.nv))
+        for row, first, count in zip(rows, model.ten_J_rowadr, model.ten_J_rownnz):
+            row[model.ten_J_colind[first : first + count]] = data.ten_J[first : first + count]
+        return data.ten_length.copy(), rows
+
+    def evaluate(self, position):
+        lengths, rows = self.lengths(position)
+        powers = [np.polynomial.Polynomial(data[:5]) for data in self.model.eq_data]
+        pairs = list(zip(self.model.eq_obj1id, self.model.eq_obj2id, powers))
+        more = lengths - self.start
+        return np.array([more[i] - power(more[j]) for i, j, power in pairs]), np.array([rows[i] - power.deriv()(more[j]) * rows[j] for i, j, power in pairs])
+
+
+def test_tendons_that_follow_others(open_fmu):
+    reference, random = Reference(LINKED), np.random.default_rng(1)
+    links, model, data = Links(reference), reference.model, reference.data
+    names = reference.names()
+    names += [f"{name}_velocity" for name in names]
+    for _ in range(STATES):
+        reference.draw(random)
+        instance = open_fmu("Linked").initialize(dict(zip(names, [*(0.4 * data.qpos), *data.qvel])))
+        position, velocity = np.split(np.array(instance.get(*names)), 2)
+        drift = (links.evaluate(position + 1e-5 * velocity)[1] - links.evaluate(position - 1e-5 * velocity)[1]) @ velocity / 2e-5
+        lack, jacobian = links.evaluate(position)
+        assert lack == pytest.approx(0, abs=1e-13) and jacobian @ velocity == pytest.approx(0, abs=1e-12)
+        data.qvel = velocity
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((model.nv, model.nv))
+        for row, unit in zip(mass, np.eye(model.nv)):
+            mujoco.mj_mulM(model, data, row, unit)
+        forces = data.qfrc_passive - data.qfrc_bias
+        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((len(lack), len(lack)))]])
+        expected = np.linalg.solve(matrix, [*forces, *-drift])[: model.nv]
+        found = instance.get(*(f"der({name})" for name in names[model.nv :]))
+        assert np.max(np.abs(found - expected)) < 1e-8 * max(1, np.max(np.abs(expected)))
 
 
 class Loops:

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "model/kinematics.h"
 #include "read/robots/robot_tree.h"
+#include "read/robots/robot_transmission.h"
 #include "read/robots/urdf.h"
 
 /*
@@ -29,6 +30,11 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
     const struct Joint *joint = robot->joints[i];
     slides |= joint->friction > 0 && joint_slides(joint);
     turns |= joint->friction > 0 && !joint_slides(joint);
+  }
+  for (size_t i = 0; i < robot->tendon_count; i++) {
+    bool is_length = transmission_slides(&robot->tendons[i].transmission);
+    slides |= robot->tendons[i].friction > 0 && is_length;
+    turns |= robot->tendons[i].friction > 0 && !is_length;
   }
   if (turns) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
   if (slides) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));

@@ -10,6 +10,7 @@
 #include "read/robots/robot_elements.h"
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_shapes.h"
+#include "read/robots/robot_tendon.h"
 #include "read/robots/robot_transmission.h"
 #include "read/robots/robot_tree.h"
 #include "read/robots/urdf.h"
@@ -110,7 +111,9 @@ static bool has_losses(const struct Robot *robot, const struct RobotOptions *opt
         (robot->joints[i]->friction > 0 && !options->sticks))
       return true;
   for (size_t i = 0; i < robot->tendon_count; i++)
-    if (robot->tendons[i].damping > 0 || robot->tendons[i].stiffness > 0) return true;
+    if (robot->tendons[i].damping > 0 || robot->tendons[i].stiffness > 0 ||
+        (robot->tendons[i].friction > 0 && !options->sticks))
+      return true;
   for (size_t i = 0; i < robot->actuator_count; i++)
     if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
   return false;
@@ -152,6 +155,10 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
     write_actuator(writer, &robot->actuators[i]);
   }
   for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
+  for (size_t i = 0; i < robot->tendon_link_count; i++) {
+    writer->line = robot->tendon_links[i].line;
+    write_tendon_link(writer, robot, &robot->tendon_links[i]);
+  }
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* Nothing else in a robot can be stiff. */

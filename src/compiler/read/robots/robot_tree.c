@@ -249,6 +249,10 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
 static void connect_transmission(struct Connection *connection, struct Transmission *transmission, const char *kind,
                                  const char *name, const char *symbol, long line) {
   const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);
+  for (size_t i = 0; i < transmission->site_count; i++) {
+    const struct Entry *entry = find(connection, &connection->links, transmission->site_names[i], what, line);
+    if (entry != NULL) transmission->sites[i] = connection->robot->links[entry->index];
+  }
   for (size_t i = 0; i < transmission->count; i++) {
     struct Pull *pull = &transmission->pulls[i], *first = transmission->pulls;
     const struct Entry *entry = find(connection, &connection->joints, pull->joint_name, what, line);
@@ -273,7 +277,8 @@ static void connect_transmissions(struct Connection *connection) {
   }
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
-    if (actuator->transmission.pulls->joint != NULL) continue; /* of a tendon, which shares its own */
+    if (actuator->transmission.site_count > 0 || actuator->transmission.pulls->joint != NULL)
+      continue; /* of a tendon */
     connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);
   }
 }

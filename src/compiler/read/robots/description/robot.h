@@ -74,20 +74,34 @@ struct Pull {
   char *symbol; /* of the parameter that has the coefficient, where this has a unit; else NULL */
 };
 
-/* Its length is the sum of all coefficients times positions. */
+/* Its length is the sum of all coefficients times positions; or, through space, that of a line from site to site. */
 struct Transmission {
   struct Pull *pulls;
   size_t count;
+  char **site_names;
+  struct Link **sites; /* as many, found by robot_connect() */
+  size_t site_count;   /* 0 unless it is through space */
 };
 
-/* A spring, a damper, an inertia and limits along a transmission. */
+/* A spring, a damper, friction, an inertia and limits along a transmission. */
 struct Tendon {
   char *name, *symbol; /* this set by robot_connect() */
   long line;
   struct Transmission transmission;
   double lower, upper; /* NAN: no limit */
-  double stiffness, damping, armature;
+  double stiffness, damping, friction, armature;
   double relaxed[2]; /* the lengths between which its spring is relaxed */
+  double start;      /* its length where all joints are as placed */
+};
+
+enum { TENDON_POWERS = 5 };
+
+/* One tendon is longer than at its start by a polynomial of what another is longer by. */
+struct TendonLink {
+  char *name;
+  long line;
+  size_t tendons[2];                 /* among the robot's */
+  double coefficient[TENDON_POWERS]; /* of the powers from 0 on; 0 but for the first where there is no other */
 };
 
 /* It pushes along a transmission with gear*(gain*control + bias[0] + bias[1]*gear*length + bias[2]*gear*rate). */
@@ -129,7 +143,8 @@ struct Robot {
   struct Tendon *tendons;
   struct Actuator *actuators;
   struct RobotLoop *loops;
-  size_t link_count, joint_count, tendon_count, actuator_count, loop_count;
+  struct TendonLink *tendon_links;
+  size_t link_count, joint_count, tendon_count, actuator_count, loop_count, tendon_link_count;
   double gravity[3];        /* m/s2 */
   struct Placement *ground; /* of the plane on which it stands, which points along its z; NULL: z = 0 */
   struct Link *root;

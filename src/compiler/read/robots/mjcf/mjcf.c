@@ -262,7 +262,7 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Pull *pull = allocate(1, sizeof *pull);
   *pull = (struct Pull){.coefficient = 1};
   if (name == NULL) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
-  return (struct Transmission){pull, name == NULL};
+  return (struct Transmission){.pulls = pull, .count = name == NULL};
 }
 
 static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {

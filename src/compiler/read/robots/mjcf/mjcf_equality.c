@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/robots/mjcf/mjcf_tendons.h"
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
@@ -96,9 +97,28 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
       .name = name, .line = xmlGetLineNo(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
 }
 
+/* One tendon is as long as a polynomial of another says, or as at the start and so much more. */
+static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
+  struct Robot *robot = mjcf->file.robot;
+  struct TendonLink link = {.name = attribute(node, "name"), .line = xmlGetLineNo(node), .coefficient = {0, 1}};
+  if (link.name == NULL) link.name = format_text("tendons%zu", robot->tendon_link_count + 1);
+  mjcf_numbers(mjcf, node, "polycoef", 1, TENDON_POWERS, link.coefficient);
+  bool has_other = has_attribute(node, "tendon2");
+  const char *names[2] = {required_attribute(&mjcf->file, node, "tendon1"), attribute(node, "tendon2")};
+  for (int i = 0; i < (has_other ? 2 : 1); i++) {
+    const struct Tendon *tendon = mjcf_tendon(mjcf, node, names[i]);
+    if (tendon == NULL) return;
+    link.tendons[i] = (size_t)(tendon - robot->tendons);
+  }
+  for (int power = 1; power < TENDON_POWERS && !has_other; power++) link.coefficient[power] = 0;
+  robot->tendon_links = make_room(robot->tendon_links, robot->tendon_link_count, sizeof *robot->tendon_links);
+  robot->tendon_links[robot->tendon_link_count++] = link;
+}
+
 void mjcf_read_equality(struct Mjcf *mjcf, xmlNodePtr node) {
   if (mjcf_is(mjcf, node, "active", "false")) return;
   if (is_element(node, "joint")) read_joints(mjcf, node);
   else if (is_element(node, "connect") || is_element(node, "weld")) read_loop(mjcf, node);
-  else mjcf_report_unknown(mjcf, node, "a <joint>, <connect> or <weld>");
+  else if (is_element(node, "tendon")) read_tendons(mjcf, node);
+  else mjcf_report_unknown(mjcf, node, "a <joint>, <tendon>, <connect> or <weld>");
 }

@@ -1,5 +1,6 @@
 #include "read/robots/mjcf/mjcf_tendons.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -22,46 +23,100 @@ static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon
                  "the tendon '%s' has no joint; expected <joint joint=\"...\" coef=\"...\"/> in it", tendon->name);
 }
 
-/* Without lengths of its own it is relaxed where the springs of its joints are. */
+/* Lines from site to site. */
+static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
+  struct Transmission *transmission = &tendon->transmission;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (child->type != XML_ELEMENT_NODE) continue;
+    if (!is_element(child, "site")) {
+      mjcf_report_unknown(mjcf, child, "straight lines from <site> to <site>, with one where the tendon turns");
+      continue;
+    }
+    transmission->site_names =
+        make_room(transmission->site_names, transmission->site_count, sizeof *transmission->site_names);
+    transmission->site_names[transmission->site_count++] = required_attribute(&mjcf->file, child, "site");
+  }
+  transmission->sites = allocate(transmission->site_count, sizeof(struct Link *));
+  if (transmission->site_count < 2)
+    report_error(mjcf->file.diagnostics, tendon->line,
+                 "the tendon '%s' has fewer than two sites; expected <site site=\"...\"/> for each of its ends",
+                 tendon->name);
+}
+
+/* Where all joints are as placed; 0 where a joint or site is missing, which is reported elsewhere. */
+static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
+  double length = 0;
+  for (size_t i = 0; i < transmission->count; i++) {
+    const struct Joint *joint = mjcf_joint(mjcf, transmission->pulls[i].joint_name);
+    if (joint != NULL) length += transmission->pulls[i].coefficient * joint->start.position[0];
+  }
+  for (size_t i = 1; i < transmission->site_count; i++) {
+    const struct Placement *from = mjcf_place_of(mjcf, transmission->site_names[i - 1]),
+                           *to = mjcf_place_of(mjcf, transmission->site_names[i]);
+    if (from == NULL || to == NULL) continue;
+    const double *a = from->translation, *b = to->translation;
+    length += sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+  }
+  return length;
+}
+
+/* Where the springs of all joints are relaxed; of tendons through space where these are as placed. */
+static double relaxed_length(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
+  const struct Robot *robot = mjcf->file.robot;
+  double length = 0;
+  for (size_t i = 0; i < tendon->transmission.count; i++) {
+    const struct Pull *pull = &tendon->transmission.pulls[i];
+    const struct Joint *joint = mjcf_joint(mjcf, pull->joint_name);
+    if (joint != NULL) length += pull->coefficient * joint->rest;
+  }
+  if (tendon->transmission.site_count == 0) return length;
+  bool is_needed = mjcf_number(mjcf, node, "stiffness", 0) != 0;
+  for (size_t i = 0; i < robot->joint_count && is_needed; i++) {
+    const struct Joint *joint = robot->joints[i];
+    bool is_single = joint->type == REVOLUTE || joint->type == PRISMATIC;
+    if (!is_single || joint->rest == joint->start.position[0]) continue;
+    report_error(mjcf->file.diagnostics, tendon->line,
+                 "the spring of the tendon '%s' is relaxed where all joints are at their springref, which of '%s' is "
+                 "not its ref; expected springlength=\"...\"",
+                 tendon->name, joint->name);
+    is_needed = false;
+  }
+  return tendon->start;
+}
+
 static void read_relaxed(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
   double lengths[2] = {-1, -1};
   if (mjcf_numbers(mjcf, node, "springlength", 1, 2, lengths) == 1) lengths[1] = lengths[0];
-  if (lengths[0] == -1 && lengths[1] == -1) {
-    lengths[0] = 0;
-    for (size_t i = 0; i < tendon->transmission.count; i++) {
-      const struct Pull *pull = &tendon->transmission.pulls[i];
-      const struct Joint *joint = mjcf_joint(mjcf, pull->joint_name);
-      if (joint != NULL) lengths[0] += pull->coefficient * joint->rest;
-    }
-    lengths[1] = lengths[0];
-  }
+  if (lengths[0] == -1 && lengths[1] == -1) lengths[0] = lengths[1] = relaxed_length(mjcf, node, tendon);
   if (lengths[1] < lengths[0])
     report_error(mjcf->file.diagnostics, tendon->line,
-                 "springlength of <fixed> is from %g to %g; expected the lower one first", lengths[0], lengths[1]);
+                 "springlength of <%s> is from %g to %g; expected the lower one first", (const char *)node->name,
+                 lengths[0], lengths[1]);
   memcpy(tendon->relaxed, lengths, sizeof lengths);
 }
 
 void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[] = {"frictionloss", "actuatorfrcrange"};
   struct Robot *robot = mjcf->file.robot;
-  if (!is_element(node, "fixed")) {
-    mjcf_report_unknown(
-        mjcf, node,
-        "a <fixed> one, or a <spring> or a <constraint> of a distance in a <system> that includes the robot");
+  bool is_spatial = is_element(node, "spatial");
+  if (!is_spatial && !is_element(node, "fixed")) {
+    mjcf_report_unknown(mjcf, node, "a <fixed> or <spatial> one");
     return;
   }
   struct Tendon tendon = {.name = attribute(node, "name"), .line = xmlGetLineNo(node)};
   double limits[2];
   if (tendon.name == NULL) tendon.name = format_text("tendon%zu", robot->tendon_count + 1);
-  read_pulls(mjcf, node, &tendon);
+  if (is_spatial) read_path(mjcf, node, &tendon);
+  else read_pulls(mjcf, node, &tendon);
+  tendon.start = start_length(mjcf, &tendon.transmission);
   read_relaxed(mjcf, node, &tendon);
   tendon.stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);
   tendon.damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  tendon.friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
   tendon.armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   tendon.lower = limits[0];
   tendon.upper = limits[1];
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  mjcf_refuse(mjcf, node, "actuatorfrcrange");
   robot->tendons = make_room(robot->tendons, robot->tendon_count, sizeof *robot->tendons);
   robot->tendons[robot->tendon_count++] = tendon;
 }

@@ -54,7 +54,8 @@ static xmlNodePtr of_class(xmlNodePtr class, const char *element, const char *na
 }
 
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  const char *element = is_element(node, "fixed") ? "tendon" : (const char *)node->name;
+  bool is_tendon = is_element(node, "fixed") || is_element(node, "spatial");
+  const char *element = is_tendon ? "tendon" : (const char *)node->name;
   if (has_attribute(node, name)) return attribute(node, name);
   for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class)) {
     xmlNodePtr found = of_class(class, element, name);

@@ -1,0 +1,101 @@
+#include "read/robots/robot_tendon.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "read/robots/robot_joint.h"
+#include "read/robots/robot_transmission.h"
+#include "read/robots/robot_tree.h"
+
+static void write_coefficients(const struct Writer *writer, const struct Tendon *tendon) {
+  for (size_t i = 0; i < tendon->transmission.count; i++) {
+    const struct Pull *pull = &tendon->transmission.pulls[i];
+    if (pull->symbol == NULL) continue;
+    write_parameter(writer, copy_text(pull->symbol), pull->coefficient, joint_slides(pull->joint) ? "rad/m" : "m/rad",
+                    format_text("by how much the tendon '%s' follows the joint '%s'", tendon->name, pull->joint->name));
+  }
+}
+
+static void write_spring(const struct Writer *writer, const struct Tendon *tendon, bool slides) {
+  const char *name = tendon->symbol, *lower = number(tendon->relaxed[0]), *upper = number(tendon->relaxed[1]);
+  write_parameter(writer, format_text("%s_stiffness", name), tendon->stiffness, slides ? "N/m" : "N.m/rad",
+                  format_text("stiffness of the tendon '%s'", tendon->name));
+  set_content(
+      write_element(writer, "potential"),
+      tendon->relaxed[0] == tendon->relaxed[1]
+          ? format_text("%s_stiffness*(%s - (%s))^2/2", name, name, lower)
+          : format_text("%s_stiffness*(max(0, %s - (%s))^2 + min(0, %s - (%s))^2)/2", name, name, upper, name, lower));
+}
+
+/* Dry where joints' friction is; else it creeps as theirs does. */
+static void write_friction(const struct Writer *writer, const struct Tendon *tendon, bool slides) {
+  const char *name = tendon->symbol, *creep = slides ? "creep_velocity" : "creep_rate";
+  char *rate = transmission_rate(&tendon->transmission);
+  write_parameter(writer, format_text("%s_friction", name), tendon->friction, slides ? "N" : "N.m",
+                  format_text("Coulomb friction of the tendon '%s'", tendon->name));
+  if (writer->options->sticks) {
+    xmlNodePtr friction = write_element(writer, "friction");
+    set_attribute(friction, "name", format_text("%s_sheath", name));
+    set_attribute(friction, "velocity", rate);
+    set_attribute(friction, "force", format_text("%s_friction", name));
+  } else
+    write_pull(writer, &tendon->transmission, number(1), format_text("%s_sheath", name),
+               format_text("-%s_friction*tanh(%s/%s)", name, rate, creep));
+}
+
+void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
+  const struct Transmission *transmission = &tendon->transmission;
+  const char *name = tendon->symbol, *unit = transmission_unit(transmission);
+  bool slides = transmission_slides(transmission);
+  write_coefficients(writer, tendon);
+  write_output(writer, copy_text(name), unit, transmission_length(transmission),
+               format_text("length of the tendon '%s'", tendon->name));
+  if (tendon->armature > 0) {
+    write_parameter(writer, format_text("%s_armature", name), tendon->armature, slides ? "kg" : "kg.m2",
+                    format_text("inertia along the tendon '%s'", tendon->name));
+    set_content(write_element(writer, "kinetic"),
+                format_text("%s_armature*%s^2/2", name, transmission_rate(transmission)));
+  }
+  if (tendon->stiffness > 0) write_spring(writer, tendon, slides);
+  if (tendon->damping > 0) {
+    write_parameter(writer, format_text("%s_damping", name), tendon->damping, slides ? "N.s/m" : "N.m.s/rad",
+                    format_text("viscous damping of the tendon '%s'", tendon->name));
+    set_content(write_element(writer, "dissipation"),
+                format_text("%s_damping*%s^2/2", name, transmission_rate(transmission)));
+  }
+  if (tendon->friction > 0) write_friction(writer, tendon, slides);
+  if (isnan(tendon->lower)) return;
+  const char *lower = number(tendon->lower), *upper = number(tendon->upper);
+  if (writer->options->has_stops) write_end_contacts(writer, name, unit, name, lower, upper);
+  else write_beyond(writer, name, unit, lower, upper);
+}
+
+/* By how much a tendon is longer than at its start. */
+static char *extension_of(const struct Tendon *tendon) {
+  return format_text("%s - (%s)", transmission_length(&tendon->transmission), number(tendon->start));
+}
+
+/* The coefficient of a power of the other's extension, which has a unit. */
+static char *coefficient_of(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link,
+                            int power) {
+  const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];
+  const char *unit = transmission_unit(&first->transmission), *other = transmission_unit(&second->transmission);
+  char *name = format_text("%s_by_power_%d", robot_symbol(link->name), power);
+  write_parameter(writer, name, link->coefficient[power],
+                  power > 1 ? format_text("%s/%s%d", unit, other, power) : format_text("%s/%s", unit, other),
+                  format_text("by how much '%s' follows '%s'", first->name, second->name));
+  return name;
+}
+
+void write_tendon_link(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link) {
+  const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];
+  char *lack = format_text("%s - (%s)", extension_of(first), number(link->coefficient[0]));
+  for (int power = 1; power < TENDON_POWERS; power++)
+    if (link->coefficient[power] != 0)
+      lack =
+          format_text("%s - %s*(%s)^%d", lack, coefficient_of(writer, robot, link, power), extension_of(second), power);
+  xmlNodePtr constraint = write_element(writer, "constraint");
+  set_attribute(constraint, "name", robot_symbol(link->name));
+  set_attribute(constraint, "unit", copy_text(transmission_unit(&first->transmission)));
+  set_content(constraint, lack);
+}
