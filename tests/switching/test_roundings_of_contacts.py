@@ -4,6 +4,7 @@ and dead centres."""
 import math
 
 import pytest
+from fmpy.fmi2 import FMU2Model
 
 from fmu import DISCARD, Instance, build_systems
 
@@ -114,3 +115,20 @@ def test_friction_at_a_dead_centre(name):
         instance.step(4)
         way = 0.9 - 0.3 * (1 + math.cos(start)) - (0.6 - 0.6 * math.cos(start) if start < 0 else 0.0)
         assert instance.get("phi") == pytest.approx(2 * math.pi - math.acos(way / 0.3 - 1), abs=1e-6)
+
+
+def test_friction_at_a_dead_centre_in_model_exchange():
+    """An importer comes a little past it."""
+    instance = Instance("Slider_taylor", kind=FMU2Model).initialize({"phi": 3.0, "x": 0.3 * math.cos(3), "w": 2.0})
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+    assert instance.get("der(w)") == pytest.approx(-0.3 * math.sin(3) / 0.2, rel=1e-9)
+    for name, value in {"phi": math.pi + 1e-11, "x": -0.3, "w": 2.0, "v": 0.6e-11}.items():
+        instance.set({name: value})
+    instance.fmu.enterEventMode()
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+    assert instance.get("w") == pytest.approx(2, rel=1e-9)
+    for name, value in {"phi": 3.5, "x": 0.3 * math.cos(3.5), "w": 2.0, "v": -0.6 * math.sin(3.5)}.items():
+        instance.set({name: value})
+    assert instance.get("der(w)") == pytest.approx(0.3 * math.sin(3.5) / 0.2, rel=1e-9)

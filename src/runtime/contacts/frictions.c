@@ -84,8 +84,9 @@ static double mode_without_hold(const struct FrictionState *state) {
        is_told = fabs(state->rate) > state->noise_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->noise_of_force;
   double most = goes_on ? state->noise_of_force : fabs(state->force);
-  bool passes = (goes_on && is_told) || (is_rounding && most > state->stiction);
-  return passes && state->is_hit && !state->is_first ? -state->began : 0.0;
+  if (state->is_first || state->began == 0.0) return 0.0;
+  if (goes_on && is_told) return state->rate > 0.0 ? 1.0 : -1.0;
+  return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
 /* Of one that sticks. */
