@@ -1,6 +1,10 @@
-"""Contacts where numbers are coarse: late times, long steps behind tiny bounces, gaps that are the difference of large terms, lift-off without speed."""
+"""Contacts and frictions where numbers are coarse: late times, long steps behind tiny bounces, gaps that are the difference of large terms, lift-off without speed,
+and dead centres."""
+
+import math
 
 import pytest
+from fmpy.fmi2 import FMU2Model
 
 from fmu import DISCARD, Instance, build_systems
 
@@ -17,9 +21,13 @@ PRESSED = """<system name="{name}"><coordinate name="x" velocity="v" start="1"/>
 GRAZED = """<system name="{name}"><coordinate name="x" velocity="v" velocityStart="5"/><coordinate name="y" velocity="w" velocityStart="2"/>
   <particle mass="2" x="x" y="y"/><gravity y="-10"/><contact name="ground" gap="y" restitution="0.7"/>
   <friction name="grip" coordinate="x" force="0.3*ground.force"/><solver method="{method}"/></system>"""
+CRANK = """<system name="{name}"><coordinate name="phi" velocity="w" velocityStart="3"/><kinetic>0.2*w^2/2</kinetic>
+  <friction name="rub" velocity="-0.3*sin(phi)*w" force="1"/><solver method="{method}"/></system>"""
+SLIDER = """<system name="{name}"><coordinate name="phi" velocity="w" velocityStart="3"/><coordinate name="x" velocity="v"/><kinetic>0.2*w^2/2</kinetic>
+  <constraint name="rod">x - 0.3*cos(phi)</constraint><friction name="rub" velocity="v" force="1"/><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
-    ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"])
+    ("Crank", CRANK, ["taylor", "radau", "bdf"]), ("Slider", SLIDER, ["taylor"]), ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"])
 ] for method in methods}  # fmt: skip
 
 
@@ -97,3 +105,30 @@ def test_a_solver_recommends_others_only():
     [text] = [text for _, _, text in instance.messages if "contact 'dome'" in text]
     assert '<solver method="taylor"/>' in text and "bdf" not in text
     assert instance.get("y") == pytest.approx((2 + 9 / 9.81) / 3, abs=3e-3)
+
+
+@pytest.mark.parametrize("name", ["Crank_taylor", "Crank_radau", "Crank_bdf", "Slider_taylor"])
+def test_friction_at_a_dead_centre(name):
+    """It has no lever there, and cannot stop a crank that turns on. The way of the slider is all the energy, 0.9 J, by the force of 1 N."""
+    for start in (1.0, -0.5):
+        instance = Instance(name).initialize({"phi": start} | ({"x": 0.3 * math.cos(start)} if "Slider" in name else {}))
+        instance.step(4)
+        way = 0.9 - 0.3 * (1 + math.cos(start)) - (0.6 - 0.6 * math.cos(start) if start < 0 else 0.0)
+        assert instance.get("phi") == pytest.approx(2 * math.pi - math.acos(way / 0.3 - 1), abs=1e-6)
+
+
+def test_friction_at_a_dead_centre_in_model_exchange():
+    """An importer comes a little past it."""
+    instance = Instance("Slider_taylor", kind=FMU2Model).initialize({"phi": 3.0, "x": 0.3 * math.cos(3), "w": 2.0})
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+    assert instance.get("der(w)") == pytest.approx(-0.3 * math.sin(3) / 0.2, rel=1e-9)
+    for name, value in {"phi": math.pi + 1e-11, "x": -0.3, "w": 2.0, "v": 0.6e-11}.items():
+        instance.set({name: value})
+    instance.fmu.enterEventMode()
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+    assert instance.get("w") == pytest.approx(2, rel=1e-9)
+    for name, value in {"phi": 3.5, "x": 0.3 * math.cos(3.5), "w": 2.0, "v": -0.6 * math.sin(3.5)}.items():
+        instance.set({name: value})
+    assert instance.get("der(w)") == pytest.approx(0.3 * math.sin(3.5) / 0.2, rel=1e-9)

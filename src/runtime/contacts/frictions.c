@@ -15,17 +15,24 @@
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
 
+/* In units of what rounding makes of it: a force below it is told by rounding alone. */
+static const double least_certainty = 4.0;
+
+/* Of the rate before, what is left of it where a friction holds a velocity. */
+static const double held_share = 1e-6;
+
 static const char neither[] = "a friction switches back and forth there without end";
 
 /* What decides on the mode of a friction. */
 struct FrictionState {
-  double mode, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
-  double noise, noise_of_rate, noise_of_force;  /* what rounding may make of them */
-  bool is_hit;                                  /* its zero was found, or its limit reached */
-  bool is_first;                                /* it has not switched in this settlement */
-  bool may_jump;                                /* velocities have jumped, or the simulation starts */
-  bool is_moving;                               /* by more than rounding */
-  bool has_no_force;                            /* as of mu = 0: on which side it would stick is rounding */
+  double mode, began, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
+  double noise, noise_of_rate, noise_of_force;         /* what rounding may make of them */
+  double largest_rate;                                 /* since the start of the event */
+  bool is_hit;                                         /* its zero was found, or its limit reached */
+  bool is_first;                                       /* it has not switched in this settlement */
+  bool may_jump;                                       /* velocities have jumped, or the simulation starts */
+  bool is_moving;                                      /* by more than rounding */
+  bool has_no_force;                                   /* as of mu = 0: on which side it would stick is rounding */
 };
 
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
@@ -34,11 +41,13 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
   size_t indicator = friction_indicator(settlement->switches, friction);
   const double *value = &settlement->value[place], *noise = &settlement->noise[place];
   struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
+                                .began = settlement->began[friction],
                                 .velocity = value[FRICTION_VELOCITY],
                                 .rate = value[FRICTION_RATE],
                                 .stiction = value[FRICTION_STICTION],
                                 .noise = noise[FRICTION_VELOCITY],
                                 .noise_of_rate = noise[FRICTION_RATE],
+                                .largest_rate = settlement->largest[place + FRICTION_RATE],
                                 .is_hit = is_hit(settlement, indicator),
                                 .is_first = settlement->flips[indicator] == 0.0,
                                 .may_jump = settlement->jumped || settlement->occasion == AT_START};
@@ -66,8 +75,24 @@ static double mode_without_force(const struct FrictionState *state) {
   return next < 0.0 ? -1.0 : 1.0;
 }
 
+/*
+ * Of one that passes through 0 where it has no hold of what moves, as that of a slider at the dead centre of its crank: no force
+ * stops it there, and one that would is rounding. 0 of others.
+ */
+static double mode_without_hold(const struct FrictionState *state) {
+  bool goes_on = fabs(state->rate) > held_share * state->largest_rate,
+       is_told = fabs(state->rate) > state->noise_of_rate;
+  bool is_rounding = fabs(state->force) <= least_certainty * state->noise_of_force;
+  double most = goes_on ? state->noise_of_force : fabs(state->force);
+  if (state->is_first || state->began == 0.0) return 0.0;
+  if (goes_on && is_told) return state->rate > 0.0 ? 1.0 : -1.0;
+  return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
+}
+
 /* Of one that sticks. */
 static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
+  double passing = mode_without_hold(state);
+  if (passing != 0.0) return passing;
   /* An importer comes past the limit: at the limit itself it sticks; so does what has just come to rest at it by rounding. */
   double limit = state->stiction + (state->is_hit && !state->is_first ? state->noise_of_force : 0.0);
   bool slips = fabs(state->force) > limit || (state->is_hit && state->is_first && !settlement->jumped);
@@ -144,6 +169,13 @@ bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *h
   return is_restored && with != SIZE_MAX && without != SIZE_MAX;
 }
 
+/* Whether the velocity of one that slides only passes through 0. */
+static bool leaves_rest(const struct Settlement *settlement, size_t friction) {
+  size_t rate = friction_place(settlement->switches, friction, FRICTION_RATE);
+  double least = fmax(settlement->noise[rate], held_share * settlement->largest[rate]);
+  return fabs(settlement->value[rate]) > least;
+}
+
 /* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
 bool frictions_tell(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
@@ -157,6 +189,7 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
     double velocity =
         is_planar ? speed_in_plane(settlement, i) : settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
     bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
+    if (!is_planar) may_rest &= !leaves_rest(settlement, i);
     if (may_rest && !frictions_find_held(settlement, i, &held)) return false;
     if (is_planar) i++; /* the one across is told with it */
     if (held) mode = 0.0;

@@ -34,6 +34,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
       {&settlement->noise, values},
       {&settlement->other_noise, values},
       {&settlement->force_noise, switches->friction_count},
+      {&settlement->began, switches->friction_count},
       {&settlement->condition, switches->event_count},
       {&settlement->takes_part, switches->contact_count + switches->friction_count},
       {&settlement->energy, switches->energy_count},
@@ -133,6 +134,8 @@ bool settlement_evaluate(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++)
     settlement->force_noise[i] = holding_force(settlement, i);
   bool is_first = !settlement->is_evaluated;
+  for (size_t i = 0; i < settlement->switches->friction_count && is_first; i++)
+    settlement->began[i] = mode_of(settlement, settlement->switches->frictions[i].mode);
   if (is_first && !values_rounded(settlement, true, other, &other_factor)) return false;
   if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
   for (size_t i = 0; i < count; i++) {

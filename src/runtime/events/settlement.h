@@ -14,6 +14,7 @@ struct Settlement {
   double *value, *noise;      /* value[], and what rounding may make of it */
   double *other_noise;        /* by rounding in another way, at the beginning of the event */
   double *force_noise;        /* what rounding may make of the force of each friction's constraint */
+  double *began;              /* the mode of each friction, at the beginning of the event */
   double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
   double *flips, *was_opened; /* of each branch and friction; of each contact */
