@@ -52,9 +52,9 @@ static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakes
  */
 static inline Real saddle_pivot(Real hold, Real mobility, Real *weakest) {
   const double smallest_share = 1e-12;
-  Condition has_hold = hold > smallest_share * mobility;
+  Condition has_hold = hold > smallest_share * mobility, has_none = hold <= smallest_share * mobility;
   *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
-  return WHERE(has_hold, -hold, -INFINITY);
+  return WHERE(has_none, -INFINITY, -hold); /* what is no number stays none */
 }
 
 /* Solutions keep most of their digits where the weakest constraint has more than this share. */

@@ -3,7 +3,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
@@ -209,7 +208,6 @@ static void count_event(const struct Instance *instance, const struct Communicat
                     time - (step->start + progress->last) <= crowding_share * fabs(time);
   progress->gathered = is_close ? progress->gathered + 1 : 0;
   progress->crowded = is_crowded ? progress->crowded + 1 : 0;
-  if (getenv("DBG")) { fprintf(stderr, "EV t=%.17g ind=%zu atzero=%d gathered=%d crowded=%d modes", time, indicator, instance->was_at_zero, progress->gathered, progress->crowded); for (size_t k = 0; k < lagrangian.switches->mode_count; k++) fprintf(stderr, " %.6g", instance->parameter[lagrangian.parameter_count - lagrangian.switches->mode_count + k]); fprintf(stderr, "\n"); }
   progress->distance = since_last;
   progress->last = time - step->start;
   progress->count++;
