@@ -42,8 +42,8 @@ static inline Real saddle_mobility(Real term) {
  */
 static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakest) {
   const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
-  Real share = hold / mobility;
-  return BOTH(fabs(share) > rounding_of_share, fabs(share) * weakest < rounding_by_weakest);
+  Real share = hold / mobility, size = WHERE(share > 0.0, share, -share);
+  return BOTH(size > rounding_of_share, size * weakest < rounding_by_weakest);
 }
 
 /*
