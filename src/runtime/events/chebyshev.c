@@ -16,6 +16,12 @@ Real chebyshev_time(Real from, Real to, int node) {
   return from + 0.5 * (1.0 + cosines[node]) * (to - from);
 }
 
+void chebyshev_times(Real from, Real to, Real *times) {
+  for (int node = 1; node < CHEBYSHEV_DEGREE; node++) times[node] = from + 0.5 * (1.0 + cosines[node]) * (to - from);
+  times[0] = to;
+  times[CHEBYSHEV_DEGREE] = from;
+}
+
 /* By sums and differences of nodes on both sides of the middle one, and of those once more. */
 void chebyshev_coefficients(const Real *f, Real *c) {
   const double share = 2.0 / CHEBYSHEV_DEGREE, narrow = cosines[1], half = cosines[2], wide = cosines[3];

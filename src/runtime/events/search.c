@@ -12,6 +12,9 @@
 
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
+/* A step of Newton's method as short as this, of windows from -1 to 1, ends where the next one would not count. */
+static const double near_zero = 1e-6;
+
 /* How far the slope leads beyond a zero: the next value then lies on the other side. */
 static const double overshoot = 1.1;
 
@@ -59,7 +62,7 @@ static void sample(struct Search *search, double time, double *values) {
 static void sample_window(struct Search *search, double from, double to, const double *states) {
   double times[CHEBYSHEV_NODES];
   size_t count = indicator_count(lagrangian.switches);
-  for (int k = 0; k < CHEBYSHEV_NODES; k++) times[k] = chebyshev_time(from, to, k);
+  chebyshev_times(from, to, times);
   if (states != NULL) indicators_at_times(search->instance, times, CHEBYSHEV_NODES, states, search->samples);
   for (size_t k = 0; k < CHEBYSHEV_NODES && states == NULL; k++) sample(search, times[k], search->samples + k * count);
 }
@@ -90,9 +93,11 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 static enum Verdict judge_signs(const double *f, double noise) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
-  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
+    missing += isnan(f[k]) ? 1 : 0;
+    if (!(fabs(f[k]) <= largest)) largest = isnan(f[k]) ? INFINITY : fabs(f[k]);
+  }
   if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
-  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
@@ -133,7 +138,11 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
   double place = (time - from) / half - 1.0;
   chebyshev_coefficients(f, c);
   chebyshev_derivative(c, d);
-  for (int i = 0; i < NEWTON_STEPS; i++) place -= chebyshev_value(c, place) / chebyshev_value(d, place);
+  double correction = INFINITY;
+  for (int i = 0; i < NEWTON_STEPS && fabs(correction) > near_zero; i++) {
+    correction = chebyshev_value(c, place) / chebyshev_value(d, place);
+    place -= correction;
+  }
   double slope = chebyshev_value(d, place) / half;
   time = from + half * (1.0 + place);
   for (int i = 0; i < NARROWING_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {

@@ -30,7 +30,7 @@ size_t window_sample_count(void) {
 
 const double *window_sample(struct Instance *instance, double from, double to) {
   double times[CHEBYSHEV_NODES], *states = instance->switching_work;
-  for (int node = 0; node < CHEBYSHEV_NODES; node++) times[node] = chebyshev_time(from, to, node);
+  chebyshev_times(from, to, times);
   return solver_interpolate(lagrangian.solver, instance, times, CHEBYSHEV_NODES, states) ? states : NULL;
 }
 
