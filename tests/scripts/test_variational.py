@@ -24,7 +24,12 @@ HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint
 HELD_BY = ["l", "g", "x", "vx"]
 # Four-bar linkages of equal rods, which lie flat on their way.
 FLAT = (fmu.ROOT / "fmu" / "NFourBar" / "system.xml").read_text().replace('"NFourBar"', '"Flat"').replace('name="N" value="40"', 'name="N" value="3"')
-SWITCHED = {"Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
+# A block that is thrown onto a slope, with friction that follows from its weight, and slides up and down again.
+SLOPE = """<system name="Slope"><parameter name="mu" start="0.2"/><parameter name="g" start="9.81" unit="m/s2"/><parameter name="e" start="0.4"/>
+  <coordinate name="s" velocity="u" unit="m" velocityStart="3"/><coordinate name="n" velocity="w" unit="m"/><particle mass="1" x="s" y="n"/><gravity x="-0.6*g" y="-0.8*g"/>
+  <contact name="floor" gap="n" unit="m"/><contact name="wall" gap="0.4 - s" unit="m" restitution="e"/>
+  <friction name="rub" velocity="u" force="mu*floor.force"/></system>"""
+SWITCHED = {"Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
            "Worked": (WORKED, list(AT)), "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
 
@@ -96,6 +101,22 @@ def test_through_friction(lagrange_fmu, monkeypatch):  # noqa: F811
     assert ways == []
     for i, t in enumerate(times):
         assert dict(zip(at, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: belt([mpmath.mpf(t)], *at)[0], at), rel=1e-8, abs=1e-10)
+
+
+def test_through_friction_that_follows_from_a_contact(lagrange_fmu, monkeypatch):  # noqa: F811
+    """Up the slope against the wall, and down."""
+    at, times, ways = {"mu": 0.2, "g": 9.81, "e": 0.4, "u": 3.0}, [0.0, 0.1, 0.5], []
+    _, derivatives = motion_through_events("Slope", ["s"], times, at, monkeypatch, ways)
+    assert ways == []
+
+    def place(t, mu, g, e, u):
+        up, down = g * (0.6 + 0.8 * mu), g * (0.6 - 0.8 * mu)
+        speed = mpmath.sqrt(u * u - 2 * up * mpmath.mpf("0.4"))
+        hit = (u - speed) / up
+        return u * t - up * t * t / 2 if t < hit else mpmath.mpf("0.4") - e * speed * (t - hit) - down * (t - hit) ** 2 / 2
+
+    for t, row in zip(times, derivatives):
+        assert dict(zip(at, row[0])) == pytest.approx(slopes(lambda *at: place(mpmath.mpf(t), *at), at), rel=1e-8, abs=1e-10)
 
 
 def test_work(lagrange_fmu):  # noqa: F811
@@ -199,8 +220,7 @@ def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
     from lagrange_fmu.variational import _indicators_of
 
     massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
-    rubbed = BALL.replace("</system>", '<coordinate name="x" velocity="u" unit="m"/><particle mass="1" x="x"/><friction name="rub" velocity="u" force="0.5*floor.force"/></system>')
-    for text, by, why in ((rubbed, "g", "cannot follow frictions that follow from forces"), (massless, "l", "cannot follow coordinates without mass"), (BALL, "g", None), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
+    for text, by, why in ((massless, "l", "cannot follow coordinates without mass"), (BALL, "g", None), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
         (tmp_path / "system.xml").write_text(text)
         result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)
         assert (result.returncode == 0) == (why is None) == (_indicators_of(tmp_path / "system.xml", [by]) is not None)

@@ -77,12 +77,18 @@ class EventMotion(Motion):
         self.series = Series(point.in_series, self.of, self.by, tolerance)
 
     def over(self, times, values=None, inputs=None, kinks=()):
-        if inputs is not None:
-            return super().over(times, values, inputs, kinks)
-        both = self.start(values or {})
+        if inputs is None:
+            try:
+                return self.in_series(times, values or {})
+            except Problem:  # where bounces come to rest, one is easily met at which neighbours rest already
+                self.point.messages.clear()
+        return super().over(times, values, inputs, kinks)
+
+    def in_series(self, times, values):
+        both = self.start(values)
         rows, known = [self.read(times[0], both, None)], (times[0], both, self.model.getFMUState())
         try:
-            self.series.start(times[0], values or {}, both[len(self.state_references) :])
+            self.series.start(times[0], values, both[len(self.state_references) :])
             self.check(times[0], both)
             time, early = times[0], None
             for due in times[1:]:
@@ -142,7 +148,7 @@ class EventMotion(Motion):
             for moved in (-delay, delay):
                 self.place(time + moved, state + moved * rates, None)
                 found.append(self.point.indicators())
-            crossing = np.flatnonzero(found[0] * found[1] < 0)
+            crossing = np.flatnonzero(np.sign(found[0]) * np.sign(found[1]) < 0)
             if len(crossing) == 1:
                 return delay, crossing[0]
             if len(crossing) > 1:

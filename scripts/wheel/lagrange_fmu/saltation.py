@@ -21,7 +21,7 @@ TRIALS, NEAR = 30, 1e-14  # for the time of a neighbour's event; s, likewise
 def crossing_of(indicators, begin, end):
     """The first time at which one of these changes its sign, and which; None where none does. indicators(time): an array."""
     first, last = indicators(begin), indicators(end)
-    crossing = np.flatnonzero(first * last < 0)
+    crossing = np.flatnonzero(np.sign(first) * np.sign(last) < 0)
     if len(crossing) == 0:
         return None
     times = [brentq(lambda time: indicators(time)[k], begin, end, xtol=1e-15, rtol=4 * np.finfo(float).eps) for k in crossing]

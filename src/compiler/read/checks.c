@@ -33,6 +33,20 @@ static void check_content(const struct Reader *reader) {
                  model->given.constraint->name);
 }
 
+/* A force of a constraint is found with the accelerations, which the power may not rest on. */
+static void check_work_of_frictions(const struct Reader *reader) {
+  const struct Model *model = reader->model;
+  for (size_t i = 0; i < model->switches.friction_count && model->forces.works.count > 0; i++) {
+    const struct Friction *friction = &model->switches.frictions[i];
+    if (!graph_depends_on(model->graph, friction->sliding, ACCELERATION)) continue;
+    report_error(reader->diagnostics, model->forces.works.items[0].line,
+                 "<work/> beside the friction '%s', which follows from the force of a contact or constraint; expected "
+                 "no <work/>: totalEnergy tells what the friction takes",
+                 model->constraints.items[friction->constraint].name);
+    return;
+  }
+}
+
 /* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */
 static void warn_without_unit(const struct Reader *reader) {
   const struct Model *model = reader->model;
@@ -173,6 +187,7 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
 
 void check_system(struct Reader *reader) {
   check_content(reader);
+  check_work_of_frictions(reader);
   if (reader->diagnostics->errors > 0) return;
   warn_without_unit(reader);
   warn_at_start(reader);

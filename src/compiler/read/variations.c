@@ -78,9 +78,6 @@ static void append_work(struct Model *model, const struct Equations *equations, 
 }
 
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
-  for (size_t i = 0; i < model->switches.friction_count; i++)
-    if (graph_depends_on(model->graph, model->switches.frictions[i].sliding, ACCELERATION))
-      return "frictions that follow from forces";
   if (equations->explicit_form) return "linearizations";
   if (model->mechanism.stillness_count > 0) return "coordinates without mass";
   return NULL;

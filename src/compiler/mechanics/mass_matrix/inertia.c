@@ -70,10 +70,30 @@ void block_factor(struct Graph *graph, struct InertiaBlock *block) {
   block->factor = factors_create(graph, &pattern, block->mass);
 }
 
-void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
+/* Takes from a solution what its force does along the response to 1 of it (J. Sherman, W. J. Morrison, 1950). */
+static void take_response(struct Graph *graph, size_t count, const Node *response, size_t force, Node *x) {
+  Node own = divide(graph, x[force], add(graph, ONE, response[force]));
+  for (size_t i = 0; i < count; i++) x[i] = subtract(graph, x[i], multiply(graph, response[i], own));
+}
+
+/* The matrix has the columns of forces that others follow from, one after the other. */
+static void solve_with_columns(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
   const struct FactorPattern pattern = pattern_of(block);
+  size_t n = block->count;
+  Node *responses = allocate(block->force_count * n, sizeof *responses);
+  factors_solve(graph, &pattern, block->factor, x);
+  for (size_t k = 0; k < block->force_count; k++) {
+    Node *response = responses + k * n;
+    for (size_t i = 0; i < n; i++) response[i] = block->oblique[k * n + i];
+    factors_solve(graph, &pattern, block->factor, response);
+    for (size_t j = 0; j < k; j++) take_response(graph, n, responses + j * n, block->forces[j], response);
+    take_response(graph, n, response, block->forces[k], x);
+  }
+}
+
+void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
   if (block->tree != NULL) articulated_solve(graph, block->tree, x);
-  else factors_solve(graph, &pattern, block->factor, x);
+  else solve_with_columns(graph, block, x);
 }
 
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution) {
