@@ -6,11 +6,13 @@
 
 #include <math.h>
 
+#include "contacts/frictions.h"
+
 /* In settlement->takes_part: it is tried; and found to have no hold of what moves, as a slider at the dead centre of its crank. */
 static const double is_tried = 1.0, has_no_hold = 2.0;
 
-/* So many times its stiction no friction is asked for that holds; of the rate before, what is left where one does. */
-static const double hopeless = 1e6, held_share = 1e-6;
+/* So many times its stiction no friction is asked for that holds. */
+static const double hopeless = 1e6;
 
 /* All that are slow stick for a try. */
 static void try_all(struct Settlement *settlement) {
@@ -30,7 +32,7 @@ static bool goes_on(const struct Settlement *settlement, const struct PlaneState
     size_t place = friction_place(settlement->switches, state->facts->along + i, FRICTION_RATE);
     largest = fmax(largest, settlement->largest[place]);
   }
-  return hypot(state->rate[0], state->rate[1]) > held_share * largest;
+  return hypot(state->rate[0], state->rate[1]) > friction_held_share * largest;
 }
 
 /* The one of those that are tried which goes furthest beyond its stiction; plane_count for none. */
