@@ -9,8 +9,10 @@
 #ifndef SADDLE_H
 #define SADDLE_H
 
+#include <math.h>
 #include <stddef.h>
 
+#include "arithmetic.h"
 #include "real.h"
 
 #define SADDLE_MASS(elements, n) (2 * (elements) + 1 + 2 * (n))
@@ -22,6 +24,38 @@
  * Returns 0, or 1 + the row in which M is not definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
+
+/* A pivot of M below this share of its diagonal element has lost all its digits. */
+static inline Condition saddle_is_definite(Real pivot, Real diagonal) {
+  const double smallest_share_of_mass = 1e-14;
+  return pivot > smallest_share_of_mass * diagonal;
+}
+
+/* What a term of a constraint's pivot adds to its mobility, J M^-1 J^T of the constraint alone. */
+static inline Real saddle_mobility(Real term) {
+  return WHERE(term > 0.0, term, 0.0);
+}
+
+/*
+ * Where the constraints before one have little hold, down to the share of the weakest, rounding grows into what is left of
+ * it, its hold: less than the first share where those before it have much, than the second where one has the share 1 only.
+ */
+static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakest) {
+  const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
+  Real share = hold / mobility, size = WHERE(share < 0.0, -share, share);
+  return BOTH(size > rounding_of_share, size * weakest < rounding_by_weakest);
+}
+
+/*
+ * The pivot of a constraint. One with less of its row left than this share, squared, follows from the others: what rounding
+ * leaves of one that does is smaller, and one that nearly does so would have no digits left.
+ */
+static inline Real saddle_pivot(Real hold, Real mobility, Real *weakest) {
+  const double smallest_share = 1e-12;
+  Condition has_hold = hold > smallest_share * mobility, has_none = hold <= smallest_share * mobility;
+  *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
+  return WHERE(has_none, -INFINITY, -hold); /* what is no number stays none */
+}
 
 /* Solutions keep most of their digits where the weakest constraint has more than this share. */
 static const double saddle_weak_share = 1e-3;

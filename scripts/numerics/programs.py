@@ -12,16 +12,26 @@ from fmpy.fmi2 import FMU2Model
 from fmu import archive, unpacked
 from numerics.driver import POINTS
 
+SHORT = 1e-3  # seconds of what other work on the machine rarely interrupts
 PATIENCE = 20.0  # seconds, after which a run counts as never ending
 
 
+def timed(run):
+    """
+    (seconds, result): by the processor's time, or, of what is short, by the machine's. Where a virtual machine is denied its processor, the processor's clock is
+    set back by microseconds, and the shortest of many times would be one of those.
+    """
+    passed, of_processor = time.perf_counter(), time.process_time()
+    result = run()
+    passed, of_processor = time.perf_counter() - passed, time.process_time() - of_processor
+    return passed if passed < SHORT else of_processor, result
+
+
 def fastest(run, budget=2.0, repeats=10):
-    """The shortest time of several runs by the processor's time, within a budget of seconds, and the last result."""
+    """The shortest time of several runs within a budget of seconds, and the last result."""
     best, spent, result = np.inf, 0.0, None
     while repeats > 0 and (spent < budget or best == np.inf):
-        begin = time.process_time()
-        result = run()
-        taken = time.process_time() - begin
+        taken, result = timed(run)
         best, spent, repeats = min(best, taken), spent + taken, repeats - 1
     return best, result
 

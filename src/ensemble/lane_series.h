@@ -3,6 +3,7 @@
 #define SERIES_H
 
 #include "lane_real.h"
+#include "reciprocals.h"
 
 enum { SERIES_LENGTH = 24 };
 
@@ -23,6 +24,15 @@ LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
 /* The same of all products of an order. */
 #define SERIES_MIDDLES(PRODUCTS) PRODUCTS(SERIES_MIDDLE)
 #define SERIES_MIDDLE(i, a, from, b) m[i] = series_dot(k - 1, (a) + (from), (b) + k - 1);
+
+struct SeriesFactors {
+  const Lanes *a, *b;
+};
+#define SERIES_FACTORS(a, from, b) {(a) + (from), (b)},
+
+LANES_INLINE void series_middles(int k, size_t count, const struct SeriesFactors *factors, Lanes *m) {
+  for (size_t i = 0; i < count; i++) m[i] = series_dot(k - 1, factors[i].a, factors[i].b + k - 1);
+}
 
 /*
  * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has
@@ -76,7 +86,7 @@ LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
 
 /* c' = a' b: c_k, with the series of a' */
 LANES_INLINE Lanes series_integral_around(Lanes middle, int k, const Lanes *rate, const Lanes *b) {
-  return (middle + rate[k - 1] * b[0]) * (1.0 / k);
+  return (middle + rate[k - 1] * b[0]) * reciprocal[k];
 }
 
 LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
@@ -87,7 +97,7 @@ LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
 LANES_INLINE Lanes lane_series_ratio_integral(int k, Lanes top, const Lanes *b, const Lanes *c) {
   Lanes sum = {0};
   for (int j = 1; j < k; j++) sum += (double)j * c[j] * b[k - j];
-  return (top - sum * (1.0 / k)) / b[0];
+  return (top - sum * reciprocal[k]) / b[0];
 }
 #define series_ratio_integral(k, top, b, c) lane_series_ratio_integral(k, LANES_OF(top), b, c)
 
@@ -107,7 +117,7 @@ LANES_INLINE Lanes series_absolute(int k, const Lanes *a) {
 LANES_INLINE Lanes series_area(int k, const Lanes *y, const Lanes *x) {
   Lanes sum = {0};
   for (int j = 1; j <= k; j++) sum += (double)j * (y[j] * x[k - j] - x[j] * y[k - j]);
-  return sum * (1.0 / k);
+  return sum * reciprocal[k];
 }
 
 /* The coefficient k of atan2(y, x), with the series of x^2 + y^2 in b */

@@ -11,6 +11,7 @@
 
 #define lagrangian lane_lagrangian
 #define chebyshev_time lane_chebyshev_time
+#define chebyshev_times lane_chebyshev_times
 #define chebyshev_coefficients lane_chebyshev_coefficients
 #define chebyshev_range lane_chebyshev_range
 #define chebyshev_tail lane_chebyshev_tail

@@ -76,13 +76,13 @@ static int go_to(struct Importer *importer, double end) {
 
 /* The seconds of a run in which up to so many points are printed; negative where CVODE or the FMU gives up. */
 static double run(struct Importer *importer, double end, long steps, long points, const char *outputs) {
-  double start = seconds();
+  struct Moment start = moment();
   if (!leave_event(importer) || CVodeReInit(importer->cvode, 0.0, importer->x) != CV_SUCCESS) return -1.0;
   for (long k = 0; k < steps; k++) {
     if (!go_to(importer, end * (double)(k + 1) / (double)steps)) return -1.0;
     if ((k + 1) * points % steps < points && !print_outputs(&importer->fmu, importer->component, outputs)) return -1.0;
   }
-  return seconds() - start;
+  return seconds_since(start);
 }
 
 static bool create(struct Importer *importer, SUNContext context, double end) {

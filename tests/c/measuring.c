@@ -4,10 +4,22 @@
 #include <stdlib.h>
 #include <time.h>
 
-double seconds(void) {
+static const double short_time = 1e-3; /* s */
+
+static double seconds_of(clockid_t clock) {
   struct timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+struct Moment moment(void) {
+  return (struct Moment){seconds_of(CLOCK_MONOTONIC), seconds_of(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+double seconds_since(struct Moment begin) {
+  struct Moment now = moment();
+  double passed = now.machine - begin.machine;
+  return passed < short_time ? passed : now.processor - begin.processor;
 }
 
 int initialize(const struct FmuLibrary *fmu, fmi2Component c, double tolerance, int count, char **starts) {

@@ -40,12 +40,12 @@ static int step(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingIn
 /* The seconds of a run in which up to so many points are printed; negative where the FMU gives up. */
 static double run(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingInput input, double end, long steps,
                   long points, const char *outputs) {
-  double start = seconds();
+  struct Moment start = moment();
   for (long k = 0; k < steps; k++) {
     if (!step(fmu, c, input, end, k, steps)) return -1.0;
     if ((k + 1) * points % steps < points && !print_outputs(fmu, c, outputs)) return -1.0;
   }
-  return seconds() - start;
+  return seconds_since(start);
 }
 
 int main(int count, char **words) {

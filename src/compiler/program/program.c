@@ -16,11 +16,7 @@ enum {
   TREE_STATEMENT_LIMIT = 200000
 };
 
-/*
- * Series of up to this many recurrences an order begin all products of an order together, which takes more code for each than
- * a call: with more of them, that would fill the cache of instructions. Where blocks are solved for each order, these take
- * longer than the products.
- */
+/* Series of up to this many recurrences an order have code of their own for each product: more of it would leave the caches. */
 enum { RECURRENCES_TOGETHER = 40 };
 
 static void create_results(struct Program *program, struct Values *values) {
@@ -97,8 +93,8 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   program->switches_are_table = form == ALL_TABLES;
   program->is_table = all || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
   program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
-  program->products_begin_together = series != NULL && program->equations->method->series == ALL_TERMS &&
-                                     program->blocks.count == 0 && series->recurrences <= RECURRENCES_TOGETHER;
+  if (series != NULL && program->equations->method->series == ALL_TERMS)
+    program->products = series->recurrences <= RECURRENCES_TOGETHER ? PRODUCTS_TOGETHER : PRODUCTS_LISTED;
   size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
       all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);

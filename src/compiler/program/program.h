@@ -13,6 +13,9 @@
  */
 enum CodeForm { BY_SIZE, STATEMENTS, TABLES, ALL_TABLES };
 
+/* How the middle terms of products are computed (include/series.h): each where it stands, all in one loop, or from a list. */
+enum ProductForm { PRODUCTS_APART, PRODUCTS_TOGETHER, PRODUCTS_LISTED };
+
 struct Program {
   const struct Model *model;
   const struct Equations *equations;
@@ -29,8 +32,8 @@ struct Program {
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
   /* So are the derivatives and the series of the motion, where a simulation spends its time. */
   bool derivatives_are_table, series_is_table;
-  bool switches_are_table;      /* so are the functions of struct SwitchTable */
-  bool products_begin_together; /* those of an order of the series, as SERIES_MIDDLES of include/series.h does it */
+  bool switches_are_table;   /* so are the functions of struct SwitchTable */
+  enum ProductForm products; /* of an order of the series */
   const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */
   struct StepWork work;    /* where there is a solver */
   struct OperationCounts operations; /* where it hands over */

@@ -94,6 +94,59 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
   fputs("};\n\n", file);
 }
 
+/* What the columns that two rows share take from an element of the first. */
+static void write_shared_products(FILE *file, const struct InertiaBlock *block, size_t row, size_t place) {
+  const size_t *start = block->start, *column = block->column, other = column[place];
+  for (size_t a = place; a-- > start[row];)
+    for (size_t b = start[other]; b + 1 < start[other + 1]; b++)
+      if (column[a] == column[b]) fprintf(file, "  k%zu -= k%zu * factor%zu;\n", place, a, b);
+}
+
+/* The pivot of a row, from the terms of its elements. */
+static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row, bool is_constraint, size_t number) {
+  size_t first = block->start[row], last = block->start[row + 1] - 1, n = block->count, elements = block->start[n];
+  fprintf(file, "  const Real pivot%zu = k%zu", row, last);
+  for (size_t k = first; k < last; k++) fprintf(file, " - term%zu", k);
+  if (!is_constraint) {
+    fprintf(file, ";\n  REQUIRE(saddle_is_definite(pivot%zu, k%zu), %zu);\n  mass[%zu] = pivot%zu;\n", row, last,
+            row + 1, last, row);
+    return;
+  }
+  fprintf(file, ", mobility%zu = REAL(0.0)", row);
+  for (size_t k = first; k < last; k++) fprintf(file, " + saddle_mobility(term%zu)", k);
+  fprintf(file,
+          ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, mobility%zu, weakest))) {\n"
+          "    for (size_t k = 0; k < %zu; k++) mass[k] = mass[%zu + k];\n"
+          "    return saddle_factor(%zu, start%zu, column%zu, coordinate%zu, mass);\n  }\n"
+          "  mass[%zu] = saddle_pivot(-pivot%zu, mobility%zu, &weakest);\n",
+          row, row, elements, elements, n, number, number, number, last, row, row);
+}
+
+/*
+ * Factors a small block as saddle_factor() does, which is left where a constraint is in doubt. The elements are handed
+ * over as numbers: pairs of them that have just been stored would be waited for.
+ */
+static void write_small_factor(FILE *file, const struct InertiaBlock *block, size_t coordinates, size_t number) {
+  size_t n = block->count, elements = block->start[n];
+  const size_t *start = block->start, *column = block->column;
+  struct BlockNumbers numbers = block_numbers_of(block, coordinates);
+  fprintf(file, "static size_t factor%zu(Real *mass", number);
+  for (size_t k = 0; k < elements; k++) fprintf(file, ", Real k%zu", k);
+  fputs(") {\n  Real weakest = REAL(1.0);\n", file);
+  for (size_t k = 0; k < elements; k++) fprintf(file, "  mass[%zu] = k%zu;\n", elements + k, k);
+  for (size_t i = 0; i < n; i++) {
+    size_t last = start[i + 1] - 1;
+    for (size_t k = start[i]; k < last; k++) write_shared_products(file, block, i, k);
+    for (size_t k = start[i]; k < last; k++)
+      fprintf(file,
+              "  const Real factor%zu = k%zu / mass[%zu], term%zu = factor%zu * k%zu;\n"
+              "  mass[%zu] = factor%zu;\n",
+              k, k, start[column[k] + 1] - 1, k, k, k, k, k);
+    write_pivot(file, block, i, numbers.items[i] < 0, number);
+  }
+  fprintf(file, "  mass[%zu] = weakest;\n  return 0;\n}\n\n", 2 * elements);
+}
+
 /* Solves a small block by its factors, as saddle_solve() does where nothing is to be refined. */
 static void write_small_solve(FILE *file, const struct InertiaBlock *block, size_t number) {
   size_t n = block->count;
@@ -122,7 +175,9 @@ static void write_blocks(FILE *file, const struct Program *program) {
       write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
     }
     write_numbers(file, format_text("coordinate%zu", i), block, program->equations->count);
-    if (program_solves_by_statements(program, i)) write_small_solve(file, block, i);
+    if (!program_solves_by_statements(program, i)) continue;
+    write_small_factor(file, block, program->equations->count, i);
+    write_small_solve(file, block, i);
   }
 }
 

@@ -89,6 +89,14 @@ static void write_block_call(FILE *file, const struct Program *program, const ch
   fprintf(file, ", mass + %zu", looped->first_mass);
 }
 
+/* The same of a small block, whose elements are handed over one by one. */
+static void write_small_factor_call(FILE *file, const struct Program *program, unsigned number) {
+  const struct LoopedBlock *looped = &program->blocks.items[number];
+  fprintf(file, "factor%u(mass + %zu", number, looped->first_mass);
+  for (size_t k = 0; k < looped->block->start[looped->block->count]; k++)
+    fprintf(file, ", mass[%zu]", looped->first_mass + k);
+}
+
 static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {
   unsigned number = instruction->result;
   const struct InertiaBlock *block = program->blocks.items[number].block;
@@ -96,7 +104,8 @@ static void write_block_statement(FILE *file, const struct Program *program, con
   if (instruction->opcode == FACTOR) {
     fprintf(file, "const size_t singular%u = ", number);
     const char *factor = is_oblique ? "oblique_factor" : has_constraints ? "saddle_factor" : "ldlt_factor";
-    write_block_call(file, program, factor, has_constraints, number);
+    if (program_solves_by_statements(program, number)) write_small_factor_call(file, program, number);
+    else write_block_call(file, program, factor, has_constraints, number);
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
   } else {
     bool is_least = instruction->opcode == LEAST_FORCES;
@@ -144,9 +153,11 @@ void write_statements_around(FILE *file, const struct Program *program, const st
   size_t products = 0;
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
+    const char *opening = "(";
+    if (is_product(instruction) && program->products == PRODUCTS_LISTED) opening = "_around(*next++, ";
+    else if (is_product(instruction)) opening = format_text("_around(m[%zu], ", products++);
     fputs("    ", file);
-    bool has_middle = is_product(instruction);
-    write_statement(file, program, instruction, NULL, has_middle ? format_text("_around(m[%zu], ", products++) : "(");
+    write_statement(file, program, instruction, NULL, opening);
     fputs(";\n", file);
   }
 }
@@ -162,5 +173,20 @@ size_t write_products(FILE *file, const struct Program *program, const struct Ro
     fputs(")", file);
   }
   if (products > 0) fputs("\n\n", file);
+  return products;
+}
+
+size_t write_factors(FILE *file, const struct Program *program, const struct Routine *routine) {
+  size_t products = 0;
+  fputs("  const struct SeriesFactors factors[] = {\n", file);
+  for (size_t i = 0; i < routine->count; i++) {
+    const struct Instruction *instruction = &routine->instructions[i];
+    if (!is_product(instruction)) continue;
+    fputs("      SERIES_FACTORS(", file);
+    write_text(file, program, instruction, opcode_factors(instruction->opcode), NULL, "(");
+    fputs(")\n", file);
+    products++;
+  }
+  fputs("  };\n", file);
   return products;
 }

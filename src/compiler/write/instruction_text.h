@@ -14,5 +14,6 @@ void write_statements(FILE *file, const struct Program *program, const struct Ro
 /* The statements of an order of series, whose products have their middle terms in m (SERIES_MIDDLES of include/series.h). */
 void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine);
 
-/* The macro that lists these products; returns how many there are. */
+/* The macro that lists these products, or the array of their factors; both return how many there are. */
 size_t write_products(FILE *file, const struct Program *program, const struct Routine *routine);
+size_t write_factors(FILE *file, const struct Program *program, const struct Routine *routine);

@@ -9,25 +9,29 @@ static void declare_time(FILE *file, bool is_used) {
   if (is_used) fputs("  const Series time = {point->time, REAL(1.0)};\n", file);
 }
 
-static void write_orders(FILE *file, const struct Program *program, size_t products) {
+/* The head of the loop over orders, and what begins all products of one; products: as SERIES_MIDDLES takes them. */
+static void begin_orders(FILE *file, const struct Program *program, size_t products) {
+  size_t listed = program->products == PRODUCTS_LISTED ? write_factors(file, program, program->series->order) : 0;
   fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n", file);
   if (products > 0) fprintf(file, "    Real m[%zu];\n    SERIES_MIDDLES(SERIES_PRODUCTS);\n", products);
-  if (products > 0) write_statements_around(file, program, program->series->order);
-  else write_statements(file, program, program->series->order, NULL);
-  fputs("  }\n", file);
+  if (listed > 0)
+    fprintf(file, "    Real m[%zu];\n    const Real *next = m;\n    series_middles(k, %zu, factors, m);\n", listed,
+            listed);
 }
 
 static void write_series(FILE *file, const struct Program *program) {
   const struct Routine *order = program->series->order;
-  size_t products = program->products_begin_together ? write_products(file, program, order) : 0;
+  size_t products = program->products == PRODUCTS_TOGETHER ? write_products(file, program, order) : 0;
   write_head(file, FUNCTION_SERIES, "", order->operation_count);
   declare_time(file, routine_uses(order, SPACE_TIME_ROW));
   statements_declare_point(file, program, order);
   if (program->blocks.count > 0)
     fprintf(file, "  const Real *mass = w[%zu];\n  Real side[%zu];\n", program->series->mass_row,
             program->blocks.side_count);
-  write_orders(file, program, products);
-  fputs("}\n\n", file);
+  begin_orders(file, program, products);
+  if (program->products == PRODUCTS_APART) write_statements(file, program, order, NULL);
+  else write_statements_around(file, program, order);
+  fputs("  }\n}\n\n", file);
 }
 
 static void write_check(FILE *file, const struct Program *program, const struct LimitCheck *check) {

@@ -19,6 +19,9 @@
 /* Noise is what one rounding makes of a value; several together make more of one that is 0 but for them. */
 static const double parting_in_noise = 1e3;
 
+/* Contacts whose friction leaves less of their mobility than this are about to jam. */
+static const double jamming_share = 1e-3;
+
 /* What a refusal says of them. */
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
@@ -233,4 +236,21 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   if (solutions == PERHAPS_OTHERS) tell_of_others(settlement, &resting);
   free_resting(settlement, &resting);
   return problem;
+}
+
+bool contact_forces_explain(struct Settlement *settlement) {
+  struct RestingContacts resting;
+  const char *problem;
+  if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return false;
+  size_t contact = find_locked(&resting);
+  bool jams = resting.forces.s[contact * resting.forces.count + contact] < jamming_share;
+  if (jams)
+    log_message(
+        settlement->instance, STATUS_DISCARD,
+        "time %g: the friction '%s' slides and presses the contact '%s' together ever more strongly, up to a jam "
+        "(Painleve's paradox); expected less friction, or another position",
+        settlement->time, locking_friction(settlement, &resting.pushes, contact),
+        settlement->switches->contacts[resting.pushes.member[contact]].name);
+  free_resting(settlement, &resting);
+  return jams;
 }

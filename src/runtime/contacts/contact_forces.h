@@ -10,4 +10,7 @@
  */
 const char *contact_forces_settle(struct Settlement *settlement, bool *again);
 
+/* Where the motion ends: whether friction jams a contact that slides, which is logged. */
+bool contact_forces_explain(struct Settlement *settlement);
+
 #endif

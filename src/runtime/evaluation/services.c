@@ -11,15 +11,28 @@
 
 const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
 
-struct Point solver_point(struct Instance *instance, double time, const double *state) {
-  struct Point point = instance_point(instance);
-  point.time = time;
-  point.state = state;
+void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state) {
+  point->time = time;
+  point->state = state;
   if (instance->situation->input_derivatives_set) {
     evaluate_inputs(instance, time, instance->work);
-    point.input = instance->work;
+    point->input = instance->work;
   }
+}
+
+struct Point solver_point(struct Instance *instance, double time, const double *state) {
+  struct Point point = instance_point(instance);
+  solver_move_point(instance, &point, time, state);
   return point;
+}
+
+bool solver_interpolate(const struct Solver *solver, struct Instance *instance, const double *times, size_t count,
+                        double *states) {
+  if (solver->interpolate_at != NULL) return solver->interpolate_at(instance, times, count, states);
+  bool are_known = true;
+  for (size_t i = 0; i < count && are_known; i++)
+    are_known = solver->interpolate(instance, times[i], states + i * lagrangian.state_count);
+  return are_known;
 }
 
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {

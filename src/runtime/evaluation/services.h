@@ -16,6 +16,13 @@ bool solver_jacobian(struct Instance *instance, double time, const double *state
 /* The point for generated functions at a time and state that the solver chose. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
 
+/* The same at another one, for inputs that may follow the time. */
+void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state);
+
+/* The states at several times in the last step of a solver, a row each. False where one is not known. */
+bool solver_interpolate(const struct Solver *solver, struct Instance *instance, const double *times, size_t count,
+                        double *states);
+
 /* The instance's state becomes that of a time in the last step. False where that is not known or not finite. */
 bool solver_take_state(struct Instance *instance, double time);
 

@@ -5,11 +5,10 @@
 #include "arithmetic.h"
 
 /* cos(pi k / 8) */
-static const double cosines[2 * CHEBYSHEV_DEGREE] = {
-    1.0,  0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,
-    0.0,  -0.38268343236508977173, -0.70710678118654752440, -0.92387953251128675613,
-    -1.0, -0.92387953251128675613, -0.70710678118654752440, -0.38268343236508977173,
-    0.0,  0.38268343236508977173,  0.70710678118654752440,  0.92387953251128675613};
+static const double cosines[CHEBYSHEV_NODES] = {
+    1.0, 0.92387953251128675613,  0.70710678118654752440,  0.38268343236508977173,
+    0.0, -0.38268343236508977173, -0.70710678118654752440, -0.92387953251128675613,
+    -1.0};
 
 Real chebyshev_time(Real from, Real to, int node) {
   if (node == 0) return to;
@@ -17,20 +16,29 @@ Real chebyshev_time(Real from, Real to, int node) {
   return from + 0.5 * (1.0 + cosines[node]) * (to - from);
 }
 
+void chebyshev_times(Real from, Real to, Real *times) {
+  for (int node = 1; node < CHEBYSHEV_DEGREE; node++) times[node] = from + 0.5 * (1.0 + cosines[node]) * (to - from);
+  times[0] = to;
+  times[CHEBYSHEV_DEGREE] = from;
+}
+
+/* By sums and differences of nodes on both sides of the middle one, and of those once more. */
 void chebyshev_coefficients(const Real *f, Real *c) {
-  enum { HALF = CHEBYSHEV_DEGREE / 2 };
-  Real even[HALF], odd[HALF]; /* of the nodes on both sides of the middle one */
-  for (int k = 0; k < HALF; k++) {
-    Real share = REAL(k == 0 ? 0.5 : 1.0);
-    even[k] = share * (f[k] + f[CHEBYSHEV_DEGREE - k]);
-    odd[k] = share * (f[k] - f[CHEBYSHEV_DEGREE - k]);
-  }
-  for (int j = 0; j <= CHEBYSHEV_DEGREE; j++) {
-    const Real *part = j % 2 == 0 ? even : odd;
-    Real sum = j % 2 == 0 ? f[HALF] * cosines[j * HALF % (2 * CHEBYSHEV_DEGREE)] : REAL(0.0);
-    for (int k = 0; k < HALF; k++) sum += part[k] * cosines[j * k % (2 * CHEBYSHEV_DEGREE)];
-    c[j] = sum * ((j == 0 || j == CHEBYSHEV_DEGREE ? 1.0 : 2.0) / CHEBYSHEV_DEGREE);
-  }
+  const double share = 2.0 / CHEBYSHEV_DEGREE, narrow = cosines[1], half = cosines[2], wide = cosines[3];
+  Real end = 0.5 * (f[0] + f[8]), outer = f[1] + f[7], next = f[2] + f[6], inner = f[3] + f[5];
+  Real ends = end + f[4], pairs = outer + inner, centre = end - f[4], slope = half * (outer - inner);
+  c[0] = 0.5 * share * ((ends + next) + pairs);
+  c[2] = share * (centre + slope);
+  c[4] = share * (ends - next);
+  c[6] = share * (centre - slope);
+  c[8] = 0.5 * share * ((ends + next) - pairs);
+  Real odd_end = 0.5 * (f[0] - f[8]), odd_outer = f[1] - f[7], odd_next = half * (f[2] - f[6]), odd_inner = f[3] - f[5];
+  Real first = odd_end + odd_next, second = odd_end - odd_next;
+  Real of_first = narrow * odd_outer + wide * odd_inner, of_second = wide * odd_outer - narrow * odd_inner;
+  c[1] = share * (first + of_first);
+  c[3] = share * (second + of_second);
+  c[5] = share * (second - of_second);
+  c[7] = share * (first - of_first);
 }
 
 Real chebyshev_range(const Real *c) {

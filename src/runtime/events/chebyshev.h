@@ -9,6 +9,9 @@ enum { CHEBYSHEV_DEGREE = 8, CHEBYSHEV_NODES };
 /* The time of a node, from 0, the end of the window, to 8, its beginning; node 4 is the middle. */
 Real chebyshev_time(Real from, Real to, int node);
 
+/* Those of all. */
+void chebyshev_times(Real from, Real to, Real *times);
+
 /* The coefficients c[CHEBYSHEV_NODES] of the polynomial through f[CHEBYSHEV_NODES] at the nodes. */
 void chebyshev_coefficients(const Real *f, Real *c);
 

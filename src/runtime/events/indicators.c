@@ -33,14 +33,32 @@ static bool feels_forces(const struct Instance *instance) {
   return holds;
 }
 
-bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator) {
-  struct Point point = solver_point(instance, time, state);
-  if (feels_forces(instance)) {
-    instance->singular = lagrangian.constraints.accelerations(&point, instance->acceleration);
+static bool indicators_at_point(struct Instance *instance, const struct Point *point, bool feels_forces,
+                                double *indicator) {
+  if (feels_forces) {
+    instance->singular = lagrangian.constraints.accelerations(point, instance->acceleration);
     if (instance->singular != 0) return false;
   }
-  lagrangian.switches->indicators(&point, instance->acceleration, indicator);
+  lagrangian.switches->indicators(point, instance->acceleration, indicator);
   return true;
+}
+
+bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator) {
+  struct Point point = solver_point(instance, time, state);
+  return indicators_at_point(instance, &point, feels_forces(instance), indicator);
+}
+
+void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
+                         double *indicators) {
+  size_t width = indicator_count(lagrangian.switches);
+  struct Point point = instance_point(instance);
+  bool forces = feels_forces(instance);
+  for (size_t k = 0; k < count; k++) {
+    double *row = indicators + k * width;
+    solver_move_point(instance, &point, times[k], states + k * lagrangian.state_count);
+    bool are_known = indicators_at_point(instance, &point, forces, row);
+    for (size_t i = 0; i < width && !are_known; i++) row[i] = NAN;
+  }
 }
 
 void indicator_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,

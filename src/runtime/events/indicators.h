@@ -7,6 +7,10 @@
 /* The indicators at a time and state; false where there are no accelerations, or a value is not finite. */
 bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator);
 
+/* The same at several times, from rows of states to rows of indicators, which are NAN where there are none. */
+void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
+                         double *indicators);
+
 /* Whether an indicator is a force now: of a contact that is closed, or of a friction that sticks. */
 bool indicator_is_force(const struct Instance *instance, size_t indicator);
 

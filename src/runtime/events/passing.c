@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -316,4 +317,17 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
   log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of %s%s",
               instance->situation->last_step.end, progress->count, name,
               is_branch ? " as where the motion follows a switch by going back and forth" : "");
+}
+
+bool events_explain_stop(struct Instance *instance, double time) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
+  struct Point point = solver_point(instance, time, instance->state);
+  /* Beside a jam forces may be too large to be told: without any. */
+  memset(settlement.acceleration, 0,
+         (lagrangian.coordinate_count + lagrangian.constraints.count) * sizeof *settlement.acceleration);
+  memset(settlement.noise, 0, settlement_value_count(lagrangian.switches) * sizeof *settlement.noise);
+  lagrangian.switches->switching_values(&point, settlement.acceleration, settlement.value);
+  return laws->explain(&settlement);
 }

@@ -12,6 +12,9 @@
 
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
+/* A step of Newton's method as short as this, of windows from -1 to 1, ends where the next one would not count. */
+static const double near_zero = 1e-6;
+
 /* How far the slope leads beyond a zero: the next value then lies on the other side. */
 static const double overshoot = 1.1;
 
@@ -46,24 +49,33 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
-/* The values at a time; NAN where there are none. state: there, NULL where it was not looked at yet. */
-static void sample(struct Search *search, double time, const double *state, double *values) {
+/* The values at a time; NAN where there are none. */
+static void sample(struct Search *search, double time, double *values) {
   size_t count = indicator_count(lagrangian.switches);
-  bool known = state != NULL || lagrangian.solver->interpolate(search->instance, time, search->state);
+  bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
   if (search->projects) known = known && solver_project(search->instance, time, search->state) == NULL;
-  known = known && indicators_at(search->instance, time, state != NULL ? state : search->state, values);
+  known = known && indicators_at(search->instance, time, search->state, values);
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
+/* Those at the nodes of a window; states: there, NULL where they are not all known. */
+static void sample_window(struct Search *search, double from, double to, const double *states) {
+  double times[CHEBYSHEV_NODES];
+  size_t count = indicator_count(lagrangian.switches);
+  chebyshev_times(from, to, times);
+  if (states != NULL) indicators_at_times(search->instance, times, CHEBYSHEV_NODES, states, search->samples);
+  for (size_t k = 0; k < CHEBYSHEV_NODES && states == NULL; k++) sample(search, times[k], search->samples + k * count);
+}
+
 static double value_at(struct Search *search, size_t indicator, double time) {
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   return search->values[indicator];
 }
 
 static void measure_noise(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double *exact = search->exact;
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   indicator_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
   for (size_t i = 0; i < count; i++)
     if (indicator_is_force(search->instance, i)) search->noise[i] = 0.0;
@@ -81,9 +93,11 @@ enum Verdict { STAYS, FALLS, UNKNOWN };
 static enum Verdict judge_signs(const double *f, double noise) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
-  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) missing += isnan(f[k]) ? 1 : 0;
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
+    missing += isnan(f[k]) ? 1 : 0;
+    if (!(fabs(f[k]) <= largest)) largest = isnan(f[k]) ? INFINITY : fabs(f[k]);
+  }
   if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
-  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) largest = fmax(largest, isnan(f[k]) ? INFINITY : fabs(f[k]));
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
@@ -124,7 +138,11 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
   double place = (time - from) / half - 1.0;
   chebyshev_coefficients(f, c);
   chebyshev_derivative(c, d);
-  for (int i = 0; i < NEWTON_STEPS; i++) place -= chebyshev_value(c, place) / chebyshev_value(d, place);
+  double correction = INFINITY;
+  for (int i = 0; i < NEWTON_STEPS && fabs(correction) > near_zero; i++) {
+    correction = chebyshev_value(c, place) / chebyshev_value(d, place);
+    place -= correction;
+  }
   double slope = chebyshev_value(d, place) / half;
   time = from + half * (1.0 + place);
   for (int i = 0; i < NARROWING_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {
@@ -247,7 +265,7 @@ static double tangent_to_zero(struct Search *search, double time, const double *
  */
 static size_t find_passed(struct Search *search, double time) {
   size_t count = lagrangian.switches->branch_count;
-  sample(search, time, NULL, search->values);
+  sample(search, time, search->values);
   for (size_t i = 0; i < count; i++)
     if (indicator_sign(search->instance, i) * search->values[i] < 0.0) return i;
   return count;
@@ -300,9 +318,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   struct Search search = search_of(instance);
   search.windows = windows;
   bool knows_noise = false;
-  for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
-    sample(&search, chebyshev_time(from, to, (int)k), samples != NULL ? samples + k * lagrangian.state_count : NULL,
-           search.samples + k * count);
+  sample_window(&search, from, to, samples);
   *time = INFINITY;
   bool leaves = false; /* it is a zero at which the indicator rested */
   for (size_t i = 0; i < count; i++) {

@@ -55,6 +55,8 @@ struct ContactLaws {
   bool (*part)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
   const char *(*check_gaps)(const struct Settlement *settlement);
+  /* Logs the contact that jams where the solver stopped; false where none does. */
+  bool (*explain)(struct Settlement *settlement);
 };
 
 /* What frictions do; FMUs without any do not hold it. */
@@ -69,6 +71,8 @@ struct FrictionLaws {
   void (*guess)(struct Instance *instance);
   /* Lets the friction in a plane slide, or stick; NULL without any. */
   void (*set_plane)(struct Settlement *settlement, size_t plane, bool slides);
+  /* Once: the modes of all at rest by their forces. False where there are none, or it was done already. NULL without any in a plane. */
+  bool (*settle_together)(struct Settlement *settlement);
   /*
    * The impulse of each push where some are of frictions in a plane, such that the rates, and those that the impulses add, fulfil
    * the law of impacts. False where none is found. NULL without any.

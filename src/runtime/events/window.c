@@ -25,7 +25,13 @@ struct Window {
 };
 
 size_t window_sample_count(void) {
-  return lagrangian.switches->watched_limit == NULL ? 0 : CHEBYSHEV_NODES * lagrangian.state_count;
+  return CHEBYSHEV_NODES * lagrangian.state_count;
+}
+
+const double *window_sample(struct Instance *instance, double from, double to) {
+  double times[CHEBYSHEV_NODES], *states = instance->switching_work;
+  chebyshev_times(from, to, times);
+  return solver_interpolate(lagrangian.solver, instance, times, CHEBYSHEV_NODES, states) ? states : NULL;
 }
 
 size_t window_work_count(void) {
@@ -44,14 +50,6 @@ static struct Window window_of(struct Instance *instance, double from, double to
   window.input = window.x + lagrangian.state_count;
   window.work = window.input + lagrangian.input_count;
   return window;
-}
-
-static bool sample_states(const struct Window *window) {
-  bool are_known = true;
-  for (int node = 0; node < CHEBYSHEV_NODES && are_known; node++)
-    are_known = lagrangian.solver->interpolate(window->instance, chebyshev_time(window->from, window->to, node),
-                                               window->states + (size_t)node * lagrangian.state_count);
-  return are_known;
 }
 
 /* The accelerations and forces, where they are looked at. False where there are none. */
@@ -145,11 +143,10 @@ static double sure_half(struct Window *window) {
 }
 
 bool window_narrow(struct Instance *instance, double from, double *to, const double **samples) {
-  *samples = NULL;
-  if (lagrangian.switches->watched_limit == NULL) return true;
   for (;;) {
+    *samples = window_sample(instance, from, *to);
+    if (lagrangian.switches->watched_limit == NULL) return true;
     struct Window window = window_of(instance, from, *to);
-    *samples = sample_states(&window) ? window.states : NULL;
     double length = *to - from, half = *samples != NULL ? sure_half(&window) : 0.0;
     if (half >= 0.5 * length) return true;
     double shorter = fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length);

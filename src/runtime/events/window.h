@@ -8,14 +8,17 @@
 
 #include "instance/instance.h"
 
-/* Numbers of workspace that this needs, and those of them that its samples are in. */
+/* Numbers of workspace that this needs, and those of them that its samples are in, which come first. */
 size_t window_work_count(void);
 size_t window_sample_count(void);
+
+/* The states at the CHEBYSHEV_NODES of a window, a row each, there; NULL where they are not all known. */
+const double *window_sample(struct Instance *instance, double from, double to);
 
 /*
  * Brings the end of a window of time in the solver's last step nearer to its beginning until nothing that the indicators look at
  * can hide between samples. False where the window is as short as time can tell and may still hide something. *samples:
- * the states at the CHEBYSHEV_NODES of the window, a row each; NULL where they were not looked at, or are not all known.
+ * window_sample() of it.
  */
 bool window_narrow(struct Instance *instance, double from, double *to, const double **samples);
 

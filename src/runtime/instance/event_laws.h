@@ -69,6 +69,8 @@ struct EventLaws {
   /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
+  /* Logs why the solver stopped at the instance's state, where a contact has jammed; false where none has. */
+  bool (*explain_stop)(struct Instance *instance, double time);
   /* Whether the constraint is that of a contact or a friction, whose events tell by themselves where they end. */
   bool (*holds_at_times)(const char *constraint);
   /*

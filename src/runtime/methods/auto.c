@@ -160,6 +160,13 @@ static bool auto_interpolate(struct Instance *instance, double time, double *sta
   return is_known;
 }
 
+static bool auto_interpolate_at(struct Instance *instance, const double *times, size_t count, double *states) {
+  struct Auto *automatic = auto_enter(instance);
+  bool are_known = solver_interpolate(solvers[automatic->choice->method], instance, times, count, states);
+  auto_leave(instance, automatic);
+  return are_known;
+}
+
 /* Operations of Radau IIA, counted like those of the series (taylor_rule.h), for so many evaluations of the equations, and so many Jacobians with their factors. */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
   const struct OperationCounts *count = &lagrangian.steps.operations;
@@ -310,4 +317,5 @@ const struct Solver solver_auto = {.name = "the solver",
                                    .restart = auto_restart,
                                    .resume = auto_resume,
                                    .advance = auto_advance,
-                                   .interpolate = auto_interpolate};
+                                   .interpolate = auto_interpolate,
+                                   .interpolate_at = auto_interpolate_at};

@@ -136,9 +136,15 @@ static double project_velocities(struct Instance *instance, double time, double 
   return hold ? size : INFINITY;
 }
 
+/* Frictions alone hold velocities, and leave all coordinates where they are. */
+static bool holds_velocities_alone(void) {
+  return lagrangian.switches != NULL && lagrangian.constraints.count == lagrangian.switches->friction_count;
+}
+
 static double project(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = INFINITY, before;
+  if (holds_velocities_alone()) return project_velocities(instance, time, state);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
     if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;

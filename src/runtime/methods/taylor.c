@@ -138,6 +138,22 @@ static bool taylor_interpolate(struct Instance *instance, double time, double *s
   return true;
 }
 
+static bool taylor_interpolate_at(struct Instance *instance, const double *times, size_t count, double *states) {
+  const struct Taylor *taylor = instance->solver_memory;
+  size_t n = lagrangian.state_count, k = 0;
+  for (; k + 3 <= count; k += 3) {
+    const double s[] = {times[k] - taylor->span->start, times[k + 1] - taylor->span->start,
+                        times[k + 2] - taylor->span->start};
+    for (size_t i = 0; i < n; i++) {
+      double change[3];
+      taylor_three_changes(taylor, i, s, change);
+      for (size_t j = 0; j < 3; j++) states[(k + j) * n + i] = taylor->x[i][0] + (change[j] + taylor->low[i]);
+    }
+  }
+  for (; k < count; k++) taylor_interpolate(instance, times[k], states + k * n);
+  return true;
+}
+
 static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
   crawl->path += moved;
   if (++crawl->steps < CRAWL_STEPS) return false;
@@ -190,4 +206,5 @@ const struct Solver solver_taylor = {.name = "the Taylor series",
                                      .restart = taylor_restart,
                                      .resume = taylor_resume,
                                      .advance = taylor_advance,
-                                     .interpolate = taylor_interpolate};
+                                     .interpolate = taylor_interpolate,
+                                     .interpolate_at = taylor_interpolate_at};

@@ -42,6 +42,12 @@ static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
   return size < lagrangian.steps.nominal[i] ? lagrangian.steps.nominal[i] : size;
 }
 
+/* From Horner's sums of even and odd powers, with the first term where these begin with the second. */
+static inline double taylor_end_of_change(const double *x, int64_t j, Pair sum, double s) {
+  double change = (pair_second(sum) * s + pair_first(sum)) * s;
+  return j == 1 ? (change + x[1]) * s : change;
+}
+
 /*
  * The change of state variable i from the origin to s after it, by Horner's rule for even and odd powers apart, which
  * are a pair.
@@ -51,8 +57,23 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   int64_t j = taylor->saved->order;
   Pair sum = pair_at(x + j - 1);
   for (j -= 2; j > 1; j -= 2) sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
-  double change = (pair_second(sum) * s + pair_first(sum)) * s;
-  return j == 1 ? (change + x[1]) * s : change;
+  return taylor_end_of_change(x, j, sum, s);
+}
+
+/* The same at three times at once, none of which waits for another. */
+static inline void taylor_three_changes(const struct Taylor *taylor, size_t i, const double *s, double *change) {
+  const double *x = taylor->x[i], squares[] = {s[0] * s[0], s[1] * s[1], s[2] * s[2]};
+  int64_t j = taylor->saved->order;
+  Pair first = pair_at(x + j - 1), second = first, third = first;
+  for (j -= 2; j > 1; j -= 2) {
+    Pair next = pair_at(x + j - 1);
+    first = pair_sum(pair_multiple(first, squares[0]), next);
+    second = pair_sum(pair_multiple(second, squares[1]), next);
+    third = pair_sum(pair_multiple(third, squares[2]), next);
+  }
+  change[0] = taylor_end_of_change(x, j, first, s[0]);
+  change[1] = taylor_end_of_change(x, j, second, s[1]);
+  change[2] = taylor_end_of_change(x, j, third, s[2]);
 }
 
 /* What the tolerance asks for. */

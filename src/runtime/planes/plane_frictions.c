@@ -140,11 +140,10 @@ static void guess(struct Instance *instance) {
   struct Point point = instance_point(instance);
   double *parameter = instance->parameter;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    const struct PlaneFacts *facts = &switches->planes[i];
-    parameter[switches->frictions[facts->along].mode] = PLANE_HEADS;
-    parameter[facts->heading[0]] = parameter[facts->lower] = 1.0;
-    parameter[facts->heading[1]] = 0.0;
-    parameter[facts->upper] = -1.0;
+    const struct PlaneState state = {.facts = &switches->planes[i]};
+    plane_free(&settlement, &state);
+    parameter[state.facts->heading[0]] = 1.0;
+    parameter[state.facts->heading[1]] = 0.0;
   }
   size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   memset(settlement.acceleration, 0, rows * sizeof *settlement.acceleration);
@@ -161,4 +160,5 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .check = frictions_check,
                                                  .guess = guess,
                                                  .set_plane = set_plane,
+                                                 .settle_together = settle_together,
                                                  .find_impulses = cone_impulses_find};

@@ -69,6 +69,7 @@ struct Course {
   int64_t before[STATISTIC_COUNT]; /* the statistics as it began */
   bool is_told;                    /* that it is slow */
   int resting;                     /* the last steps, which were too short to change the time */
+  bool ends_at_event;              /* the solver came to one behind which the motion does not go on */
 };
 
 /* Operations in the communication step. */
@@ -114,7 +115,9 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   struct CommunicationStep near = *step;
   if (course->progress.reach > 0.0) near.end = fmin(step->end, last->end + course->progress.reach);
   problem = lagrangian.solver->advance(instance, &near);
-  if (problem != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, problem, &course->progress);
+  const char *barrier = problem;
+  if (barrier != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, barrier, &course->progress);
+  course->ends_at_event = problem != barrier;
   if (problem != NULL) return problem;
   step->count++;
   course->resting = solver_rests(last->start, last->end - last->start) ? course->resting + 1 : 0;
@@ -148,6 +151,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
     tell_observer(instance, step);
     if (*reached >= step->end) return NULL;
     problem = advance_once(instance, step, &course);
+    *ends_at_event = problem != NULL && course.ends_at_event;
     *reached = instance->situation->last_step.end;
     if (problem != NULL) return problem;
   }
@@ -180,12 +184,14 @@ static void log_stop(const struct Instance *instance, const struct Communication
 /* The state becomes that of the time which the solver came to, and says why it is not the end. */
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                             bool ends_at_event, double reached) {
+  const struct EventLaws *laws = lagrangian.event_laws;
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  if (lagrangian.constraints.projection != NULL && !ends_at_event) log_weakest(instance, reached);
+  bool is_explained = ends_at_event || (laws != NULL && laws->explain_stop(instance, reached));
+  if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
   return STEP_PARTIAL;

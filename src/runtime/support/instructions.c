@@ -135,41 +135,6 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
   }
 }
 
-/* The same with code of its own for each order. */
-#define EACH_OF_ORDER(size, order, ...)                                                                                \
-  case (order): {                                                                                                      \
-    enum { K = (order) };                                                                                              \
-    for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                            \
-    break;                                                                                                             \
-  }
-#define EACH_UNROLLED(size, ...)                                                                                       \
-  switch (k) {                                                                                                         \
-    EACH_OF_ORDER(size, 1, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 2, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 3, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 4, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 5, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 6, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 7, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 8, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 9, __VA_ARGS__)                                                                                \
-    EACH_OF_ORDER(size, 10, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 11, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 12, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 13, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 14, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 15, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 16, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 17, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 18, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 19, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 20, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 21, __VA_ARGS__)                                                                               \
-    EACH_OF_ORDER(size, 22, __VA_ARGS__)                                                                               \
-  default: break;                                                                                                      \
-  }                                                                                                                    \
-  break
-
 void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k) {
   Real *const *base = frame->base;
   for (;;) {
@@ -192,25 +157,25 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_GATE: EACH(3, R = WHERE(*ROW_A > 0.0, B, 0.0));
     case SERIES_MULTIPLE: EACH(3, R = *ROW_A * B);
     case SERIES_SHARE: EACH(3, R = A / *ROW_B);
-    case SERIES_PRODUCT: EACH_UNROLLED(3, R = series_product(K, ROW_A, ROW_B));
-    case SERIES_SQUARE: EACH_UNROLLED(2, R = series_square(K, ROW_A));
+    case SERIES_PRODUCT: EACH(3, R = series_product(k, ROW_A, ROW_B));
+    case SERIES_SQUARE: EACH(2, R = series_square(k, ROW_A));
     case SERIES_QUOTIENT: EACH(4, R = series_quotient(k, A, *ROW_C, ROW_B, ROW_R));
     case SERIES_ROOT: EACH(2, R = series_root(k, ROW_A, ROW_R));
     case SERIES_POWER: EACH(3, R = series_power(k, *ROW_B, ROW_A, ROW_R));
     case SERIES_RATE: EACH(2, (&R)[-1] = k * A);
-    case SERIES_INTEGRAL: EACH_UNROLLED(3, R = series_integral(K, ROW_A, ROW_B));
-    case SERIES_NEGATIVE_INTEGRAL: EACH_UNROLLED(3, R = -series_integral(K, ROW_A, ROW_B));
-    case SERIES_TURN: EACH(3, R = *ROW_A * (&B)[-1] * (1.0 / k));
-    case SERIES_NEGATIVE_TURN: EACH(3, R = -(*ROW_A * (&B)[-1]) * (1.0 / k));
+    case SERIES_INTEGRAL: EACH(3, R = series_integral(k, ROW_A, ROW_B));
+    case SERIES_NEGATIVE_INTEGRAL: EACH(3, R = -series_integral(k, ROW_A, ROW_B));
+    case SERIES_TURN: EACH(3, R = *ROW_A * (&B)[-1] * reciprocal[k]);
+    case SERIES_NEGATIVE_TURN: EACH(3, R = -(*ROW_A * (&B)[-1]) * reciprocal[k]);
     case SERIES_RATIO_INTEGRAL: EACH(3, R = series_ratio_integral(k, A, ROW_B, ROW_R));
     case SERIES_AREA: EACH(3, R = series_area(k, ROW_A, ROW_B));
     case SERIES_ANGLE: EACH(4, R = series_angle(k, ROW_A, ROW_B, ROW_C, ROW_R));
     case SERIES_ABSOLUTE: EACH(2, R = series_absolute(k, ROW_A));
     case SERIES_LARGER: EACH(4, R = WHERE(series_sign(k, ROW_A) > 0.0, B, C));
     case SERIES_SMALLER: EACH(4, R = WHERE(series_sign(k, ROW_A) < 0.0, B, C));
-    case SERIES_REST: EACH_UNROLLED(4, R = A - series_rest(K, ROW_B, ROW_C));
+    case SERIES_REST: EACH(4, R = A - series_rest(k, ROW_B, ROW_C));
     case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
-    case SERIES_STATE: EACH(2, (&R)[1] = A * (1.0 / (k + 1)));
+    case SERIES_STATE: EACH(2, (&R)[1] = A * reciprocal[k + 1]);
     case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
     default: return; /* lagc writes no other */
     }

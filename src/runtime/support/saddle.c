@@ -6,24 +6,8 @@
 
 #include "ldlt.h"
 
-/* A pivot of M below this share of its diagonal element has lost all its digits. */
-static const double smallest_share_of_mass = 1e-14;
-
-/*
- * A constraint with less of its row left than this share, squared, follows from the others: what rounding leaves of one
- * that does is smaller, and one that nearly does so would have no digits left.
- */
-static const double smallest_share = 1e-12;
-
-/* What rounding may make of such a share where those before it have much hold, and where one of them has the share 1 only. */
-static const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
-
 /* What a step takes from the forces, squared, as a share of what it leaves, when it is rounding. */
 static const double rounding_of_forces = 1e-32;
-
-static Real positive(Real value) {
-  return WHERE(value > 0.0, value, 0.0);
-}
 
 /* rest -= K x */
 static void subtract_product(size_t n, const size_t *start, const size_t *column, const Real *matrix, const Real *x,
@@ -69,9 +53,11 @@ static Real hold_of(const size_t *start, const size_t *column, const int *coordi
   return square_by_mass(start, column, coordinate, matrix, i, w);
 }
 
-/* Where those before it have little hold, rounding grows into what is left of a constraint. */
-static Condition is_doubtful(Real share, Real weakest) {
-  return BOTH(fabs(share) > rounding_of_share, fabs(share) * weakest < rounding_by_weakest);
+/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
+static Condition has_row(const size_t *start, const Real *m, size_t i) {
+  Real sum = REAL(0.0);
+  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
+  return sum != 0.0;
 }
 
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
@@ -80,25 +66,28 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
   *weakest = REAL(1.0);
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
-    Real diagonal = m[last], pivot = diagonal, mobility = REAL(0.0); /* J M^-1 J^T of the constraint alone */
-    for (size_t k = start[i]; k < last; k++) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
+    if (coordinate[i] < 0 && !ANYWHERE(has_row(start, m, i))) {
+      m[last] = REAL(-INFINITY);
+      continue;
+    }
+    Real diagonal = m[last], pivot = diagonal, mobility = REAL(0.0);
+    for (size_t k = start[i]; k < last; k++)
+      if (!ldlt_is_idle(m[start[column[k] + 1] - 1])) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1], term = l * m[k];
       pivot -= term;
-      mobility += positive(term);
+      mobility += saddle_mobility(term);
       m[k] = l;
     }
     if (coordinate[i] > 0) {
-      REQUIRE(pivot > smallest_share_of_mass * diagonal, i + 1);
+      REQUIRE(saddle_is_definite(pivot, diagonal), i + 1);
       m[last] = pivot;
       continue;
     }
     Real hold = -pivot;
-    Condition doubts = is_doubtful(hold / mobility, *weakest);
+    Condition doubts = saddle_is_doubtful(hold, mobility, *weakest);
     if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
-    Condition has_hold = hold > smallest_share * mobility;
-    m[last] = WHERE(has_hold, -hold, -INFINITY);
-    *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
+    m[last] = saddle_pivot(hold, mobility, weakest);
   }
   return 0;
 }
@@ -199,13 +188,6 @@ static void carry_load(size_t n, const size_t *start, const size_t *column, cons
   saddle_solve(n, start, column, m, missing);
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) x[i] += missing[i];
-}
-
-/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
-static Condition has_row(const size_t *start, const Real *m, size_t i) {
-  Real sum = REAL(0.0);
-  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
-  return sum > 0.0;
 }
 
 /* N balances only as well as the constraints before those that follow have hold: what it spoils is mended once. */

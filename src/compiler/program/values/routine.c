@@ -46,8 +46,8 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_RATE] = {"k * $1", PAST_COEFFICIENT, {COEFFICIENT}, 1, false},
     [SERIES_INTEGRAL] = {"series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
     [SERIES_NEGATIVE_INTEGRAL] = {"-series_integral$(k, $1, $2)", COEFFICIENT, {ROW, ROW_OF_PAST}, 1, true},
-    [SERIES_TURN] = {"$1 * $2[k - 1] * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
-    [SERIES_NEGATIVE_TURN] = {"-($1 * $2[k - 1]) * (1.0 / k)", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
+    [SERIES_TURN] = {"$1 * $2[k - 1] * reciprocal[k]", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
+    [SERIES_NEGATIVE_TURN] = {"-($1 * $2[k - 1]) * reciprocal[k]", COEFFICIENT, {VALUE, ROW_OF_PAST}, 2, true},
     [SERIES_RATIO_INTEGRAL] = {"series_ratio_integral(k, $1, $2, $0)", ROW, {COEFFICIENT, ROW_OF_PAST}, 1, true},
     [SERIES_AREA] = {"series_area(k, $1, $2)", COEFFICIENT, {ROW, ROW}, 1, true},
     [SERIES_ANGLE] = {"series_angle(k, $1, $2, $3, $0)", ROW, {ROW, ROW, ROW_OF_PAST}, 1, true},
@@ -59,7 +59,7 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [SERIES_GATE] = {"WHERE($1 > 0.0, $2, 0.0)", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
     [SERIES_REST] = {"$1 - series_rest$(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
     [SERIES_SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
-    [SERIES_STATE] = {"$1 * (1.0 / (k + 1))", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
+    [SERIES_STATE] = {"$1 * reciprocal[k + 1]", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
     [SERIES_SLOPE] = {"(k + 1) * $1", COEFFICIENT, {NEXT_COEFFICIENT}, 1, false},
 };
 
