@@ -1,5 +1,7 @@
 """Friction in a plane: by closed forms, by SciPy, and by what turning the axes must not change."""
 
+import math
+
 import fmpy
 import numpy as np
 import pytest
@@ -122,6 +124,10 @@ ROD = """<system name="{name}" description="Rod that slides on its tip">
 </system>"""
 IN_PLANE = 'velocity="slip*cos(turned) + vz*sin(turned)" across="vz*cos(turned) - slip*sin(turned)"'
 
+# The slider of a crank, which it stops nowhere but where all energy is spent; it is free along z.
+CRANK = """<system name="PlaneCrank"><coordinate name="phi" velocity="w"/><coordinate name="z" velocity="vz"/>
+  <kinetic>0.2*w^2/2 + vz^2/2</kinetic><friction name="rub" velocity="-0.3*sin(phi)*w" across="vz" force="1"/></system>"""
+
 SIZE, CONTACTS = 6, 2
 
 
@@ -145,7 +151,7 @@ def random_system():
 def built():
     texts = {f"Puck_{m}": PUCK.format(name=f"Puck_{m}", solver=f'<solver method="{m}"/>') for m in METHODS}
     texts |= {f"Disk{6 * rings}": disk(places(rings)) for rings in RINGS}
-    texts |= {"PlaneBall": BALL.format(name="PlaneBall"), "WalledBall": WALLED.format(name="WalledBall"), "Cluster": CLUSTER, "Sledges": SLEDGE, "TwoSoles": SOLES, "RandomCones": random_system()}
+    texts |= {"PlaneBall": BALL.format(name="PlaneBall"), "WalledBall": WALLED.format(name="WalledBall"), "Cluster": CLUSTER, "Sledges": SLEDGE, "TwoSoles": SOLES, "RandomCones": random_system(), "PlaneCrank": CRANK}
     texts |= {"RodInPlane": ROD.format(name="RodInPlane", velocities=IN_PLANE), "RodOnLine": ROD.format(name="RodOnLine", velocities='velocity="slip"')}
     build_systems("friction-in-a-plane", texts)
 
@@ -529,3 +535,13 @@ def test_a_negative_force_is_refused(open_fmu):
     instance.set({"mu": -0.1})
     with instance.fails(DISCARD, "force of the friction 'sole' is -"):
         to(instance, 0.1)
+
+
+def test_a_dead_centre(open_fmu):
+    """The slider's velocity is 0 there, and friction without a lever cannot hold the crank: 0.9 J by 1 N are the way."""
+    for start, w in ((1.0, 3.0), (-0.5, 3.0), (-1.0, -3.0)):
+        instance = open_fmu("PlaneCrank").initialize({"phi": start, "w": w})
+        instance.step(4)
+        centre = 1 + math.cos(start) if start * w > 0 else 3 - math.cos(start)
+        end = 2 * math.pi - math.acos((0.9 - 0.3 * centre) / 0.3 - 1)
+        assert instance.get("phi") == pytest.approx(math.copysign(end, w), abs=1e-9)

@@ -18,8 +18,7 @@ static const double shortest_slip = 1e-4;
 /* In units of what rounding makes of it: a force below it is told by rounding alone. */
 static const double least_certainty = 4.0;
 
-/* Of the rate before, what is left of it where a friction holds a velocity. */
-static const double held_share = 1e-6;
+const double friction_held_share = 1e-6;
 
 /* Less of the largest force is rounding. */
 static const double rounded_force = 1e-12;
@@ -83,7 +82,7 @@ static double mode_without_force(const struct FrictionState *state) {
  * stops it there, and one that would is rounding. 0 of others.
  */
 static double mode_without_hold(const struct FrictionState *state) {
-  bool goes_on = fabs(state->rate) > held_share * state->largest_rate,
+  bool goes_on = fabs(state->rate) > friction_held_share * state->largest_rate,
        is_told = fabs(state->rate) > state->noise_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->noise_of_force;
   double most = goes_on ? state->noise_of_force : fabs(state->force);
@@ -175,7 +174,7 @@ bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *h
 /* Whether the velocity of one that slides only passes through 0. */
 static bool leaves_rest(const struct Settlement *settlement, size_t friction) {
   size_t rate = friction_place(settlement->switches, friction, FRICTION_RATE);
-  double least = fmax(settlement->noise[rate], held_share * settlement->largest[rate]);
+  double least = fmax(settlement->noise[rate], friction_held_share * settlement->largest[rate]);
   return fabs(settlement->value[rate]) > least;
 }
 

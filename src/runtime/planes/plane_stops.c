@@ -4,15 +4,35 @@
  */
 #include "planes/plane_stops.h"
 
+#include <math.h>
+
+#include "contacts/frictions.h"
+
+/* In settlement->takes_part: it is tried; and found to have no hold of what moves, as a slider at the dead centre of its crank. */
+static const double is_tried = 1.0, has_no_hold = 2.0;
+
+/* So many times its stiction no friction is asked for that holds. */
+static const double hopeless = 1e6;
+
 /* All that are slow stick for a try. */
 static void try_all(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
     bool tries = state.mode != PLANE_STICKS && plane_is_slow(settlement, &state);
-    settlement->takes_part[settlement->switches->contact_count + state.facts->along] = tries ? 1.0 : 0.0;
+    settlement->takes_part[settlement->switches->contact_count + state.facts->along] = tries ? is_tried : 0.0;
     if (tries) plane_stick(settlement, &state);
     if (tries) plane_count_switch(settlement, &state);
   }
+}
+
+/* Whether its velocity goes on though it sticks. */
+static bool goes_on(const struct Settlement *settlement, const struct PlaneState *state) {
+  double largest = 0.0;
+  for (size_t i = 0; i < 2; i++) {
+    size_t place = friction_place(settlement->switches, state->facts->along + i, FRICTION_RATE);
+    largest = fmax(largest, settlement->largest[place]);
+  }
+  return hypot(state->rate[0], state->rate[1]) > friction_held_share * largest;
 }
 
 /* The one of those that are tried which goes furthest beyond its stiction; plane_count for none. */
@@ -22,9 +42,10 @@ static size_t find_overcome(const struct Settlement *settlement) {
   double most = 0.0;
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    bool is_tried = settlement->takes_part[switches->contact_count + state.facts->along] != 0.0;
-    if (!is_tried || state.mode != PLANE_STICKS || !(state.needed - state.stiction > most)) continue;
-    most = state.needed - state.stiction;
+    bool takes_part = settlement->takes_part[switches->contact_count + state.facts->along] != 0.0;
+    double beyond = goes_on(settlement, &state) ? INFINITY : state.needed - state.stiction;
+    if (!takes_part || state.mode != PLANE_STICKS || !(beyond > most)) continue;
+    most = beyond;
     found = i;
   }
   return found;
@@ -33,8 +54,11 @@ static size_t find_overcome(const struct Settlement *settlement) {
 /* It slides on, or begins anew where its velocity is none. */
 static void let_plane_slide(struct Settlement *settlement, size_t plane) {
   struct PlaneState state = plane_state(settlement, plane);
+  bool passes = goes_on(settlement, &state);
+  if (passes || state.needed > hopeless * state.stiction)
+    settlement->takes_part[settlement->switches->contact_count + state.facts->along] = has_no_hold;
   if (plane_moves(&state)) plane_slide(settlement, &state);
-  else plane_head(settlement, &state, state.force);
+  else plane_head(settlement, &state, passes ? state.rate : state.force);
 }
 
 /* Brings what sticks to rest, and what begins anew. False where that cannot be. */
@@ -44,7 +68,8 @@ static bool bring_to_rest(struct Settlement *settlement) {
   settlement_keep_modes(settlement);
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    bool begins = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
+    bool can_rest = settlement->takes_part[switches->contact_count + state.facts->along] != has_no_hold;
+    bool begins = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state) && can_rest;
     if (begins) plane_stick(settlement, &state);
     moves |= (begins || state.mode == PLANE_STICKS) && state.speed > 0.0;
   }
