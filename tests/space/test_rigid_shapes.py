@@ -6,6 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 import fmu
@@ -35,7 +36,8 @@ ON_PLANE = f"""<system name="OnPlane">{HEAD}<parameter name="turned" start="0" u
   {CONTACT.format("floor", "ball")}<experiment stopTime="2" stepSize="0.01"/></system>"""
 SIDES = "".join(f'<parameter name="{side}" start="{size}" unit="m"/>' for side, size in zip("ABC", (0.4, 0.6, 0.2)))
 CRATE = f"""<system name="RigidCrate">{HEAD}{SIDES}{free("a", BOX, "C/2")}{WEIGHT}
-  <shape name="box" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" type="plane"/>
+  <parameter name="shake" start="0" unit="m"/><frame name="plate"><translate x="shake*sin(10*time)"/></frame>
+  <shape name="box" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" in="plate" type="plane"/>
   {CONTACT.format("box", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
 BALLS = f"""<system name="TwoBalls">{HEAD}{free("a", BALL, "r")}{free("b", BALL, "0")}
   <shape name="one" in="a" type="sphere" radius="r"/><shape name="other" in="b" type="sphere" radius="r"/>
@@ -345,6 +347,19 @@ def test_row_of_balls():
         instance.run(2.0, 0.1)
         for i in (1, 2, 3, 4):
             assert [instance.get(f"v{x}[{i}]") for x in "xyz"] == pytest.approx(way * (i == 4), abs=1e-12)
+
+
+@pytest.mark.parametrize("mu, shake", [(0.3, 0.05), (1.0, 0.1)])
+def test_box_on_a_shaken_plate(mu, shake):
+    """All its corners come to their limit at once, where the plate is faster than mu g; it slides until the plate is as slow, and sticks again."""
+    speed = lambda t: 10 * shake * math.cos(10 * t)
+    begins = math.asin(mu * G / (100 * shake)) / 10
+    slides = lambda t: speed(begins) - mu * G * (t - begins)
+    ends = brentq(lambda t: speed(t) - slides(t), begins + 0.01, begins + 0.35)
+    with Running("RigidCrate", {"mu": mu, "shake": shake, "avx": speed(0)}) as instance:
+        for time, velocity in ((begins / 2, speed), ((begins + ends) / 2, slides), (ends + 0.01, speed)):
+            instance.run(time, 0.1)
+            assert instance.get("avx") == pytest.approx(velocity(time), rel=1e-9)
 
 
 def check_column(boxes, time):

@@ -69,10 +69,14 @@ static bool leaves_between(struct Heading *heading, double from, double turn, do
   return heading->ahead >= -heading->noise;
 }
 
-/* Friction the other way round changes the acceleration by as much as all that it makes, twice. */
+/* Friction the other way round changes the acceleration by as much as all that it makes, twice; along what others hold, by nothing. */
 static void measure_friction(struct Heading *heading, double angle) {
-  double turn = turn_at(heading, angle), ahead = heading->ahead, back = turn_at(heading, angle + acos(-1.0));
-  heading->noise = rounding_share * hypot(turn + back, ahead + heading->ahead);
+  const double half_turn = acos(-1.0);
+  heading->noise = 0.0;
+  for (int i = 0; i < 2; i++, angle += 0.5 * half_turn) {
+    double turn = turn_at(heading, angle), ahead = heading->ahead, back = turn_at(heading, angle + half_turn);
+    heading->noise = fmax(heading->noise, rounding_share * hypot(turn + back, ahead + heading->ahead));
+  }
 }
 
 /* The nearest heading to a first one along which it slides away; NAN for none. */
