@@ -7,6 +7,7 @@
 #ifndef LDLT_H
 #define LDLT_H
 
+#include <math.h>
 #include <stddef.h>
 
 #include "arithmetic.h"
@@ -20,6 +21,12 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m)
  * of row i; place: where row i has column j.
  */
 Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t place);
+
+/* Whether the row of a pivot has no part in anything: it is infinite, as that of an open contact, and 0 is found for its number. */
+static inline bool ldlt_is_idle(Real pivot) {
+  Condition has_part = pivot != -INFINITY;
+  return !ANYWHERE(has_part);
+}
 
 /* Solves L D L^T x = b in place, with the result of ldlt_factor(). */
 void ldlt_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);

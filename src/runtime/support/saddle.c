@@ -74,14 +74,26 @@ static Condition is_doubtful(Real share, Real weakest) {
   return BOTH(fabs(share) > rounding_of_share, fabs(share) * weakest < rounding_by_weakest);
 }
 
+/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
+static Condition has_row(const size_t *start, const Real *m, size_t i) {
+  Real sum = REAL(0.0);
+  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
+  return sum != 0.0;
+}
+
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   Real *matrix = m + start[n], *weakest = matrix + start[n], *work = weakest + 1;
   memcpy(matrix, m, start[n] * sizeof *m);
   *weakest = REAL(1.0);
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
+    if (coordinate[i] < 0 && !ANYWHERE(has_row(start, m, i))) {
+      m[last] = REAL(-INFINITY);
+      continue;
+    }
     Real diagonal = m[last], pivot = diagonal, mobility = REAL(0.0); /* J M^-1 J^T of the constraint alone */
-    for (size_t k = start[i]; k < last; k++) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
+    for (size_t k = start[i]; k < last; k++)
+      if (!ldlt_is_idle(m[start[column[k] + 1] - 1])) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1], term = l * m[k];
       pivot -= term;
@@ -96,8 +108,8 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     Real hold = -pivot;
     Condition doubts = is_doubtful(hold / mobility, *weakest);
     if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
-    Condition has_hold = hold > smallest_share * mobility;
-    m[last] = WHERE(has_hold, -hold, -INFINITY);
+    Condition has_hold = hold > smallest_share * mobility, has_none = hold <= smallest_share * mobility;
+    m[last] = WHERE(has_none, -INFINITY, -hold); /* what is no number stays none */
     *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
   }
   return 0;
@@ -199,13 +211,6 @@ static void carry_load(size_t n, const size_t *start, const size_t *column, cons
   saddle_solve(n, start, column, m, missing);
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) x[i] += missing[i];
-}
-
-/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
-static Condition has_row(const size_t *start, const Real *m, size_t i) {
-  Real sum = REAL(0.0);
-  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
-  return sum > 0.0;
 }
 
 /* N balances only as well as the constraints before those that follow have hold: what it spoils is mended once. */
