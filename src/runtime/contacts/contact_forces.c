@@ -204,7 +204,7 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
     if (is_closed ? !parts : !presses) continue;
     set_contact(settlement, contact, !is_closed);
     if (!is_closed) let_slide(settlement, contact);
-    settlement->was_opened[contact] = is_closed ? 1.0 : 0.0;
+    settlement->was_opened[contact] = is_closed ? 1.0 : -1.0;
     changes = true;
   }
   return changes;

@@ -339,9 +339,8 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   return NULL;
 }
 
-const struct ContactLaws contact_laws = {
-    .act = act_once,
-    .settle_forces = contact_forces_settle,
-    .part = part,
-    .check_gaps = check_gaps,
-    .explain = contact_forces_explain};
+const struct ContactLaws contact_laws = {.act = act_once,
+                                         .settle_forces = contact_forces_settle,
+                                         .part = part,
+                                         .check_gaps = check_gaps,
+                                         .explain = contact_forces_explain};

@@ -3,7 +3,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -229,7 +228,7 @@ static void name_indicator(size_t indicator, char *text, size_t size) {
 }
 
 /* The step ends before what cannot be told. */
-static const char *lose(const struct Instance *instance, struct EventProgress *progress, size_t indicator) {
+static const char *lose(struct Instance *instance, struct EventProgress *progress, size_t indicator) {
   char name[NAME_SIZE];
   progress->is_lost = true;
   if (progress->unsure > UNSURE_LIMIT) {
@@ -240,6 +239,9 @@ static const char *lose(const struct Instance *instance, struct EventProgress *p
                 progress->searched, function != NULL ? ", by " : "", function != NULL ? function : "");
     return too_close;
   }
+  if (lagrangian.solver->interpolate(instance, progress->searched, instance->event_state) &&
+      settle_explain(instance, progress->searched, instance->event_state))
+    return too_close;
   name_indicator(indicator, name, sizeof name);
   log_message(instance, STATUS_DISCARD,
               "time %.15g: %s comes to 0 and goes from it there faster than can be told; expected an expression that "
@@ -320,14 +322,5 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
 }
 
 bool events_explain_stop(struct Instance *instance, double time) {
-  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
-  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
-  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  struct Point point = solver_point(instance, time, instance->state);
-  /* Beside a jam forces may be too large to be told: without any. */
-  memset(settlement.acceleration, 0,
-         (lagrangian.coordinate_count + lagrangian.constraints.count) * sizeof *settlement.acceleration);
-  memset(settlement.noise, 0, settlement_value_count(lagrangian.switches) * sizeof *settlement.noise);
-  lagrangian.switches->switching_values(&point, settlement.acceleration, settlement.value);
-  return laws->explain(&settlement);
+  return settle_explain(instance, time, instance->state);
 }

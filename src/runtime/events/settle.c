@@ -1,5 +1,7 @@
 #include "events/settle.h"
 
+#include <string.h>
+
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "events/branches.h"
@@ -106,12 +108,26 @@ static const char *keep_on_constraints(const struct Settlement *settlement) {
   return solver_project(settlement->instance, settlement->time, settlement->state);
 }
 
+bool settle_explain(struct Instance *instance, double time, double *state) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Settlement settlement = settlement_at(instance, time, state, AT_CHANGE);
+  struct Point point = solver_point(instance, time, state);
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  /* Beside a jam forces may be too large to be told: without any. */
+  memset(settlement.acceleration, 0, rows * sizeof *settlement.acceleration);
+  memset(settlement.noise, 0, settlement_value_count(lagrangian.switches) * sizeof *settlement.noise);
+  lagrangian.switches->switching_values(&point, settlement.acceleration, settlement.value);
+  return laws->explain(&settlement);
+}
+
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed) {
   struct Settlement settlement = settlement_at(instance, time, state, occasion);
   settlement.indicator = indicator;
   const char *problem = begin_settlement(&settlement);
   if (problem == NULL) problem = settle_in_rounds(&settlement);
+  if (problem == no_accelerations) settle_explain(instance, time, state);
   if (problem == NULL) problem = branches_check(&settlement);
   if (problem == NULL) problem = push(&settlement);
   if (problem == NULL) problem = continuity_check(&settlement);

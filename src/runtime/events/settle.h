@@ -12,4 +12,7 @@
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed);
 
+/* Logs which contact friction jams at a state where the motion ends; false where it jams none. */
+bool settle_explain(struct Instance *instance, double time, double *state);
+
 #endif

@@ -16,7 +16,7 @@ struct Settlement {
   double *force_noise;        /* what rounding may make of the force of each friction's constraint */
   double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
-  double *flips, *was_opened; /* of each branch and friction; of each contact */
+  double *flips, *was_opened; /* of each branch and friction; of each contact: -1 where it closed again by its force */
   double *rate;               /* of each branch, before it flipped last; 0 where it did not */
   double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
   double *acceleration;       /* and forces of constraints */
