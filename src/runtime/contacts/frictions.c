@@ -21,7 +21,7 @@ static const double least_certainty = 4.0;
 const double friction_held_share = 1e-6;
 
 /* Less of the largest force is rounding. */
-static const double rounded_force = 1e-12;
+static const double negligible_force = 1e-12;
 
 static const char neither[] = "a friction switches back and forth there without end";
 
@@ -203,16 +203,16 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
 }
 
 /* What rounding makes of forces that the largest one cancels in. */
-static double rounding_of_forces(const struct Settlement *settlement) {
+static double rounding_left_of_forces(const struct Settlement *settlement) {
   double largest = 0.0;
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     largest = fmax(largest, fabs(settlement->acceleration[lagrangian.coordinate_count + j]));
-  return rounded_force * largest;
+  return negligible_force * largest;
 }
 
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
 const char *frictions_check(const struct Settlement *settlement) {
-  double rounding = rounding_of_forces(settlement);
+  double rounding = rounding_left_of_forces(settlement);
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
     size_t place = friction_place(settlement->switches, i, FRICTION_FORCE);
     double force = settlement->value[place];
