@@ -61,20 +61,12 @@ static const char *settle_once(struct Settlement *settlement, bool *again) {
   return problem;
 }
 
-/* Modes that were found one by one may exclude each other, so that there are no accelerations: those of all at once. */
-static bool evaluate(struct Settlement *settlement) {
-  const struct FrictionLaws *laws = settlement->switches->friction_laws;
-  if (settlement_evaluate(settlement)) return true;
-  bool may_find = settlement->is_evaluated && laws != NULL && laws->settle_together != NULL;
-  return may_find && laws->settle_together(settlement) && settlement_evaluate(settlement);
-}
-
 static const char *settle_in_rounds(struct Settlement *settlement) {
   const char *problem = NULL;
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) return "events follow one another there without end";
-    if (!evaluate(settlement)) return no_accelerations;
+    if (!settlement_evaluate(settlement)) return no_accelerations;
     if (round == 0) conditions_begin(settlement);
     problem = settle_once(settlement, &again);
   }

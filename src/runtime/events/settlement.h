@@ -71,8 +71,6 @@ struct FrictionLaws {
   void (*guess)(struct Instance *instance);
   /* Lets the friction in a plane slide, or stick; NULL without any. */
   void (*set_plane)(struct Settlement *settlement, size_t plane, bool slides);
-  /* Once: the modes of all at rest by their forces. False where there are none, or it was done already. NULL without any in a plane. */
-  bool (*settle_together)(struct Settlement *settlement);
   /*
    * The impulse of each push where some are of frictions in a plane, such that the rates, and those that the impulses add, fulfil
    * the law of impacts. False where none is found. NULL without any.

@@ -160,5 +160,4 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .check = frictions_check,
                                                  .guess = guess,
                                                  .set_plane = set_plane,
-                                                 .settle_together = settle_together,
                                                  .find_impulses = cone_impulses_find};
