@@ -17,9 +17,12 @@ PRESSED = """<system name="{name}"><coordinate name="x" velocity="v" start="1"/>
 GRAZED = """<system name="{name}"><coordinate name="x" velocity="v" velocityStart="5"/><coordinate name="y" velocity="w" velocityStart="2"/>
   <particle mass="2" x="x" y="y"/><gravity y="-10"/><contact name="ground" gap="y" restitution="0.7"/>
   <friction name="grip" coordinate="x" force="0.3*ground.force"/><solver method="{method}"/></system>"""
+BALANCED = """<system name="{name}"><parameter name="m" start="0.1"/><parameter name="M" start="0.7"/><coordinate name="x" velocity="v" velocityStart="1"/>
+  <coordinate name="y" velocity="w"/><particle mass="m + M" x="x" y="y"/><gravity y="-9.81"/><contact name="ground" gap="y"/>
+  <friction name="grip" coordinate="x" force="0.5*(ground.force - m*9.81 - M*9.81)"/><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
-    ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"])
+    ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"]), ("Balanced", BALANCED, ["taylor"])
 ] for method in methods}  # fmt: skip
 
 
@@ -43,6 +46,14 @@ def test_tiny_bounces_in_a_long_step():
     instance = Instance("Tiny_erk").initialize()
     instance.step(3)
     assert instance.get("h", "v", "ground.force") == pytest.approx([0, 0, 9.81], abs=1e-12)
+
+
+@pytest.mark.parametrize("mass", [0.9, 1.3])
+def test_the_rest_of_forces_that_cancel_is_no_negative_friction(mass):
+    """Whatever the signs of their roundings."""
+    instance = Instance("Balanced_taylor").initialize({"m": mass})
+    instance.step(1)
+    assert instance.get("x", "v") == pytest.approx([1, 1], abs=1e-12)
 
 
 @pytest.mark.parametrize("method", ["taylor", "erk", "bdf"])

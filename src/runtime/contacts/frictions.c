@@ -15,6 +15,9 @@
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
 
+/* Less of the largest force is rounding. */
+static const double negligible_force = 1e-12;
+
 static const char neither[] = "a friction switches back and forth there without end";
 
 /* What decides on the mode of a friction. */
@@ -167,12 +170,21 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
   return true;
 }
 
+/* What rounding makes of forces that the largest one cancels in. */
+static double rounding_left_of_forces(const struct Settlement *settlement) {
+  double largest = 0.0;
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
+    largest = fmax(largest, fabs(settlement->acceleration[lagrangian.coordinate_count + j]));
+  return negligible_force * largest;
+}
+
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
 const char *frictions_check(const struct Settlement *settlement) {
+  double rounding = rounding_left_of_forces(settlement);
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
     size_t place = friction_place(settlement->switches, i, FRICTION_FORCE);
     double force = settlement->value[place];
-    if (!(force < -settlement->noise[place])) continue;
+    if (!(force < -settlement->noise[place] - rounding)) continue;
     log_message(
         settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
         "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...) of what it depends on",
