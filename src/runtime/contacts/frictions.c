@@ -122,9 +122,22 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
   log_message(settlement->instance, STATUS_DISCARD,
               "time %g: the friction '%s' neither sticks nor slides; expected a stiction of at least the "
-              "force while it slides",
+              "force while it slides, less friction, or another position",
               settlement->time, settlement->switches->frictions[friction].name);
   return neither;
+}
+
+void frictions_blame(const struct Settlement *settlement, const char *missing) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t worst = 0;
+  for (size_t i = 1; i < switches->friction_count; i++)
+    if (settlement->flips[friction_indicator(switches, i)] > settlement->flips[friction_indicator(switches, worst)])
+      worst = i;
+  log_message(
+      settlement->instance, STATUS_DISCARD,
+      "time %g: no %s are found for the frictions there, of which '%s' switched most; expected less friction, or "
+      "another position",
+      settlement->time, missing, switches->frictions[worst].name);
 }
 
 const char *frictions_act(struct Settlement *settlement, bool *switched) {
@@ -226,4 +239,5 @@ const char *frictions_check(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct FrictionLaws friction_laws = {.act = frictions_act, .tell = frictions_tell, .check = frictions_check};
+const struct FrictionLaws friction_laws = {
+    .act = frictions_act, .tell = frictions_tell, .blame = frictions_blame, .check = frictions_check};

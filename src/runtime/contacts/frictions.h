@@ -17,6 +17,9 @@ bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *h
 /* Where no mode of a friction lasts: logs it. Returns the reason why the motion cannot go on. */
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction);
 
+/* Logs that something is not found there, with the friction that switched most. */
+void frictions_blame(const struct Settlement *settlement, const char *missing);
+
 /* Of the rate of a velocity, what is left of it at most where friction holds that. */
 extern const double friction_held_share;
 

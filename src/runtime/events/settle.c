@@ -121,13 +121,20 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
   return laws->explain(&settlement);
 }
 
+/* What has no accelerations by its own mass matrix is told as that. */
+static void blame_frictions(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  if (switches->friction_count > 0 && settlement->instance->singular == 0)
+    switches->friction_laws->blame(settlement, "accelerations");
+}
+
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed) {
   struct Settlement settlement = settlement_at(instance, time, state, occasion);
   settlement.indicator = indicator;
   const char *problem = begin_settlement(&settlement);
   if (problem == NULL) problem = settle_in_rounds(&settlement);
-  if (problem == no_accelerations) settle_explain(instance, time, state);
+  if (problem == no_accelerations && !settle_explain(instance, time, state)) blame_frictions(&settlement);
   if (problem == NULL) problem = branches_check(&settlement);
   if (problem == NULL) problem = push(&settlement);
   if (problem == NULL) problem = continuity_check(&settlement);

@@ -65,6 +65,8 @@ struct FrictionLaws {
   const char *(*act)(struct Settlement *settlement, bool *again);
   /* Brings the modes that are told up to date; *again where that changed any. False where there are no accelerations. */
   bool (*tell)(struct Settlement *settlement, bool *again);
+  /* Logs that something, as accelerations, is not found for the frictions, of which there are some. */
+  void (*blame)(const struct Settlement *settlement, const char *missing);
   /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
   const char *(*check)(const struct Settlement *settlement);
   /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */

@@ -15,7 +15,10 @@
 /* So often may one switch before all are looked at together. */
 enum { TOGETHER_LIMIT = 20 };
 
-static const char no_directions[] = "the directions of frictions in a plane cannot be found there";
+static const char *refuse_directions(const struct Settlement *settlement) {
+  frictions_blame(settlement, "directions");
+  return "the directions of frictions in a plane cannot be found there";
+}
 
 /* Whether one that slides has to be tried to stick. */
 static bool is_stopping(const struct Settlement *settlement, const struct PlaneState *state) {
@@ -80,7 +83,7 @@ static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   if (!heads) return NULL;
   if (!plane_headings_find(settlement, again, &stays)) {
     *again = true;
-    return settle_together(settlement) ? NULL : no_directions;
+    return settle_together(settlement) ? NULL : refuse_directions(settlement);
   }
   if (stays == settlement->switches->plane_count) return NULL;
   *again = true;
@@ -110,7 +113,7 @@ static const char *act_on_planes(struct Settlement *settlement, bool *again) {
   if (*again) return NULL;
   if (stops) {
     *again = true;
-    return planes_stop(settlement) || settle_together(settlement) ? NULL : no_directions;
+    return planes_stop(settlement) || settle_together(settlement) ? NULL : refuse_directions(settlement);
   }
   return act_on_headings(settlement, again);
 }
@@ -157,6 +160,7 @@ static void guess(struct Instance *instance) {
 
 const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .tell = frictions_tell,
+                                                 .blame = frictions_blame,
                                                  .check = frictions_check,
                                                  .guess = guess,
                                                  .set_plane = set_plane,
