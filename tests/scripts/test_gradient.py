@@ -8,7 +8,7 @@ import pytest
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, allow_calls, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, work  # noqa: F401
+from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, allow_calls, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, small_bounces, work  # noqa: F401
 
 HELD = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('name="PendulumCartesian"', 'name="Held"')
 MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant name="k" value="10" unit="N/m"/>
@@ -81,6 +81,21 @@ def test_through_impacts(lagrange_fmu):  # noqa: F811
         time = fall + 2 * (e + e * e) * fall + 0.1
         found = lagrange_fmu.gradient(archive("Ball"), "h", list(at), time, start_values=at)
         assert found.derivatives == pytest.approx(slopes(lambda *at: bounce(mpmath.mpf(time), *at, 3), at), rel=1e-7)
+
+
+def test_through_small_bounces(lagrange_fmu):  # noqa: F811
+    """Micrometres high, and milliseconds long; that they are handled 1e-11 m late is seen in these."""
+    for at, time, expected in small_bounces():
+        assert lagrange_fmu.gradient(archive("Ball"), "v", list(at), time, start_values=at).derivatives == pytest.approx(expected, rel=2e-6)
+
+
+def test_to_rest(lagrange_fmu):  # noqa: F811
+    """Through all bounces; the impulses of a ball and of gravity are the same then, whatever the height."""
+    at = {"h": 0.2, "g": 9.81, "e": 0.5}
+    height = lambda h, g, e: mpmath.mpf(2) / 3 * h * mpmath.sqrt(2 * h / g) * (1 + 2 * e**3 / (1 - e**3))  # integral of each parabola: 2/3 of its height times its length
+    found = lagrange_fmu.gradient(archive("Ball"), "h", list(at), 1.0, integral=True, start_values=at)
+    assert found.value == pytest.approx(float(height(*at.values())), rel=1e-8)
+    assert found.derivatives == pytest.approx(slopes(height, at), rel=1e-6)
 
 
 def test_through_friction(lagrange_fmu):  # noqa: F811

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from building import BUILD, archive_of, build_systems
-from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, belt, bounce, energy_of_double, lagrange_fmu, oscillation, slopes, work  # noqa: F401
+from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, belt, bounce, energy_of_double, lagrange_fmu, oscillation, slopes, small_bounces, work  # noqa: F401
 
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
@@ -92,6 +92,15 @@ def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
     _, derivatives = motion_through_events("Ball", ["h", "v"], times, at, monkeypatch, ways)
     assert len(ways) == 1 and 0.999 < ways[0] / (fall * (1 + 2 * 0.7 / 0.3)) < 1
     assert derivatives[-1] == pytest.approx(np.zeros((2, 3)), abs=1e-4)
+
+
+def test_through_small_bounces(lagrange_fmu, monkeypatch):  # noqa: F811
+    """Micrometres high, and milliseconds long, in the series alone."""
+    ways = []
+    for at, time, expected in small_bounces():
+        _, derivatives = motion_through_events("Ball", ["v"], [0.0, time], at, monkeypatch, ways)
+        assert dict(zip(at, derivatives[-1, 0])) == pytest.approx(expected, rel=1e-8)
+    assert ways == []
 
 
 def test_through_friction(lagrange_fmu, monkeypatch):  # noqa: F811

@@ -90,6 +90,15 @@ def bounce(t, h0, g, e, bounces):
     return speed * (t - time) - g / 2 * (t - time) ** 2 if bounces else h0 - g / 2 * t**2
 
 
+def small_bounces():
+    """Starts h, g and e of a ball, how often it bounces, a time in the flight behind that and its speed then by each: of small motions, and of what is left of a large one."""
+    for h, e, bounces in ((1e-3, 0.8, 7), (1e-4, 0.8, 1), (3e-5, 0.8, 1), (1e-5, 0.8, 1), (1.0, 0.5, 8), (1.0, 0.5, 12)):
+        at = {"h": h, "g": 9.81, "e": e}
+        fall = np.sqrt(2 * h / 9.81)
+        time = fall * (1 + 2 * sum(e**k for k in range(1, bounces)) + 1.2 * e**bounces)
+        yield at, time, slopes(lambda *at: mpmath.diff(lambda t: bounce(t, *at, bounces), mpmath.mpf(time)), at)
+
+
 def belt(times, k, F, u):
     """Where the block is: a linear oscillator while it slides, carried along while it sticks; all in closed form."""
     w = mpmath.sqrt(k)
