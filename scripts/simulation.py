@@ -97,12 +97,20 @@ def simulate(fmu, start, output=None, input=None, **options):
     if input is not None:
         known(input.dtype.names[1:], [v.name for v in description.modelVariables if v.causality == "input"], description, "is not an input")
     tree = read_tree(fmu)
-    settings = {"fmi_type": "CoSimulation", "logger": print_problem, "debug_logging": True} | options
+    problems = []
+
+    def log(*words):
+        print_problem(*words)
+        *_, status, _, message = words
+        if status > 1:
+            problems.append(message.decode().replace("%%", "%"))
+
+    settings = {"fmi_type": "CoSimulation", "logger": log, "debug_logging": True} | options
     try:
         recorded = dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)])
         values = simulate_fmu(fmu, start_values=start, input=input, output=list(recorded), **settings)
     except FMICallException as problem:
-        raise Problem(f"{fmu}: {problem}") from None
+        raise Problem("; ".join([f"{fmu}: {problem}", *problems])) from None
     return Motion(fmu, description, tree, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
 
 

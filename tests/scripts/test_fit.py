@@ -25,12 +25,14 @@ WALLED = """<system name="Walled"><parameter name="l" start="1" unit="m"/><param
   <coordinate name="x" velocity="vx" unit="m" start="1"/><coordinate name="y" velocity="vy" unit="m"/><particle mass="1" x="x" y="y"/><gravity y="-9.81"/>
   <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><contact name="wall" gap="x + 0.2*l" unit="m" restitution="e"/></system>"""
 OFF = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('"PendulumCartesian"', '"Off"').replace('start="-1"', 'start="0.72"').replace('name="y"', 'name="y" start="-0.96"')
+NOTED = """<system name="Noted"><parameter name="w" start="1"/><coordinate name="x" velocity="v" start="1"/><mode name="fastest" start="0"/><particle mass="1" x="x"/>
+  <potential>w^2*x^2/2</potential><event when="x" direction="falling"><set mode="fastest">v</set></event></system>"""
 RELEASED = WALLED.replace('"Walled"', '"Released"').replace('unit="m"/><particle', 'unit="m" start="-0.7*l"/><particle')
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
+    build_systems("fitted", {"Noted": NOTED, "Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -124,9 +126,17 @@ def test_at_the_edge_of_what_happens(lagrange_fmu):
     before = lagrange_fmu.sensitivities(ball, ["v"], ["h", "g"], [impact])
     assert [before.derivatives["v", name][0] for name in ("h", "g")] == pytest.approx([0, -impact], rel=1e-9, abs=1e-9)
     assert lagrange_fmu.sensitivities(ball, ["h"], ["h"], [0.7], {"e": 0.0}).derivatives["h", "h"][0] == pytest.approx(0, abs=1e-9)
-    for by, values, why in (("e", {"e": 0.0}, "leads some neighbours into other modes .* by e through it"), ("h", {"h": 0.0}, "no derivative by 'h' at 0")):
+    for by, values, why in (("e", {"e": 0.0}, "leads some neighbours into other modes than this motion, of 'floor.closed', .* by e through it"),
+                            ("v", {"h": 0.0}, "no derivative by 'v' at 0: from values beside it floor.closed starts in another mode"), ("h", {"h": -1.0}, "contact 'floor' is penetrated")):  # fmt: skip
         with pytest.raises(lagrange_fmu.Problem, match=why):
             lagrange_fmu.sensitivities(ball, ["h"], [by], [0.7], values)
+    with pytest.raises(lagrange_fmu.Problem, match="contact 'floor' is penetrated"):
+        lagrange_fmu.simulate(ball, {"h": -1.0})
+
+
+def test_a_mode_that_holds_a_number(lagrange_fmu):
+    with pytest.raises(lagrange_fmu.Problem, match="gives 'fastest' another number for neighbours"):
+        lagrange_fmu.sensitivities(fmu.archive("Noted"), ["x"], ["w"], [3.0])
 
 
 def test_where_it_switches(lagrange_fmu):
@@ -183,6 +193,8 @@ def test_through_a_constraint_and_an_impact(lagrange_fmu):
 def test_times(lagrange_fmu, times):
     with pytest.raises(lagrange_fmu.Problem, match="expected one at least, from 0 s on"):
         lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["k"], times)
+    with pytest.raises(lagrange_fmu.Problem, match="expected numbers, in s"):
+        lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["k"], ["a"])
 
 
 def test_derivatives_through_friction(lagrange_fmu):

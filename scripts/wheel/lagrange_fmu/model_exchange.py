@@ -50,7 +50,7 @@ class Point:
         self.starts = {v.name: float(v.start) for v in description.modelVariables if v.name in self.states}
         self.indicator_count = description.numberOfEventIndicators
         modes = [v for v in description.modelVariables if v.variability == "discrete" and v.causality == "local" and v.name not in COUNTERS]
-        self.mode_references = [[v.valueReference for v in modes if (v.type in ("Real", "Float64")) == is_real] for is_real in (True, False)]
+        self.numbers, self.switches = ([v.name for v in modes if (v.type in ("Real", "Float64")) == is_number] for is_number in (True, False))
 
     def read(self, names):
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
@@ -82,8 +82,12 @@ class Point:
 
     def modes(self):
         """Of what switches; the same list where that does the same."""
-        real, whole = self.mode_references
-        return [*(self.model.getReal(real) if real else ()), *(self.model.whole_numbers(whole) if whole else ())]
+        numbers, switches = ([self.references[name] for name in names] for names in (self.numbers, self.switches))
+        return [*(self.model.getReal(numbers) if numbers else ()), *(self.model.whole_numbers(switches) if switches else ())]
+
+    def differing(self, modes, others):
+        """The names of those that are not the same."""
+        return [name for name, mode, other in zip([*self.numbers, *self.switches], modes, others) if mode != other]
 
     def set_states(self, states):
         """In the order of `states`."""
@@ -100,15 +104,15 @@ class Point:
 
 
 @contextmanager
-def _opened(fmu, description, in_series):
-    """The FMU as a model, and what it logs."""
-    folder, messages = extract(str(fmu)), []
+def _opened(fmu, description, in_series, messages):
+    """The FMU as a model, which appends what it logs to the messages."""
+    folder = extract(str(fmu))
     kind = {("2.0", False): Model2, ("2.0", True): Slave2, ("3.0", False): Model3, ("3.0", True): Slave3}[description.fmiVersion, in_series]
     try:
         model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
         model.begin(messages)
         try:
-            yield model, messages
+            yield model
         finally:
             model.freeInstance()
     finally:
@@ -125,19 +129,20 @@ def _check_abilities(fmu, description, adjoint):
 
 
 @contextmanager
-def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False):
+def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False, messages=None):
     """
     The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
     as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables, of FMI 3.0 where
-    it is to stop at events.
+    it is to stop at events. messages: those of another one, to which what it logs is appended.
     """
+    messages = [] if messages is None else messages
     words = ADJOINT if adjoint else [*words_for(by), *SCALARS] if stops_at_events else words_for(by)
     with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=words) as fmu:
         description = described(fmu)
         if not stops_at_events:
             _check_abilities(fmu, description, adjoint)
         check_start(values, description)
-        with _opened(fmu, description, bool(by)) as (model, messages):
+        with _opened(fmu, description, bool(by), messages) as model:
             try:
                 yield Point(model, description, values, by, messages)
             except FMICallException as problem:

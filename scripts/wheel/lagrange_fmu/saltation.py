@@ -106,9 +106,16 @@ class Saltation:
         except FMICallException:
             why = "; ".join(self.point.messages)
             raise Problem(f"the event at {self.time:g} s cannot be had {by}for some neighbours, so that there is no derivative: {why}; expected other values, or a min and a max that keep to what there is") from None
-        if self.point.modes() != self.modes:
-            raise OtherModes(f"the event at {self.time:g} s leads some neighbours into other modes than this motion, so that there is no derivative {by}through it; expected other values, or a stop time before it")
+        differing = self.point.differing(self.modes, self.point.modes())
+        if differing:
+            raise OtherModes(self.what_differs(differing, by))
         return np.append(after, delay)
+
+    def what_differs(self, names, by):
+        quoted = ", ".join(f"'{name}'" for name in names)
+        if {*names} <= {*self.point.numbers}:
+            return f"the event at {self.time:g} s gives {quoted} another number {by}for neighbours, however near: derivatives by what modes hold are not known, even where nothing depends on it; expected a system without that mode, or a stop time before the event"
+        return f"the event at {self.time:g} s leads some neighbours into other modes than this motion, of {quoted}, so that there is no derivative {by}through it; expected other values, or a stop time before it"
 
     def sizes_of(self, acting):
         return {reference: abs(value) or 1.0 for reference, value in zip(acting, self.model.getReal(acting) if acting else ())}

@@ -49,15 +49,21 @@ class Start:
 
     def slope_by(self, name):
         """On both sides, or on one where it cannot start on the other."""
+        why = "from no value beside it the motion starts"
         for rule in self.rules[name]:
             found = [self.changed({name: count}) for count, _ in rule]
             if None in found:
                 continue
             states, modes, sides = zip(*found)
-            if any(mode != self.modes for mode in modes) or (np.max(sides, axis=0) * np.min(sides, axis=0) < 0).any():
+            others = [mode for mode in modes if mode != self.modes]
+            if others:
+                why = f"from values beside it {', '.join(self.point.differing(self.modes, others[0]))} starts in another mode"
+                break
+            if (np.max(sides, axis=0) * np.min(sides, axis=0) < 0).any():
+                why = "from values beside it the motion starts on both sides of an event"
                 break
             return sum(weight * state for state, (_, weight) in zip(states, rule)) / self.step[name]
-        raise Problem(f"the motion has no derivative by '{name}' at {self.at[name]:g}, around which there is no start, or one in other modes; expected another value of it")
+        raise Problem(f"the motion has no derivative by '{name}' at {self.at[name]:g}: {why}; expected another value of '{name}'")
 
 
 def start_slopes(point, by, values):

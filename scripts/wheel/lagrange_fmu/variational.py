@@ -56,7 +56,7 @@ def followed(system, values, by):
         if not indicators:
             yield point
             return
-        with opened(system, values, what="be followed", by=by, stops_at_events=True) as point.in_series:
+        with opened(system, values, what="be followed", by=by, stops_at_events=True, messages=point.messages) as point.in_series:
             yield point
 
 
@@ -129,7 +129,10 @@ class SeriesMotion:
 
 
 def sensitivities(system, of, by, times, start_values, tolerance):
-    times = np.atleast_1d(np.asarray(times, dtype=float))
+    try:
+        times = np.atleast_1d(np.asarray(times, dtype=float))
+    except (TypeError, ValueError):
+        raise Problem(f"the times are {times}; expected numbers, in s") from None
     if not (times.size and np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
         raise Problem(f"the times are {', '.join(f'{time:g}' for time in times)} s; expected one at least, from 0 s on, each later than the one before")
     check_tolerance(tolerance)
