@@ -64,7 +64,8 @@ CASES = [
     ("muscle", 15, '<actuator><muscle joint="elbow"/></actuator>', 15, f"<muscle> {UNKNOWN} <motor>, <position>, <velocity> or <general>"),
     ("dynamics", 15, '<actuator><general dyntype="filter" joint="elbow"/></actuator>', 15, 'dyntype="filter" of <general> is not known'),
     ("tendon through space", 15, '<tendon><spatial name="t"><site site="eye"/></spatial></tendon>', 15, "the tendon 't' has fewer than two sites"),
-    ("tendon at no site", 15, '<tendon><spatial><site site="eye"/><site site="lower"/></spatial></tendon>', 15, "there is no link 'eye' for a tendon"),
+    ("tendon at no site", 15, '<tendon><spatial><site site="eye"/><site site="lower"/></spatial></tendon>', 15, "there is no site 'eye' for a tendon"),
+    ("tendon from a site to itself", 15, '<tendon><spatial name="t"><site site="upper"/><site site="upper"/></spatial></tendon>', 15, "the tendon 't' goes from the site 'upper' to itself"),
     ("wrapped tendon", 15, '<tendon><spatial><geom geom="g"/></spatial></tendon>', 15, f"<geom> {UNKNOWN} straight lines from <site> to <site>"),
     ("pulley", 15, '<tendon><spatial><pulley divisor="2"/></spatial></tendon>', 15, f"<pulley> {UNKNOWN} straight lines"),
     ("relaxed tendon", 15, '<default><joint ref="0.3"/></default><tendon><spatial name="t" stiffness="1"><site site="upper"/><site site="lower"/></spatial></tendon>', 15, "which of 'shoulder' is not its ref; expected springlength"),
@@ -82,6 +83,7 @@ CASES = [
     ("pose", 15, '<equality><weld body1="lower" relpose="1 2 3"/></equality>', 15, 'relpose="1 2 3" of <weld>; expected 7 numbers'),
     ("flex", 15, '<equality><flex name="a"/></equality>', 15, f"<flex> {UNKNOWN} rigid bodies"),
     ("distance", 15, '<equality><distance geom1="a"/></equality>', 15, f"<distance> {UNKNOWN} a <joint>, <tendon>, <connect> or <weld>"),
+    ("tendon as long as itself", 15, '<tendon><fixed name="t"><joint joint="elbow" coef="1"/></fixed></tendon><equality><tendon tendon1="t" tendon2="t"/></equality>', 15, "the tendon 't' cannot be as long as itself"),
     ("link of no tendon", 15, '<equality><tendon tendon1="t"/></equality>', 15, "there is no tendon 't' for a <tendon>; expected one of the file"),
     ("square", 15, '<equality><joint joint1="elbow" joint2="shoulder" polycoef="0 1 2"/></equality>', 15, "polycoef of <joint> is not linear"),
 ]  # fmt: skip

@@ -249,8 +249,9 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
 static void connect_transmission(struct Connection *connection, struct Transmission *transmission, const char *kind,
                                  const char *name, const char *symbol, long line) {
   const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);
+  struct Register sites = {"site", connection->links.names, connection->links.symbols};
   for (size_t i = 0; i < transmission->site_count; i++) {
-    const struct Entry *entry = find(connection, &connection->links, transmission->site_names[i], what, line);
+    const struct Entry *entry = find(connection, &sites, transmission->site_names[i], what, line);
     if (entry != NULL) transmission->sites[i] = connection->robot->links[entry->index];
   }
   for (size_t i = 0; i < transmission->count; i++) {

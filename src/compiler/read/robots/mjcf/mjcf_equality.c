@@ -105,6 +105,12 @@ static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_numbers(mjcf, node, "polycoef", 1, TENDON_POWERS, link.coefficient);
   bool has_other = has_attribute(node, "tendon2");
   const char *names[2] = {required_attribute(&mjcf->file, node, "tendon1"), attribute(node, "tendon2")};
+  if (*names[0] == '\0') return; /* which is reported */
+  if (has_other && strcmp(names[0], names[1]) == 0) {
+    report_error(mjcf->file.diagnostics, link.line,
+                 "the tendon '%s' cannot be as long as itself; expected another one for tendon2", names[0]);
+    return;
+  }
   for (int i = 0; i < (has_other ? 2 : 1); i++) {
     const struct Tendon *tendon = mjcf_tendon(mjcf, node, names[i]);
     if (tendon == NULL) return;

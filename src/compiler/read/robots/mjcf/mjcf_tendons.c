@@ -23,6 +23,15 @@ static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon
                  "the tendon '%s' has no joint; expected <joint joint=\"...\" coef=\"...\"/> in it", tendon->name);
 }
 
+/* A line of no length has no direction, along which it would pull. */
+static void check_line(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *from,
+                       const char *to) {
+  if (*to == '\0' || strcmp(from, to) != 0) return;
+  report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+               "the tendon '%s' goes from the site '%s' to itself; expected another site, or this one once",
+               tendon->name, to);
+}
+
 /* Lines from site to site. */
 static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
   struct Transmission *transmission = &tendon->transmission;
@@ -34,7 +43,9 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
     }
     transmission->site_names =
         make_room(transmission->site_names, transmission->site_count, sizeof *transmission->site_names);
-    transmission->site_names[transmission->site_count++] = required_attribute(&mjcf->file, child, "site");
+    size_t last = transmission->site_count++;
+    transmission->site_names[last] = required_attribute(&mjcf->file, child, "site");
+    if (last > 0) check_line(mjcf, child, tendon, transmission->site_names[last - 1], transmission->site_names[last]);
   }
   transmission->sites = allocate(transmission->site_count, sizeof(struct Link *));
   if (transmission->site_count < 2)
