@@ -29,7 +29,12 @@ SLOPE = """<system name="Slope"><parameter name="mu" start="0.2"/><parameter nam
   <coordinate name="s" velocity="u" unit="m" velocityStart="3"/><coordinate name="n" velocity="w" unit="m"/><particle mass="1" x="s" y="n"/><gravity x="-0.6*g" y="-0.8*g"/>
   <contact name="floor" gap="n" unit="m"/><contact name="wall" gap="0.4 - s" unit="m" restitution="e"/>
   <friction name="rub" velocity="u" force="mu*floor.force"/></system>"""
-SWITCHED = {"Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
+# Likewise, held on the slope by a constraint, from whose force the friction follows; who changes l leaves it, and is brought back.
+RAMP = """<system name="Ramp"><parameter name="mu" start="0.2"/><parameter name="g" start="9.81" unit="m/s2"/><parameter name="e" start="0.4"/><parameter name="l" start="0.1" unit="m"/>
+  <coordinate name="x" velocity="vx" unit="m" velocityStart="2.4"/><coordinate name="y" velocity="vy" unit="m" velocityStart="1.8"/><particle mass="1" x="x" y="y"/><gravity y="-g"/>
+  <constraint name="ramp" unit="m">0.8*y - 0.6*x - 0.8*l</constraint><contact name="wall" gap="0.4 - x" unit="m" restitution="e"/>
+  <friction name="rub" velocity="0.8*vx + 0.6*vy" force="mu*abs(ramp.force)"/></system>"""
+SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
            "Worked": (WORKED, list(AT)), "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
 
@@ -126,6 +131,22 @@ def test_through_friction_that_follows_from_a_contact(lagrange_fmu, monkeypatch)
 
     for t, row in zip(times, derivatives):
         assert dict(zip(at, row[0])) == pytest.approx(slopes(lambda *at: place(mpmath.mpf(t), *at), at), rel=1e-8, abs=1e-10)
+
+
+def test_through_friction_that_follows_from_a_constraint(lagrange_fmu, monkeypatch):  # noqa: F811
+    """Up the ramp against the wall, and down."""
+    at, times, ways = {"mu": 0.2, "g": 9.81, "e": 0.4, "l": 0.1}, [0.0, 0.1, 0.5], []
+    _, derivatives = motion_through_events("Ramp", ["x"], times, at, monkeypatch, ways)
+    assert ways == []
+
+    def place(t, mu, g, e, l):
+        up, down, start = g * (0.6 + 0.8 * mu), g * (0.6 - 0.8 * mu), -0.48 * l
+        speed = mpmath.sqrt(9 - 2 * up * (0.4 - start) / 0.8)
+        hit = (3 - speed) / up
+        return start + 0.8 * (3 * t - up * t * t / 2) if t < hit else 0.4 - 0.8 * (e * speed * (t - hit) + down * (t - hit) ** 2 / 2)
+
+    for t, row in zip(times, derivatives):
+        assert dict(zip(at, row[0])) == pytest.approx(slopes(lambda *at: place(mpmath.mpf(t), *at), at), rel=1e-8, abs=1e-9)
 
 
 def test_work(lagrange_fmu):  # noqa: F811

@@ -22,6 +22,8 @@ TINY = 1e-300  # more than 0
 PAST = 1e-12  # s, by which an event is passed when it is handled, in units of the time where that is more than 1 s
 AT_ONCE = 1e-9  # s, likewise, within which events are not told apart
 ROUNDS = 100  # of an event
+AWAY = 1e-6  # of the states, by which constraints are left
+EARLY = 1e-2  # of the flight before an event
 TRIALS, NEAR, CONVERGED = 30, 1e-16, 1e-13  # for the time of a neighbour's event; s, likewise; relative
 
 
@@ -52,12 +54,51 @@ class Saltation:
         self.time, self.state, self.before, self.indicator = time, state, before, indicator
         motion.place(*before, inputs)
         self.saved = self.model.getFMUState()
+        is_held = self.moves_onto_constraints()
+        self.model.setFMUState(self.saved)
         motion.place(time, state, inputs)
         self.rates = np.array(self.model.getReal(motion.rate_references))
         self.level = self.point.indicators()[indicator]
         after = self.update()
         self.noise = ROUNDING / ROUGH * np.append(np.maximum(abs(state), abs(after)), max(1.0, abs(time)))
         self.modes = self.point.modes()
+        self.back, self.own = EARLY * (time - before[0]) if is_held else 0.0, 0.0
+        if is_held:
+            self.model.setFMUState(self.saved)
+            self.own = self.by_constraints(state)
+
+    def moves_onto_constraints(self):
+        """Whether states that are a little off are moved, before the event."""
+        time, state = self.before
+        off = state * (1 + AWAY) + AWAY
+        self.motion.place(time, off, self.inputs)
+        try:
+            return (self.update() != off).any()
+        except (Problem, FMICallException):
+            self.point.messages.clear()
+            return True
+
+    def along(self, delay, state, span):
+        """The state so much later, by a step of the classical Runge-Kutta method."""
+
+        def rates(share, state):
+            self.motion.place(self.time + delay + share * span, state, self.inputs)
+            return np.array(self.model.getReal(self.motion.rate_references))
+
+        first = rates(0.0, state)
+        second = rates(0.5, state + span / 2 * first)
+        third = rates(0.5, state + span / 2 * second)
+        return state + span / 6 * (first + 2 * second + 2 * third + rates(1.0, state + span * third))
+
+    def by_constraints(self, state):
+        """
+        By what they move a neighbour, on its way to the event: there they would undo the event, or bring it about. What fulfils them is not moved, whose
+        way there is its way back.
+        """
+        delay = self.delay_of(state)
+        early = self.along(delay, state + delay * self.rates, -self.back)
+        self.motion.place(self.time + delay - self.back, early, self.inputs)
+        return self.along(delay - self.back, self.update(), self.back) - (state + delay * self.rates)
 
     def update(self):
         """What the event makes of the present state."""
@@ -100,6 +141,8 @@ class Saltation:
         state = self.state + shift
         by = f"by {', '.join(self.point.names[reference] for reference in changes)} " if changes else ""
         try:
+            if self.back > 0:
+                state = state + self.by_constraints(state) - self.own
             delay = self.delay_of(state)
             self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
             after = self.update()
