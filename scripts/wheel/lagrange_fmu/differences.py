@@ -5,6 +5,7 @@ from .problem import Problem
 CENTRAL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 FORWARD = ((0, -25 / 12), (1, 4), (2, -3), (3, 4 / 3), (4, -1 / 4))
 BACKWARD = tuple((-steps, -weight) for steps, weight in FORWARD)
+SECOND_ORDER = {CENTRAL: {-1: -1 / 2, 1: 1 / 2}, FORWARD: {0: -3 / 2, 1: 2, 2: -1 / 2}, BACKWARD: {0: 3 / 2, -1: -2, -2: 1 / 2}}  # of what the rule looks at
 
 
 def rules_within(value, step, limits):
@@ -17,8 +18,10 @@ def rules_within(value, step, limits):
 
 
 def difference(function, rule):
-    """function(steps): an array, or a number."""
-    return sum(weight * function(steps) for steps, weight in rule)
+    """The change over a step, and how far that of second order is from it; function(steps): an array."""
+    found = {steps: function(steps) for steps, _ in rule}
+    change = sum(weight * found[steps] for steps, weight in rule)
+    return change, abs(sum(weight * found[steps] for steps, weight in SECOND_ORDER[rule].items()) - change)
 
 
 def relevant(changes, names):

@@ -9,6 +9,7 @@ from .saltation import PAST, Saltation
 from .sensitivity import Motion, as_arrays
 
 CHECKED = 1e-6  # relative, to which the two FMUs agree behind an event
+NEGLIGIBLE = 1e-9  # of the flight before an event
 FURTHEST = 1e-4  # s, by which an event is passed when it is seen at the latest, in units of the time where that is more than 1 s
 
 
@@ -124,14 +125,36 @@ class EventMotion(Motion):
         """Over the event that the series came to; early: a time well before it, and the states there. Returns what is known behind it in place of what was."""
         values, rates = self.series.rows(self.series.state_references), self.series.rows(self.series.rate_references)
         delay, indicator = self.event_at(time, values[0], rates[0])
-        later = values + delay * self.rates_between(time, values, rates, delay)
-        states, slopes = Saltation(self, time + delay, later[0], early, indicator, None).pass_over(later[1:], self.acting)
-        behind = np.vstack([states, slopes])
-        at_event = behind - delay * np.vstack([self.model.getReal(self.rate_references), self.along(self.rate_references, slopes)])
+        at_event = self.at_event(time, (values, rates), delay, early, indicator, is_extrapolated=delay > NEGLIGIBLE * (time - known[0]))
         self.series.pass_over(at_event[1:])
         self.check(time, at_event.ravel())
         self.model.freeFMUState(known[2])
-        return time + delay, behind.ravel(), self.model.getFMUState()
+        return time + delay, self.moved(at_event, delay).ravel(), self.model.getFMUState()
+
+    def at_event(self, time, both, delay, early, indicator, is_extrapolated):
+        """The states and their derivatives behind it; of a short flight extrapolated from twice the delay, of which much happens within it."""
+        saved, later = self.model.getFMUState(), None
+        try:
+            if is_extrapolated:
+                later, modes = self.handled(time, both, 2 * delay, early, indicator), self.point.modes()
+                self.model.setFMUState(saved)
+            found = self.handled(time, both, delay, early, indicator)
+        finally:
+            self.model.freeFMUState(saved)
+        if later is not None and self.point.modes() == modes:
+            found[1:] += found[1:] - later[1:]
+        return found
+
+    def handled(self, time, both, delay, early, indicator):
+        """Likewise, where the event is handled so much later."""
+        values, rates = both
+        later = values + delay * self.rates_between(time, values, rates, delay)
+        states, slopes = Saltation(self, time + delay, later[0], early, indicator, None).pass_over(later[1:], self.acting)
+        return self.moved(np.vstack([states, slopes]), -delay)
+
+    def moved(self, both, delay):
+        """By the rates that it has where the FMU is."""
+        return both + delay * np.vstack([self.model.getReal(self.rate_references), self.along(self.rate_references, both[1:])])
 
     def rates_between(self, time, values, rates, delay):
         """Of states and their derivatives, in the middle of the delay."""
