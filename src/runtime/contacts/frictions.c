@@ -120,10 +120,12 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
 }
 
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
+  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
+  bool is_weaker = value[FRICTION_STICTION] < value[FRICTION_FORCE];
   log_message(settlement->instance, STATUS_DISCARD,
-              "time %g: the friction '%s' neither sticks nor slides; expected a stiction of at least the "
-              "force while it slides, less friction, or another position",
-              settlement->time, settlement->switches->frictions[friction].name);
+              "time %g: the friction '%s' neither sticks nor slides; expected %sless friction, or another position",
+              settlement->time, settlement->switches->frictions[friction].name,
+              is_weaker ? "a stiction of at least the force while it slides, " : "");
   return neither;
 }
 
