@@ -65,15 +65,16 @@ def run_in_page(page, until):
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in DAILY else pytest.mark.release) for name in fmu.moving_names()])
 def test_the_page_is_the_fmu(browser, page_file, name):
     """
-    Its states after 10 s are those of the native FMU; where C libraries differ in the last place of a sine, each step of a chaotic
+    Its states after 10 s, or before its bars lie flat, where they could fold, are those of the native FMU; where C libraries differ in the last place of a sine, each step of a chaotic
     system makes of it at most what the system makes of the last place of its start values, and a method whose steps it decides on
     a little of what the tolerance allows. And there is something to see.
     """
-    expected, *nudged = (run_natively(name, 10.0, factor)[0] for factor in (1.0, 1.0 - 2.0**-52, 1.0 + 2.0**-52))
+    end = 0.7 if name == "NFourBar" else 10.0
+    expected, *nudged = (run_natively(name, end, factor)[0] for factor in (1.0, 1.0 - 2.0**-52, 1.0 + 2.0**-52))
     experiment = fmu.description(name).defaultExperiment
-    steps, allowed = 10.0 / float(experiment.stepSize), 1e-2 * float(experiment.tolerance)
+    steps, allowed = end / float(experiment.stepSize), 1e-2 * float(experiment.tolerance)
     with opened(browser, page_file(name)) as page:
-        found, _ = run_in_page(page, 10.0)
+        found, _ = run_in_page(page, end)
         if page.evaluate("Boolean(live.scene)"):
             page.wait_for_function(f"({COLORS_SEEN})() > 3", timeout=20000)
     size = max(1.0, *map(abs, expected.values()))

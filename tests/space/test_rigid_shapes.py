@@ -52,6 +52,13 @@ IN_PLANE = f"""<system name="InPlane">{HEAD}<coordinate name="x" velocity="vx" u
   <body name="solid" in="f" mass="m" {BALL}/>{WEIGHT}
   <shape name="ball" in="f" type="sphere" radius="r"/><shape name="floor" type="plane"/>
   {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
+# Its two corners on the floor slide along one line, so that one of them alone could hold it.
+BOX_IN_PLANE = f"""<system name="BoxInPlane">{HEAD}{SIDES}<parameter name="tilt" start="0" unit="rad/s"/>
+  <coordinate name="x" velocity="vx" unit="m"/><coordinate name="z" velocity="vz" unit="m" start="C/2"/><coordinate name="phi" velocity="w" unit="rad"/>
+  <frame name="f"><translate x="x" z="z"/><rotate axis="y" angle="phi"/></frame><body name="solid" in="f" mass="m" {BOX}/>
+  <force on="solid" x="m*9.81*sin(slope + tilt*time)" z="-m*9.81*cos(slope + tilt*time)"/>
+  <shape name="box" in="f" type="box" sizeX="A" sizeZ="C"/><shape name="floor" type="plane"/>
+  {CONTACT.format("box", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
 # A ball whose centre of mass is below its middle.
 TOP = f"""<system name="TippeTop">{HEAD}{free("a", BALL, "r").replace("<body", '<body z="-0.15*r"')}{WEIGHT}
   <shape name="ball" in="a" type="sphere" radius="r"/><shape name="floor" type="plane"/>
@@ -80,7 +87,7 @@ BESIDE_STONE = ON_PLANE.replace("OnPlane", "BesideStone").replace("<experiment",
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"BesideStone": BESIDE_STONE, "OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
+    texts = {"BesideStone": BESIDE_STONE, "OnPlane": ON_PLANE, "RigidCrate": CRATE, "TwoBalls": BALLS, "OnBall": ON_BALL, "InPlane": IN_PLANE, "BoxInPlane": BOX_IN_PLANE, "TippeTop": TOP, "Cradle3D": CRADLE}
     build_systems("rigid-shapes", texts | {"Column2": column(2)})
 
 
@@ -188,6 +195,32 @@ def test_box_on_a_slope(stick, height):
             expected = G * (math.sin(slope) - 0.3 * math.cos(slope)) if slides else 0.0
             assert instance.get("avx") == pytest.approx(expected, rel=1e-9, abs=1e-12)
             assert instance.get("az") == pytest.approx(height / 2, abs=1e-12)
+
+
+@pytest.mark.parametrize("slope, mu, speed", [(0.3, 0.32, 0), (0.3, 0.5, 0), (0.3, 2, 0), (0.2, 0.25, 0), (0.2, 0.32, 0.5), (-0.2, 0.32, -0.5)])
+def test_box_in_a_plane_on_a_slope(slope, mu, speed):
+    """It stands, or comes to rest, where tan(slope) < mu and < width/height, though half of its friction is too much for the corner with less load."""
+    m, width, height = 2.0, 0.2, 0.6
+    with Running("BoxInPlane", {"slope": slope, "mu": mu, "A": width, "C": height, "z": height / 2, "vx": speed}) as instance:
+        instance.run(1.0, 0.1)
+        stops = speed * abs(speed) / (2 * G * (mu * math.cos(slope) - abs(math.sin(slope))))
+        assert instance.get("x", "vx", "z", "phi", "w") == pytest.approx([stops, 0, height / 2, 0, 0], abs=1e-9)
+        weight, moment = m * G * math.cos(slope), m * G * math.sin(slope) * height / 2
+        forces = np.array([instance.get(f"touch[{i}].force", f"touch[{i}].friction.force") for i in (1, 2)])
+        assert forces[:, 0] == pytest.approx([weight / 2 - moment / width, weight / 2 + moment / width], rel=1e-9)
+        assert forces[:, 1].sum() == pytest.approx(m * G * math.sin(slope), rel=1e-9)
+        assert np.all(abs(forces[:, 1]) <= mu * forces[:, 0] * (1 + 1e-9))
+
+
+def test_box_in_a_plane_on_a_slope_that_tilts():
+    """It slides off exactly where tan(slope) = mu."""
+    tilt, mu, time = 0.1, 0.32, 4.0
+    with Running("BoxInPlane", {"tilt": tilt, "mu": mu, "A": 0.2, "C": 0.6, "z": 0.3}) as instance:
+        instance.run(time, 0.1)
+        first, last = math.atan(mu), tilt * time
+        path = math.sin(first) - math.sin(last) + math.cos(first) * (last - first)
+        path += mu * (math.cos(last) - math.cos(first) + math.sin(first) * (last - first))
+        assert instance.get("x", "phi") == pytest.approx([G / tilt**2 * path, 0], rel=1e-8, abs=1e-9)
 
 
 def test_box_that_tips_over():

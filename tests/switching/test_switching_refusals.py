@@ -21,6 +21,8 @@ BODY = """
 WEIGHT = "<potential>9.81*{}</potential>"
 REFUSED = {
     "PushingFriction": ('<friction name="F" coordinate="x" force="f"/>', "the force of the friction 'F' is -0.3"),
+    "WeakStiction": ('<friction name="F" coordinate="x" force="1" stiction="0.5"/><force coordinate="x">0.7</force>',
+                     "the friction 'F' neither sticks nor slides; expected a stiction of at least the force while it slides, less friction"),
     "WrongSide": ('<constraint name="C">y - 0.5</constraint><friction name="F" coordinate="x" force="0.3*C.force"/><force coordinate="x">4</force>'
                   + WEIGHT.format("y"), "the force of the friction 'F' is -2.943"),
     "TornApart": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set></event>',

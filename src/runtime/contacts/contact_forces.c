@@ -19,6 +19,9 @@
 /* Noise is what one rounding makes of a value; several together make more of one that is 0 but for them. */
 static const double parting_in_noise = 1e3;
 
+/* In units of the largest free acceleration: less is what rounding leaves of one that others hold. */
+static const double rounded_acceleration = 1e-12;
+
 /* Contacts whose friction leaves less of their mobility than this are about to jam. */
 static const double jamming_share = 1e-3;
 
@@ -49,15 +52,6 @@ static double noise_of_acceleration(const struct Settlement *settlement, size_t 
   bool parts = is_hit(settlement, indicator) && settlement->was_opened[contact] != 0.0;
   double noise = settlement->noise[contact_place(settlement->switches, contact, CONTACT_ACCELERATION)];
   return (parts ? parting_in_noise : 1.0) * noise;
-}
-
-/* Whether an open contact at rest would close, as one that another has opened too soon. */
-static bool sinks(const struct Settlement *settlement) {
-  bool any = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    any |= !contact_is_closed(settlement, i) && settlement->takes_part[i] != 0.0 &&
-           contact_value(settlement, i, CONTACT_ACCELERATION) < -noise_of_acceleration(settlement, i);
-  return any;
 }
 
 /* Which contacts may open or close by their forces, and which frictions slide. Whether such a friction rests on any. */
@@ -149,6 +143,18 @@ static bool create_resting(struct Settlement *settlement, struct RestingContacts
   return true;
 }
 
+/* Whether an open contact at rest would close by more than rounding, as one that another has opened too soon. */
+static bool sinks(const struct Settlement *settlement, const struct RestingContacts *resting) {
+  double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces);
+  bool any = false;
+  for (size_t i = 0; i < resting->forces.count; i++) {
+    size_t contact = resting->pushes.member[i];
+    double least = noise_of_acceleration(settlement, contact) + rounding / resting->unit[i];
+    any |= !contact_is_closed(settlement, contact) && contact_value(settlement, contact, CONTACT_ACCELERATION) < -least;
+  }
+  return any;
+}
+
 /* The contact that its frictions leave least of its mobility. */
 static size_t find_locked(const struct RestingContacts *resting) {
   const struct RestingForces *forces = &resting->forces;
@@ -228,7 +234,7 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   *again = false;
   const char *problem = NULL;
   if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return problem;
-  bool closes = sinks(settlement);
+  bool closes = sinks(settlement, &resting);
   enum RestingSolutions solutions = resting_forces_solve(&resting.forces, !closes);
   if (numbers_of_solutions[solutions] != NULL)
     problem = refuse_forces(settlement, &resting, numbers_of_solutions[solutions]);

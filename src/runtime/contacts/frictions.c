@@ -120,10 +120,12 @@ static double friction_mode(const struct Settlement *settlement, size_t friction
 }
 
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
+  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
+  bool is_weaker = value[FRICTION_STICTION] < value[FRICTION_FORCE];
   log_message(settlement->instance, STATUS_DISCARD,
-              "time %g: the friction '%s' neither sticks nor slides; expected a stiction of at least the "
-              "force while it slides, less friction, or another position",
-              settlement->time, settlement->switches->frictions[friction].name);
+              "time %g: the friction '%s' neither sticks nor slides; expected %sless friction, or another position",
+              settlement->time, settlement->switches->frictions[friction].name,
+              is_weaker ? "a stiction of at least the force while it slides, " : "");
   return neither;
 }
 
@@ -155,6 +157,12 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
   return NULL;
 }
 
+/* Whether anything moves along a constraint that holds, as the last corrections tell: in a plane nothing moves across it. */
+static bool constraint_moves(const struct Settlement *settlement, size_t constraint) {
+  const double *slope = settlement->correction + lagrangian.coordinate_count + 2 * lagrangian.constraints.count;
+  return slope[constraint] > 0.0;
+}
+
 /* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
 static size_t count_redundant(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
@@ -163,19 +171,19 @@ static size_t count_redundant(struct Settlement *settlement) {
   instance->singular = lagrangian.constraints.correct_velocities(&point, settlement->correction);
   if (instance->singular != 0) return SIZE_MAX;
   const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
-  const double *slope = pivot + lagrangian.constraints.count;
   size_t count = 0;
-  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && slope[j] > 0.0;
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && constraint_moves(settlement, j);
   return count;
 }
 
 bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *held) {
-  size_t velocities = is_in_plane(settlement->switches, friction) ? 2 : 1;
-  double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
+  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
+  double *mode = &settlement->instance->parameter[facts->mode], kept = *mode;
   size_t without = count_redundant(settlement);
   *mode = 0.0;
   settlement->instance->prepared_is_stale = true;
-  size_t with = count_redundant(settlement);
+  size_t with = count_redundant(settlement), velocities = constraint_moves(settlement, facts->constraint);
+  if (is_in_plane(settlement->switches, friction)) velocities += constraint_moves(settlement, facts[1].constraint);
   *mode = kept;
   settlement->instance->prepared_is_stale = true;
   *held = with >= without + velocities;

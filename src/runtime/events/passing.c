@@ -31,9 +31,6 @@ enum { NEARER = 64, NEARER_LIMIT = 8 };
  */
 static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
 
-/* Windows in which that may take more than a few are left to the communication steps there. */
-enum { FURTHER_WINDOWS = 24 };
-
 /* What is looked at first, in units of the time between the last two events. */
 static const double window_share = 1.25;
 
@@ -131,7 +128,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     const double *samples;
     bool is_sure = window_narrow(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (search_for_event(instance, progress->searched, near, samples, lifted, WINDOW_LIMIT, time, indicator))
+    if (search_for_event(instance, progress->searched, near, samples, lifted, TO_ROUNDING, time, indicator))
       return true;
     window = 2.0 * (near - progress->searched);
     progress->searched = near;
@@ -166,7 +163,7 @@ static void search_further(struct Instance *instance, const struct Communication
   const double *samples;
   size_t indicator;
   if (window_narrow(instance, from, &to, &samples)) {
-    bool happens = search_for_event(instance, from, to, samples, NULL, FURTHER_WINDOWS, &time, &indicator);
+    bool happens = search_for_event(instance, from, to, samples, NULL, BEFORE_IT, &time, &indicator);
     if (!happens) progress->searched = to;
     else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
   }

@@ -10,6 +10,9 @@
 #include "events/indicators.h"
 #include "events/window.h"
 
+/* Windows that a search may look at. Where one that is not exact takes more than a few, it is left to the exact one. */
+enum { WINDOW_LIMIT = 5000, FEW_WINDOWS = 24 };
+
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
 /* A step of Newton's method as short as this, of windows from -1 to 1, ends where the next one would not count. */
@@ -26,6 +29,7 @@ struct Search {
   double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
   int windows;             /* that may still be looked at */
+  bool is_exact;           /* times are found to rounding, else ones a little before */
   bool projects;           /* states onto the constraints: what they hold at 0 is not what rounding makes of it */
   double departure;        /* the sign of what left 0 last */
   double floor;            /* what an event has left of an indicator below 0, by rounding */
@@ -160,7 +164,7 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
  */
 static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;
-  if (before.f < 0.0) return before.time;
+  if (before.f < 0.0 || !search->is_exact) return before.time;
   for (int i = 0; i < REFINEMENT_LIMIT && behind.time - before.time > DBL_EPSILON * fabs(behind.time); i++) {
     double first = weight_before * before.f, last = weight_behind * behind.f,
            middle = 0.5 * (before.time + behind.time);
@@ -313,10 +317,11 @@ static void sample_nodes(struct Search *search, size_t indicator, double from, d
 }
 
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
-                      int windows, double *time, size_t *indicator) {
+                      enum Exactness exactness, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
-  search.windows = windows;
+  search.is_exact = exactness == TO_ROUNDING;
+  search.windows = search.is_exact ? WINDOW_LIMIT : FEW_WINDOWS;
   bool knows_noise = false;
   sample_window(&search, from, to, samples);
   *time = INFINITY;

@@ -9,7 +9,8 @@
 
 #include "instance/instance.h"
 
-enum { WINDOW_LIMIT = 5000 }; /* of what a search may look at */
+/* A time is that of the event to rounding, or one at which it has not happened yet, which takes less. */
+enum Exactness { TO_ROUNDING, BEFORE_IT };
 
 /* Numbers of workspace that a search needs, those of window_narrow() among them. */
 size_t search_work_count(void);
@@ -18,10 +19,10 @@ size_t search_work_count(void);
  * The first time from one on up to a later one in the solver's last step at which an indicator changes its sign; samples: as
  * window_narrow() gives them for this window; lifted: of a contact that has just opened without speed, whose gap may fall
  * by the errors of the method, NULL for none. False where none does. The time is NAN where its zeros cannot be told from one
- * another in so many smaller windows.
+ * another in many smaller windows.
  */
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
-                      int windows, double *time, size_t *indicator);
+                      enum Exactness exactness, double *time, size_t *indicator);
 
 /*
  * For a motion that cannot come to the zero of an indicator, as a root that ends there: takes the state at the end of the
