@@ -17,9 +17,7 @@ Real chebyshev_time(Real from, Real to, int node) {
 }
 
 void chebyshev_times(Real from, Real to, Real *times) {
-  for (int node = 1; node < CHEBYSHEV_DEGREE; node++) times[node] = from + 0.5 * (1.0 + cosines[node]) * (to - from);
-  times[0] = to;
-  times[CHEBYSHEV_DEGREE] = from;
+  for (int node = 0; node < CHEBYSHEV_NODES; node++) times[node] = chebyshev_time(from, to, node);
 }
 
 /* By sums and differences of nodes on both sides of the middle one, and of those once more. */

@@ -28,7 +28,8 @@ size_t window_sample_count(void) {
   return CHEBYSHEV_NODES * lagrangian.state_count;
 }
 
-const double *window_sample(struct Instance *instance, double from, double to) {
+/* The states at the nodes of a window, a row each; NULL where they are not all known. */
+static const double *sample_states(struct Instance *instance, double from, double to) {
   double times[CHEBYSHEV_NODES], *states = instance->switching_work;
   chebyshev_times(from, to, times);
   return solver_interpolate(lagrangian.solver, instance, times, CHEBYSHEV_NODES, states) ? states : NULL;
@@ -144,7 +145,7 @@ static double sure_half(struct Window *window) {
 
 bool window_narrow(struct Instance *instance, double from, double *to, const double **samples) {
   for (;;) {
-    *samples = window_sample(instance, from, *to);
+    *samples = sample_states(instance, from, *to);
     if (lagrangian.switches->watched_limit == NULL) return true;
     struct Window window = window_of(instance, from, *to);
     double length = *to - from, half = *samples != NULL ? sure_half(&window) : 0.0;

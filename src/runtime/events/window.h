@@ -12,13 +12,10 @@
 size_t window_work_count(void);
 size_t window_sample_count(void);
 
-/* The states at the CHEBYSHEV_NODES of a window, a row each, there; NULL where they are not all known. */
-const double *window_sample(struct Instance *instance, double from, double to);
-
 /*
  * Brings the end of a window of time in the solver's last step nearer to its beginning until nothing that the indicators look at
  * can hide between samples. False where the window is as short as time can tell and may still hide something. *samples:
- * window_sample() of it.
+ * the states at the CHEBYSHEV_NODES of the window, a row each; NULL where they are not all known.
  */
 bool window_narrow(struct Instance *instance, double from, double *to, const double **samples);
 
