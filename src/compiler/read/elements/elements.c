@@ -229,11 +229,12 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
 }
 
 static void read_work(struct Reader *reader, xmlNodePtr node) {
+  if (reader->model->forces.works.count > 0) return;
   struct Variable work = variable_create(copy_text("nonConservativeWork"),
                                          copy_text("work of the non-conservative forces"), xmlGetLineNo(node));
   work.start = 0.0;
   work.dimension = unit_of("J");
-  if (reader->model->forces.works.count == 0) append_variable(&reader->model->forces.works, work);
+  append_variable(&reader->model->forces.works, work);
 }
 
 static void read_potential(struct Reader *reader, xmlNodePtr node) {

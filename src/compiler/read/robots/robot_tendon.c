@@ -27,6 +27,15 @@ static void write_spring(const struct Writer *writer, const struct Tendon *tendo
           : format_text("%s_stiffness*(max(0, %s - (%s))^2 + min(0, %s - (%s))^2)/2", name, name, upper, name, lower));
 }
 
+/* Half of a parameter times the square of the rate. */
+static void write_square(const struct Writer *writer, const struct Tendon *tendon, const char *element, double value,
+                         const char *word, const char *unit, const char *meaning) {
+  write_parameter(writer, format_text("%s_%s", tendon->symbol, word), value, unit,
+                  format_text("%s the tendon '%s'", meaning, tendon->name));
+  set_content(write_element(writer, element),
+              format_text("%s_%s*%s^2/2", tendon->symbol, word, transmission_rate(&tendon->transmission)));
+}
+
 /* Dry where joints' friction is; else it creeps as theirs does. */
 static void write_friction(const struct Writer *writer, const struct Tendon *tendon, bool slides) {
   const char *name = tendon->symbol, *creep = slides ? "creep_velocity" : "creep_rate";
@@ -50,19 +59,12 @@ void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
   write_coefficients(writer, tendon);
   write_output(writer, copy_text(name), unit, transmission_length(transmission),
                format_text("length of the tendon '%s'", tendon->name));
-  if (tendon->armature > 0) {
-    write_parameter(writer, format_text("%s_armature", name), tendon->armature, slides ? "kg" : "kg.m2",
-                    format_text("inertia along the tendon '%s'", tendon->name));
-    set_content(write_element(writer, "kinetic"),
-                format_text("%s_armature*%s^2/2", name, transmission_rate(transmission)));
-  }
+  if (tendon->armature > 0)
+    write_square(writer, tendon, "kinetic", tendon->armature, "armature", slides ? "kg" : "kg.m2", "inertia along");
   if (tendon->stiffness > 0) write_spring(writer, tendon, slides);
-  if (tendon->damping > 0) {
-    write_parameter(writer, format_text("%s_damping", name), tendon->damping, slides ? "N.s/m" : "N.m.s/rad",
-                    format_text("viscous damping of the tendon '%s'", tendon->name));
-    set_content(write_element(writer, "dissipation"),
-                format_text("%s_damping*%s^2/2", name, transmission_rate(transmission)));
-  }
+  if (tendon->damping > 0)
+    write_square(writer, tendon, "dissipation", tendon->damping, "damping", slides ? "N.s/m" : "N.m.s/rad",
+                 "viscous damping of");
   if (tendon->friction > 0) write_friction(writer, tendon, slides);
   if (isnan(tendon->lower)) return;
   const char *lower = number(tendon->lower), *upper = number(tendon->upper);

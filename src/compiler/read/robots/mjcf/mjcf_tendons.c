@@ -54,13 +54,20 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
                  tendon->name);
 }
 
-/* Where all joints are as placed; 0 where a joint or site is missing, which is reported elsewhere. */
-static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
+/* Of all joints of one, as placed or where their springs are relaxed; 0 for those that are missing, which is reported elsewhere. */
+static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *transmission, bool is_relaxed) {
   double length = 0;
   for (size_t i = 0; i < transmission->count; i++) {
     const struct Joint *joint = mjcf_joint(mjcf, transmission->pulls[i].joint_name);
-    if (joint != NULL) length += transmission->pulls[i].coefficient * joint->start.position[0];
+    if (joint == NULL) continue;
+    length += transmission->pulls[i].coefficient * (is_relaxed ? joint->rest : joint->start.position[0]);
   }
+  return length;
+}
+
+/* Where all joints are as placed; without the lines to sites that are missing, which is reported elsewhere. */
+static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
+  double length = sum_of_pulls(mjcf, transmission, false);
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct Placement *from = mjcf_place_of(mjcf, transmission->site_names[i - 1]),
                            *to = mjcf_place_of(mjcf, transmission->site_names[i]);
@@ -74,13 +81,7 @@ static double start_length(const struct Mjcf *mjcf, const struct Transmission *t
 /* Where the springs of all joints are relaxed; of tendons through space where these are as placed. */
 static double relaxed_length(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   const struct Robot *robot = mjcf->file.robot;
-  double length = 0;
-  for (size_t i = 0; i < tendon->transmission.count; i++) {
-    const struct Pull *pull = &tendon->transmission.pulls[i];
-    const struct Joint *joint = mjcf_joint(mjcf, pull->joint_name);
-    if (joint != NULL) length += pull->coefficient * joint->rest;
-  }
-  if (tendon->transmission.site_count == 0) return length;
+  if (tendon->transmission.site_count == 0) return sum_of_pulls(mjcf, &tendon->transmission, true);
   bool is_needed = mjcf_number(mjcf, node, "stiffness", 0) != 0;
   for (size_t i = 0; i < robot->joint_count && is_needed; i++) {
     const struct Joint *joint = robot->joints[i];
