@@ -79,6 +79,9 @@ struct FrictionLaws {
    */
   bool (*find_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                         double *impulse);
+  /* Whether other impulses than these fulfil the law at the rates, and make another motion. */
+  bool (*has_other_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                             const double *impulse);
 };
 
 /* The numbers in value[]. */
