@@ -144,7 +144,10 @@ static void write_small_factor(FILE *file, const struct InertiaBlock *block, siz
               k, k, start[column[k] + 1] - 1, k, k, k, k, k);
     write_pivot(file, block, i, numbers.items[i] < 0, number);
   }
-  fprintf(file, "  mass[%zu] = weakest;\n  return 0;\n}\n\n", 2 * elements);
+  fprintf(
+      file,
+      "  mass[%zu] = weakest;\n  saddle_balance(%zu, start%zu, column%zu, coordinate%zu, mass);\n  return 0;\n}\n\n",
+      2 * elements, n, number, number, number);
 }
 
 /* Solves a small block by its factors, as saddle_solve() does where nothing is to be refined. */
