@@ -148,8 +148,12 @@ void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bo
 }
 
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values) {
-  double *values = allocate(graph->count, sizeof *values);
-  for (Node node = 0; node < graph->count; node++) {
+  return graph_evaluate_first(graph, symbol_values, graph->count);
+}
+
+double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count) {
+  double *values = allocate(count, sizeof *values);
+  for (Node node = 0; node < count; node++) {
     const struct Vertex *vertex = &graph->vertices[node];
     if (vertex->operation == CONSTANT) values[node] = vertex->value;
     else if (vertex->operation == SYMBOL) values[node] = symbol_values[vertex->left];

@@ -142,3 +142,6 @@ void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bo
 
 /* Evaluates all nodes; symbol_values in the order of graph->symbols; one value for each. */
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
+
+/* Evaluates the first nodes, which need none behind them. */
+double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count);
