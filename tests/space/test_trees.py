@@ -1,5 +1,7 @@
 """Deep trees of joints, whose accelerations articulated inertias give: against energies by mpmath, a closed form, and the balance of energy."""
 
+import re
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -74,13 +76,17 @@ def test_robot(open_fmu):
     np.testing.assert_allclose(instance.get(*[f"der({name}_velocity)" for name in names]), expected, rtol=1e-9)
 
 
-def test_code_grows_as_the_chain(tmp_path):
-    """What is written of a chain of joints, its frames and bodies included, and what is done to derive it."""
-    sizes = []
+def test_cost_grows_as_the_chain(tmp_path):
+    """Of what is written of a chain of joints, its frames and bodies included; and an evaluation takes about what the articulated-body algorithm does
+    for a joint, 224 multiplications and 205 additions where offsets have a component of 0 (Featherstone 2008, table 10.1), which these have not."""
+    sizes, operations = [], []
     for count in (100, 200):
         assert fmu.lagc(chain(count), "-o", tmp_path).returncode == 0
-        sizes.append((tmp_path / "system.c").stat().st_size)
+        source = (tmp_path / "system.c").read_text()
+        sizes.append(len(source))
+        operations.append(int(re.search(r"(\d+) operations[^\n]*\nstatic int derivatives\(", source)[1]))
     assert sizes[1] < 2.5 * sizes[0]
+    assert operations[1] - operations[0] < 1.05 * 100 * (224 + 205)
 
 
 def absolute_accelerations(angles, rates, held=None):
