@@ -190,21 +190,30 @@ static void write_blocks(FILE *file, const struct Program *program) {
   }
 }
 
-/* The functions of one routine that struct Lagrangian holds, as far as the system has them. */
-static void write_routines(FILE *file, const struct Program *program, const struct Encoding *tables,
-                           const struct Parts *derivatives) {
+/* Where a simulation spends its time, statements may stand among tables. */
+static bool is_in_statements(const struct Program *program, enum FunctionName name) {
+  return (name == FUNCTION_DERIVATIVES && !program->derivatives_are_table) ||
+         (name == FUNCTION_DIRECTIONAL && !program->directional_is_table);
+}
+
+/*
+ * The functions of one routine that struct Lagrangian holds, as far as the system has them. Returns how much of the workspace
+ * those need that are statements in parts.
+ */
+static size_t write_routines(FILE *file, const struct Program *program, const struct Encoding *tables) {
+  size_t shared = 0;
   for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
-    bool is_table = tables != NULL && (i != FUNCTION_DERIVATIVES || program->derivatives_are_table);
-    if (is_table) instruction_tables_function(file, tables, i, routine);
-    else if (i == FUNCTION_DERIVATIVES && derivatives != NULL) statements_derivatives(file, program, derivatives);
-    else statements_function(file, program, i, "", routine);
+    if (tables == NULL) statements_function(file, program, i, "", routine);
+    else if (is_in_statements(program, i)) shared = larger(shared, statements_in_parts(file, program, i));
+    else instruction_tables_function(file, tables, i, routine);
   }
+  return shared;
 }
 
 static void write_as_statements(FILE *file, const struct Program *program) {
-  write_routines(file, program, NULL, NULL);
+  write_routines(file, program, NULL);
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
@@ -214,18 +223,14 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 
 static void write_as_tables(FILE *file, const struct Program *program) {
   struct Encoding *tables = encoding_create(program);
-  struct Parts derivatives = {0};
-  struct Routine *routine = program->routines[FUNCTION_DERIVATIVES];
-  bool has_parts = routine != NULL && !program->derivatives_are_table;
-  if (has_parts) derivatives = parts_of(routine);
   instruction_tables_shared(file, tables);
-  write_routines(file, program, tables, has_parts ? &derivatives : NULL);
+  size_t shared = write_routines(file, program, tables);
   if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);
   instruction_tables_results(file, tables);
   switching_write(file, program);
-  description_write(file, program, larger(encoding_work_count(tables), derivatives.shared_count));
+  description_write(file, program, larger(encoding_work_count(tables), shared));
 }
 
 void code_write(FILE *file, const struct Program *program) {

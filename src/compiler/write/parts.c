@@ -29,35 +29,42 @@ static struct Local *find_shared(const struct Routine *routine, size_t *shared_c
   return locals;
 }
 
-static Place placed(const struct Local *locals, Place place) {
+/* keeps_accelerations: they are the first of what parts share. */
+static Place placed(const struct Local *locals, bool keeps_accelerations, Place place) {
+  if (space_of(place) == SPACE_ACCELERATION && keeps_accelerations)
+    return place_in((enum Space)SPACE_SHARED, index_in(place));
   if (space_of(place) != SPACE_LOCAL || locals[index_in(place)].shared == 0) return place;
   return place_in((enum Space)SPACE_SHARED, locals[index_in(place)].shared - 1);
 }
 
-static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, size_t first, size_t end) {
+static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, bool keeps_accelerations,
+                               size_t first, size_t end) {
   struct Routine *part = routine_create();
   for (size_t i = first; i < end; i++) {
     struct Instruction instruction = routine->instructions[i];
     Place *operands = instruction.operands;
-    for (int j = 0; j < opcode_arity(instruction.opcode); j++) operands[j] = placed(locals, operands[j]);
-    if (opcode_has_result(instruction.opcode)) instruction.result = placed(locals, instruction.result);
+    for (int j = 0; j < opcode_arity(instruction.opcode); j++)
+      operands[j] = placed(locals, keeps_accelerations, operands[j]);
+    if (opcode_has_result(instruction.opcode))
+      instruction.result = placed(locals, keeps_accelerations, instruction.result);
     routine_append(part, instruction.opcode, instruction.result, operands[0], operands[1], operands[2]);
     part->instructions[part->count - 1].function = instruction.function;
   }
   return part;
 }
 
-struct Parts parts_of(struct Routine *routine) {
+struct Parts parts_of(struct Routine *routine, size_t accelerations) {
   struct Parts parts = {.items = allocate(1 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
   bool has_blocks = routine_uses(routine, SPACE_SIDE) || routine_uses(routine, SPACE_MASS);
   if (has_blocks || routine->count <= 2 * (size_t)PART_LENGTH) {
     parts.items[parts.count++] = routine;
     return parts;
   }
+  parts.shared_count = accelerations;
   const struct Local *locals = find_shared(routine, &parts.shared_count);
   for (size_t first = 0; first < routine->count; first += PART_LENGTH) {
     size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
-    parts.items[parts.count++] = part_of(routine, locals, first, end);
+    parts.items[parts.count++] = part_of(routine, locals, accelerations > 0, first, end);
   }
   return parts;
 }

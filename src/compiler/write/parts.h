@@ -14,5 +14,8 @@ struct Parts {
   size_t shared_count;
 };
 
-/* One part for a routine that is short, or that works on blocks, which stays as it is. */
-struct Parts parts_of(struct Routine *routine);
+/*
+ * One part for a routine that is short, or that works on blocks, which stays as it is. accelerations: how many of them the routine
+ * has for itself, which its parts share; 0 where they are in what it fills.
+ */
+struct Parts parts_of(struct Routine *routine, size_t accelerations);
