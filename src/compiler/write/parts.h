@@ -11,6 +11,7 @@ enum { SPACE_SHARED = SPACE_COUNT };
 struct Parts {
   struct Routine **items;
   size_t count;
+  size_t steady_count; /* of the first, which another direction at the same point leaves as they are */
   size_t shared_count;
 };
 

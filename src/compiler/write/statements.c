@@ -73,11 +73,12 @@ size_t statements_in_parts(FILE *file, const struct Program *program, enum Funct
   /* By their addresses, since compilers make functions that are called once a part of what calls them. */
   fprintf(file, "  static int (*const parts[])(%s) = {", text->arguments);
   for (size_t i = 0; i < parts.count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);
-  fprintf(
-      file,
-      "};\n  int singular = 0;\n  for (int i = 0; i < %zu && singular == 0; i++) singular = parts[i](point, %s%s);\n"
-      "  return singular;\n}\n\n",
-      parts.count, takes(name, "*seed") ? "seed, " : "", text->target);
+  const char *first = parts.steady_count > 0 ? format_text("seed->repeats ? %zu : 0", parts.steady_count) : "0";
+  const char *seed = takes(name, "*seed") ? "seed, " : "";
+  fprintf(file,
+          "};\n  int singular = 0;\n  for (int i = %s; i < %zu && singular == 0; i++)\n"
+          "    singular = parts[i](point, %s%s);\n  return singular;\n}\n\n",
+          first, parts.count, seed, text->target);
   return parts.shared_count;
 }
 
