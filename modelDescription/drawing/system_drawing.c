@@ -224,7 +224,8 @@ static bool is_finite(const struct Rectangle *all) {
 }
 
 static struct Sight sight_of(const struct Model *model) {
-  struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(model, NULL)};
+  struct Configurations everything = configurations_of(model, NULL);
+  struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
   sight.links = find_links(&sight.samples);
   sight.surfaces = find_surfaces(&sight.samples);
   if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));

@@ -2,16 +2,12 @@
 
 #include <math.h>
 
+#include "algebra/cone.h"
 #include "algebra/differentiate.h"
+#include "algebra/node_list.h"
 #include "base/memory.h"
 
 enum { MOST_COORDINATES = 200 };
-
-/* Constraints g(q) = 0 with their derivatives by each coordinate. */
-struct Levels {
-  Node *level, **slope;
-  size_t count;
-};
 
 /* What contacts and frictions hold is not at every time. */
 static bool belongs_to_switch(const struct Switches *switches, size_t constraint) {
@@ -27,20 +23,36 @@ bool holds_positions(const struct Model *model, size_t constraint) {
          graph_depends_on(model->graph, node, COORDINATE) && !belongs_to_switch(&model->switches, constraint);
 }
 
-static struct Levels levels_of(const struct Model *model) {
+static void find_levels(struct Configurations *found) {
+  const struct Model *model = found->model;
   size_t count = model->constraints.count, coordinates = model->coordinates.count;
-  struct Levels levels = {.count = 0};
-  if (coordinates > MOST_COORDINATES) return levels;
-  levels.level = allocate(count + 1, sizeof *levels.level);
-  levels.slope = allocate(count + 1, sizeof *levels.slope);
+  if (coordinates > MOST_COORDINATES) return;
+  found->level = allocate(count + 1, sizeof *found->level);
+  found->slope = allocate(count + 1, sizeof *found->slope);
   for (size_t j = 0; j < count; j++) {
     if (!holds_positions(model, j)) continue;
     Node *slopes = allocate(coordinates, sizeof *slopes);
     gradient_of(model->graph, model->constraints.items[j].node, COORDINATE, coordinates, slopes);
-    levels.level[levels.count] = model->constraints.items[j].node;
-    levels.slope[levels.count++] = slopes;
+    found->level[found->count] = model->constraints.items[j].node;
+    found->slope[found->count++] = slopes;
   }
-  return levels;
+}
+
+struct Configurations configurations_of(const struct Model *model, const struct NodeList *wanted) {
+  struct Configurations found = {.model = model};
+  find_levels(&found);
+  if (wanted == NULL) return found;
+  struct NodeList targets = {.count = 0};
+  append_nodes(&targets, wanted->nodes, wanted->count);
+  for (size_t i = 0; i < found.count; i++) {
+    append_node(&targets, found.level[i]);
+    append_nodes(&targets, found.slope[i], model->coordinates.count);
+  }
+  struct Cone *cone = cone_create();
+  cone_collect(cone, model->graph, targets.nodes, targets.count);
+  found.part = cone->nodes;
+  found.part_count = cone->count;
+  return found;
 }
 
 static bool can_move(const struct Model *model, size_t coordinate) {
@@ -79,7 +91,8 @@ static void solve_small(size_t n, double *matrix, double *x) {
 }
 
 /* One step of Newton's method, the shortest: J J^T p = g, q less J^T p. Returns the largest |g| before it. */
-static double step(const struct Model *model, const struct Levels *levels, const double *values, double *symbols) {
+static double step(const struct Configurations *levels, const double *values, double *symbols) {
+  const struct Model *model = levels->model;
   size_t n = levels->count, coordinates = model->coordinates.count;
   double *matrix = allocate(n * n, sizeof *matrix), *pull = allocate(n, sizeof *pull), largest = 0.0;
   for (size_t i = 0; i < n; i++) {
@@ -98,20 +111,28 @@ static double step(const struct Model *model, const struct Levels *levels, const
   return largest;
 }
 
-double *values_at(const struct Model *model, const double *offsets) {
+static double *evaluate(const struct Configurations *configurations, const double *symbols) {
+  const struct Graph *graph = configurations->model->graph;
+  if (configurations->part == NULL) return graph_evaluate(graph, symbols);
+  double *values = allocate(graph->count, sizeof *values);
+  graph_evaluate_part(graph, configurations->part, configurations->part_count, symbols, values);
+  return values;
+}
+
+double *values_at(const struct Configurations *configurations, const double *offsets) {
   enum { MOST_STEPS = 30 };
-  struct Levels levels = levels_of(model);
+  const struct Model *model = configurations->model;
   double *symbols = start_values(model);
   for (size_t k = 0; k < model->coordinates.count && offsets != NULL; k++)
     symbols[model->graph->vertices[model->coordinates.items[k].node].left] += offsets[k];
-  double *values = graph_evaluate(model->graph, symbols);
-  for (int i = 0; i < MOST_STEPS && levels.count > 0; i++) {
-    double largest = step(model, &levels, values, symbols);
+  double *values = evaluate(configurations, symbols);
+  for (int i = 0; i < MOST_STEPS && configurations->count > 0; i++) {
+    double largest = step(configurations, values, symbols);
     if (largest < 1e-13) return values;
     release(values);
-    values = graph_evaluate(model->graph, symbols);
+    values = evaluate(configurations, symbols);
     if (!isfinite(largest)) return NULL;
     if (largest < 1e-11) return values;
   }
-  return levels.count == 0 ? values : NULL;
+  return configurations->count == 0 ? values : NULL;
 }

@@ -61,10 +61,11 @@ static bool is_of_coordinate(const struct Samples *samples, Node gap, struct Lim
 }
 
 /* Moves the coordinate until the gap is this wide. NULL where that is not found. */
-static double *values_where(const struct Model *model, Node gap, const struct Limit *limit, double width) {
-  double *offsets = allocate(model->coordinates.count, sizeof *offsets), *values = NULL;
+static double *values_where(const struct Configurations *configurations, Node gap, const struct Limit *limit,
+                            double width) {
+  double *offsets = allocate(configurations->model->coordinates.count, sizeof *offsets), *values = NULL;
   for (int i = 0; i < 20; i++) {
-    values = values_at(model, offsets);
+    values = values_at(configurations, offsets);
     if (values == NULL || fabs(values[gap] - width) < 1e-9) break;
     offsets[limit->coordinate] -= (values[gap] - width) / limit->slope;
     release(values);
@@ -87,12 +88,13 @@ static bool is_end(const struct Thing *thing, const double *at, const double *be
 }
 
 /* The first thing that the coordinate moves, where it is at its limit. */
-static void add_stop(struct Surfaces *surfaces, const struct Samples *samples, Node gap) {
+static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
+                     const struct Configurations *configurations, Node gap) {
   const double little = 1e-4;
   struct Limit limit;
   if (!is_of_coordinate(samples, gap, &limit)) return;
-  double *at = values_where(samples->model, gap, &limit, 0.0),
-         *beside = at == NULL ? NULL : values_where(samples->model, gap, &limit, fabs(limit.slope) * little);
+  double *at = values_where(configurations, gap, &limit, 0.0),
+         *beside = at == NULL ? NULL : values_where(configurations, gap, &limit, fabs(limit.slope) * little);
   bool is_found = false;
   for (size_t thing = 1; thing < samples->thing_count && beside != NULL && !is_found; thing++) {
     struct Surface surface = {.thing = thing, .is_stop = true};
@@ -103,16 +105,28 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples, N
   if (beside != NULL) release(beside);
 }
 
+/* Where things are, and how wide gaps are: there are many stops, and the rest of a large system is not evaluated for each. */
+static struct Configurations configurations_with_stops(const struct Samples *samples) {
+  const struct Switches *switches = &samples->model->switches;
+  struct NodeList wanted = {.count = 0};
+  for (size_t i = 0; i < switches->contact_count; i++) append_node(&wanted, switches->contacts[i].gap);
+  for (size_t thing = 0; thing < samples->thing_count; thing++)
+    append_nodes(&wanted, samples->things[thing].position, 3);
+  return configurations_of(samples->model, &wanted);
+}
+
 struct Surfaces find_surfaces(const struct Samples *samples) {
   struct Surfaces surfaces = {.count = 0};
   const struct Switches *switches = &samples->model->switches;
+  if (switches->contact_count == 0) return surfaces;
+  struct Configurations configurations = configurations_with_stops(samples);
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t before = surfaces.count;
     for (size_t thing = 1; thing < samples->thing_count && surfaces.count == before; thing++) {
       struct Surface surface = {.thing = thing};
       if (is_plane(samples, switches->contacts[i].gap, &surface)) append(&surfaces, surface);
     }
-    if (surfaces.count == before) add_stop(&surfaces, samples, switches->contacts[i].gap);
+    if (surfaces.count == before) add_stop(&surfaces, samples, &configurations, switches->contacts[i].gap);
   }
   return surfaces;
 }

@@ -56,3 +56,15 @@ def test_surfaces(tmp_path):
     numbers = [[float(one.get(name)) for name in ("x", "y", "z", "nx", "ny", "nz")] for one in (plane, stop)]
     assert numbers[0] == pytest.approx([0.3, 0.4, 0, 0.6, 0.8, 0]) and plane.get("of") == "ball" and plane.get("stop") is None
     assert numbers[1] == pytest.approx([2, 0, 0, 0, 0, -1], abs=1e-4) and stop.get("of") == "bob" and stop.get("stop") == "true"
+
+
+def test_stops_of_a_closed_chain(tmp_path):
+    """Each stop is shown where the chain is still closed, which is found by steps that a large system does not take as a whole."""
+    inside = ""
+    for k in range(20, 0, -1):
+        joint = f'<joint axis="{"0 1 0" if k % 2 else "0 0.6 0.8"}" range="-1 1"/><geom type="box" size="0.1 0.05 0.05" pos="0.1 0 0"/>'
+        inside = f'<body name="b{k}" pos="0.2 0 0" euler="0 0.3 0">{joint}{inside}</body>'
+    closing = '<equality><connect body1="b20" anchor="0.2 0 0"/></equality>'
+    (tmp_path / "chain.xml").write_text(f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody>{closing}</mujoco>')
+    (tmp_path / "stops.xml").write_text('<system name="S"><include file="chain.xml" as="r" limits="stops"/></system>')
+    assert any(surface.get("stop") for surface in scene_of(tmp_path / "stops.xml", tmp_path).findall("surface"))

@@ -147,17 +147,24 @@ void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bo
   }
 }
 
+static void evaluate(const struct Graph *graph, Node node, const double *symbol_values, double *values) {
+  const struct Vertex *vertex = &graph->vertices[node];
+  if (vertex->operation == CONSTANT) values[node] = vertex->value;
+  else if (vertex->operation == SYMBOL) values[node] = symbol_values[vertex->left];
+  else values[node] = operation_evaluate(vertex->operation, values[vertex->left], values[vertex->right]);
+}
+
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values) {
   return graph_evaluate_first(graph, symbol_values, graph->count);
 }
 
 double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count) {
   double *values = allocate(count, sizeof *values);
-  for (Node node = 0; node < count; node++) {
-    const struct Vertex *vertex = &graph->vertices[node];
-    if (vertex->operation == CONSTANT) values[node] = vertex->value;
-    else if (vertex->operation == SYMBOL) values[node] = symbol_values[vertex->left];
-    else values[node] = operation_evaluate(vertex->operation, values[vertex->left], values[vertex->right]);
-  }
+  for (Node node = 0; node < count; node++) evaluate(graph, node, symbol_values, values);
   return values;
+}
+
+void graph_evaluate_part(const struct Graph *graph, const Node *nodes, size_t count, const double *symbol_values,
+                         double *values) {
+  for (size_t i = 0; i < count; i++) evaluate(graph, nodes[i], symbol_values, values);
 }

@@ -145,3 +145,7 @@ double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
 
 /* Evaluates the first nodes, which need none behind them. */
 double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count);
+
+/* The same of these nodes alone, operands before what they are operands of; values has a place for each node of the graph. */
+void graph_evaluate_part(const struct Graph *graph, const Node *nodes, size_t count, const double *symbol_values,
+                         double *values);
