@@ -36,15 +36,16 @@ struct PlaneState plane_state(const struct Settlement *settlement, size_t plane)
     state.velocity[i] = settlement->value[place + FRICTION_VELOCITY];
     state.rate[i] = settlement->value[place + FRICTION_RATE];
     state.stiction = settlement->value[place + FRICTION_STICTION];
+    state.sliding = settlement->value[place + FRICTION_FORCE];
     size_t constraint = switches->frictions[facts->along + i].constraint;
-    state.force[i] = settlement->acceleration[lagrangian.coordinate_count + constraint];
+    state.force[i] = settlement->acceleration[lagrangian.coordinate_count + constraint] +
+                     mode_of(settlement, facts->heading[i]) * state.sliding;
   }
   double c = mode_of(settlement, facts->heading[0]), s = mode_of(settlement, facts->heading[1]);
   state.ahead = c * state.velocity[0] + s * state.velocity[1];
   state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
   state.needed = hypot(state.force[0], state.force[1]);
-  const double *value = &settlement->value[friction_place(switches, facts->along, 0)];
-  state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || value[FRICTION_FORCE] != 0.0;
+  state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || state.sliding != 0.0;
   state.is_free = state.mode == PLANE_HEADS && state.upper < 0.0;
   double unit = tolerance_of(settlement->instance) * settlement->value[plane_place(switches, plane)];
   state.small = small_share * unit;
@@ -80,7 +81,16 @@ static void set_plane_mode(struct Settlement *settlement, const struct PlaneStat
 }
 
 void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
+  const double nothing[] = {0.0, 0.0};
   set_plane_mode(settlement, state, PLANE_STICKS, state->none, never);
+  plane_carry(settlement, state, nothing);
+}
+
+void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]) {
+  for (int i = 0; i < 2; i++) {
+    double share = force[i] != 0.0 ? force[i] / state->sliding : 0.0;
+    settlement_set_mode(settlement, state->facts->heading[i], share);
+  }
 }
 
 /* Where there is none, it keeps the one that it has. */
