@@ -172,7 +172,8 @@ static bool find_impulses_in_planes(const struct Settlement *settlement, struct 
   const struct Pushes *pushes = problem->pushes;
   for (size_t i = 0; i < pushes->count; i++)
     problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, share);
-  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, problem->impulse);
+  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, pushes->rounding,
+                                                            problem->impulse);
 }
 
 /* The impulses with a share of the restitutions. False where there are none. */

@@ -103,25 +103,26 @@ static bool fill_scales(struct Cones *cones) {
 }
 
 /* Sweeps on from where the ones before came to; what Newton's method makes of that is tried. */
-static bool come_to_law(struct Cones *cones, double *best, double *swept, double *work) {
+static bool come_to_law(struct Cones *cones, double rounding, double *best, double *swept, double *work) {
   size_t bytes = cones->pushes->count * sizeof(double);
-  double least = INFINITY, enough = law_holds;
+  double least = INFINITY, enough = law_holds, left = INFINITY;
   memset(swept, 0, bytes);
   for (int trial = 0; trial < LAW_TRIALS && !(least <= enough); trial++) {
     memcpy(cones->impulse, swept, bytes);
     for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep_contacts(cones, parts[2 * trial / LAW_TRIALS]);
     memcpy(swept, cones->impulse, bytes);
-    double miss = share_of_miss(cones, cone_newton(cones, work));
+    double rate = cone_newton(cones, work), miss = share_of_miss(cones, rate);
     if (miss < least) memcpy(best, cones->impulse, bytes);
+    if (miss < least) left = rate;
     least = fmin(least, miss);
     if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
   }
   memcpy(cones->impulse, best, bytes);
-  return least <= law_roughly_holds;
+  return least <= law_roughly_holds || left <= rounding;
 }
 
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
-                        double *impulse) {
+                        double rounding, double *impulse) {
   struct Instance *instance = settlement->instance;
   size_t n = pushes->count;
   double *block = scratch_take(instance, SCRATCH_CONES, (3 * n + cone_newton_work_count(n)) * sizeof *block);
@@ -130,7 +131,7 @@ bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes
     solver_lacks_memory(instance);
     return false;
   }
-  bool is_done = fill_scales(&cones) && come_to_law(&cones, block + n, block + 2 * n, block + 3 * n);
+  bool is_done = fill_scales(&cones) && come_to_law(&cones, rounding, block + n, block + 2 * n, block + 3 * n);
   scratch_return(instance, SCRATCH_CONES);
   return is_done;
 }

@@ -6,6 +6,6 @@
 
 /* As find_impulses in struct FrictionLaws. */
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
-                        double *impulse);
+                        double rounding, double *impulse);
 
 #endif
