@@ -220,8 +220,13 @@ int main(int count, char **words) {
   noise ^= strtoull(words[6], NULL, 10) * 0x9E3779B97F4A7C15u; /* spreads small seeds */
   const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   for (int type = fmi2ModelExchange; type <= fmi2CoSimulation; type++) {
-    do c = fmu.fmi2Instantiate("attack", (fmi2Type)type, guid, NULL, &callbacks, fmi2False, fmi2True);
-    while (c == NULL);
+    c = NULL;
+    for (int tries = 0; tries < 1000 && c == NULL; tries++) /* it is given no memory now and then */
+      c = fmu.fmi2Instantiate("attack", (fmi2Type)type, guid, NULL, &callbacks, fmi2False, fmi2True);
+    if (c == NULL) {
+      fprintf(stderr, "%s does not instantiate with the GUID %s\n", words[1], guid);
+      return 1;
+    }
     initialize();
     attack(strtol(words[5], NULL, 10));
     for (int i = 0; i < SAVED; i++) fmu.fmi2FreeFMUstate(c, &saved[i]);

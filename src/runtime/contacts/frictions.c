@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "contacts/impact_outcomes.h"
 #include "contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -247,5 +248,8 @@ const char *frictions_check(const struct Settlement *settlement) {
   return NULL;
 }
 
-const struct FrictionLaws friction_laws = {
-    .act = frictions_act, .tell = frictions_tell, .blame = frictions_blame, .check = frictions_check};
+const struct FrictionLaws friction_laws = {.act = frictions_act,
+                                           .tell = frictions_tell,
+                                           .blame = frictions_blame,
+                                           .check = frictions_check,
+                                           .has_other_impulses = impact_has_others};

@@ -24,6 +24,9 @@ enum { HALVINGS = 52, SOLUTIONS = 50 };
 /* Less energy than this share may be gained by rounding. */
 static const double least_gain = 1e-13;
 
+/* Outcomes differ where what their impulses differ by makes more than this share of the energy that they make. */
+static const double differing_share = 1e-8;
+
 /*
  * What is added to the mobilities keeps impulses small where they are not determined; further solutions remove what it does
  * to them. Where rounding leads the way of the first astray, the next is tried.
@@ -40,6 +43,7 @@ struct ImpactProblem {
   double *unit; /* of the impulse of each push */
   double *matrix, *rate, *q, *z, *next, *work;
   double *impulse; /* of each push */
+  double share;    /* of the restitutions, with which the impulses were sought last */
   void *block;
 };
 
@@ -167,19 +171,25 @@ static size_t find_plane(const struct Settlement *settlement, const struct Pushe
   return row;
 }
 
-/* The impulses where frictions act in planes, whose cones are no linear problem. */
-static bool find_impulses_in_planes(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
+/* The rates that are to be kept from falling below 0. */
+static void fill_plain_rates(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   for (size_t i = 0; i < pushes->count; i++)
-    problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, share);
-  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, pushes->rounding,
-                                                            problem->impulse);
+    problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, problem->share);
+}
+
+/* The impulses where frictions act in planes, whose cones are no linear problem. */
+static bool find_impulses_in_planes(const struct Settlement *settlement, struct ImpactProblem *problem) {
+  const struct Pushes *pushes = problem->pushes;
+  fill_plain_rates(settlement, problem);
+  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, problem->impulse);
 }
 
 /* The impulses with a share of the restitutions. False where there are none. */
 static bool find_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
-  if (find_plane(settlement, pushes) < pushes->count) return find_impulses_in_planes(settlement, problem, share);
+  problem->share = share;
+  if (find_plane(settlement, pushes) < pushes->count) return find_impulses_in_planes(settlement, problem);
   double scale = fill_rates(settlement, problem, share);
   bool is_solved = false;
   for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
@@ -191,21 +201,35 @@ static bool find_impulses(const struct Settlement *settlement, struct ImpactProb
   return is_solved;
 }
 
-/* Whether the impulses do more work than rounding. */
-static bool gains_energy(const struct ImpactProblem *problem) {
-  const struct Pushes *pushes = problem->pushes;
+/* Whether impulses do more work than rounding. */
+static bool gains_energy(const struct Pushes *pushes, const double *impulse) {
   double work = 0.0, size = 0.0;
   for (size_t i = 0; i < pushes->count; i++) {
     double change = 0.0;
-    for (size_t j = 0; j < pushes->count; j++) change += pushes->mobility[i * pushes->count + j] * problem->impulse[j];
-    work += problem->impulse[i] * (pushes->rate[i] + 0.5 * change);
-    size += fabs(problem->impulse[i]) * (fabs(pushes->rate[i]) + 0.5 * fabs(change));
+    for (size_t j = 0; j < pushes->count; j++) change += pushes->mobility[i * pushes->count + j] * impulse[j];
+    work += impulse[i] * (pushes->rate[i] + 0.5 * change);
+    size += fabs(impulse[i]) * (fabs(pushes->rate[i]) + 0.5 * fabs(change));
   }
   return work > least_gain * size;
 }
 
+/* Twice the energy of the motion that impulses, less a share of others, make of rest. */
+static double energy_made(const struct Pushes *pushes, const double *impulse, const double *other, double share) {
+  double sum = 0.0;
+  for (size_t i = 0; i < pushes->count; i++)
+    for (size_t j = 0; j < pushes->count; j++)
+      sum +=
+          (impulse[i] - share * other[i]) * pushes->mobility[i * pushes->count + j] * (impulse[j] - share * other[j]);
+  return sum;
+}
+
+bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const double *found) {
+  double size = energy_made(pushes, impulse, found, 0.0) + energy_made(pushes, found, impulse, 0.0);
+  return energy_made(pushes, impulse, found, 1.0) > differing_share * size && !gains_energy(pushes, impulse);
+}
+
 static bool is_fine(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
-  return find_impulses(settlement, problem, share) && !gains_energy(problem);
+  return find_impulses(settlement, problem, share) && !gains_energy(problem->pushes, problem->impulse);
 }
 
 /* With the largest share of the restitutions that does not gain energy. */
@@ -247,11 +271,28 @@ static void refuse_planes(const struct Settlement *settlement, const struct Push
       settlement->time, settlement->switches->frictions[pushes->member[row]].name);
 }
 
+/* Once, so that what bounces for long does not fill the log. */
+static void tell_of_others(const struct Settlement *settlement, struct ImpactProblem *problem) {
+  const struct Pushes *pushes = problem->pushes;
+  const struct SwitchTable *switches = settlement->switches;
+  if (pushes->friction_count == 0 || settlement->instance->told_other_impulses) return;
+  fill_plain_rates(settlement, problem);
+  if (!switches->friction_laws->has_other_impulses(settlement, pushes, problem->rate, problem->impulse)) return;
+  settlement->instance->told_other_impulses = true;
+  log_message(settlement->instance, STATUS_WARNING,
+              "time %g: the impact there, such as that of the contact '%s' with the friction '%s', has more than one "
+              "outcome by the law of impacts; one of them is taken",
+              settlement->time, switches->contacts[pushes->member[0]].name,
+              switches->frictions[pushes->member[pushes->contact_count]].name);
+}
+
 static bool take_several(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
   struct ImpactProblem problem;
   bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
-  if (is_done) add_impulses(settlement, pushes, problem.impulse);
-  else refuse_planes(settlement, pushes);
+  if (is_done) {
+    tell_of_others(settlement, &problem);
+    add_impulses(settlement, pushes, problem.impulse);
+  } else refuse_planes(settlement, pushes);
   if (problem.block != NULL) scratch_return(settlement->instance, SCRATCH_IMPACT);
   return is_done;
 }

@@ -10,4 +10,9 @@
  */
 bool impacts_take(struct Settlement *settlement, bool bounces);
 
+struct Pushes;
+
+/* Whether impulses make another motion than those that were found, by more than rounding, and gain no energy. */
+bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const double *found);
+
 #endif

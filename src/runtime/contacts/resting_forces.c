@@ -4,12 +4,10 @@
 
 #include "arithmetic.h"
 #include "contacts/complementarity.h"
+#include "contacts/elimination.h"
 
 /* Of so many contacts that act on one another all combinations are tried out. */
 enum { COMBINED_LIMIT = 12 };
-
-/* A pivot below this share of the largest is that of a singular matrix. */
-static const double least_share_of_pivot = 1e-11;
 
 /* A combination whose friction leaves less of its mobility is about to lock. */
 static const double locking_share = 1e-3;
@@ -91,7 +89,7 @@ static bool is_surely_one(const struct RestingForces *resting) {
   return true;
 }
 
-/* The forces that hold the contacts of a combination, by Gauss elimination. False where S is singular. */
+/* The forces that hold the contacts of a combination. False where S is singular. */
 static bool find_forces(const struct RestingForces *resting, unsigned combination) {
   size_t member[COMBINED_LIMIT], count = 0;
   double *a = resting->work;
@@ -102,24 +100,9 @@ static bool find_forces(const struct RestingForces *resting, unsigned combinatio
     for (size_t j = 0; j < count; j++) a[i * width + j] = between(resting, member[i], member[j]);
     a[i * width + count] = -resting->free[resting->group[member[i]]];
   }
-  for (size_t k = 0; k < count; k++) {
-    size_t best = k;
-    for (size_t i = k + 1; i < count; i++)
-      if (fabs(a[i * width + k]) > fabs(a[best * width + k])) best = i;
-    if (!(fabs(a[best * width + k]) > least_share_of_pivot)) return false;
-    for (size_t j = 0; j < width; j++) {
-      double other = a[k * width + j];
-      a[k * width + j] = a[best * width + j];
-      a[best * width + j] = other;
-    }
-    for (size_t i = 0; i < count; i++) {
-      double share = i == k ? 0.0 : a[i * width + k] / a[k * width + k];
-      for (size_t j = k; j < width; j++) a[i * width + j] -= share * a[k * width + j];
-    }
-  }
+  if (!eliminate(count, a)) return false;
   for (size_t i = 0; i < resting->group_count; i++) resting->force[resting->group[i]] = 0.0;
-  for (size_t i = 0; i < count; i++)
-    resting->force[resting->group[member[i]]] = a[i * width + count] / a[i * width + i];
+  for (size_t i = 0; i < count; i++) resting->force[resting->group[member[i]]] = a[i * width + count];
   return true;
 }
 

@@ -75,10 +75,13 @@ struct FrictionLaws {
   void (*set_plane)(struct Settlement *settlement, size_t plane, bool slides);
   /*
    * The impulse of each push where some are of frictions in a plane, such that the rates, and those that the impulses add, fulfil
-   * the law of impacts, but for so much as rounding may make of rates. False where none is found. NULL without any.
+   * the law of impacts. False where none is found. NULL without any.
    */
   bool (*find_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
-                        double rounding, double *impulse);
+                        double *impulse);
+  /* Whether other impulses than these fulfil the law at the rates, and make another motion. */
+  bool (*has_other_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                             const double *impulse);
 };
 
 /* The numbers in value[]. */

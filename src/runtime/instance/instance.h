@@ -91,7 +91,8 @@ struct Instance {
   bool solver_is_stale;       /* the situation was replaced: what the solver keeps outside of it no longer counts */
   bool told_early_reading;    /* that a variable was read before it should be, since the last reset */
   bool told_impossible_start; /* that there is no start, since the last reset */
-  bool told_other_forces;     /* that forces of contacts may not be the only ones */
+  bool told_other_forces;     /* that forces of contacts may not be the only ones, since the last reset */
+  bool told_other_impulses;   /* that an impact has other outcomes, since the last reset */
   uint64_t told_singularity;  /* the checksum of the situation whose lack of accelerations was logged last */
   int singular;               /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
   const char *limited_by;     /* the elementary function that shortened the solver's last step; NULL for none */

@@ -9,11 +9,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "contacts/impacts.h"
 #include "contacts/planes.h"
 #include "evaluation/services.h"
 #include "planes/cone_newton.h"
 
-enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, LAW_SWEEPS = 10 }; /* sweeps: in each trial so many more */
+enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, OTHER_LAW_TRIALS = 2 };
+
+/* In each trial so many more. */
+enum { LAW_SWEEPS = 10 };
 
 /* What of its part each push takes: where friction presses a contact together, all of it would go to and fro without end. */
 static const double parts[] = {1.0, 0.3};
@@ -24,6 +28,9 @@ static const double parts[] = {1.0, 0.3};
  * the impulses that do so are approached ever more slowly.
  */
 static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_holds = 1e-5;
+
+/* Where other impulses are looked for from. */
+static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
   const double *mobility = &cones->pushes->mobility[row * cones->pushes->count];
@@ -102,36 +109,79 @@ static bool fill_scales(struct Cones *cones) {
   return moves;
 }
 
-/* Sweeps on from where the ones before came to; what Newton's method makes of that is tried. */
-static bool come_to_law(struct Cones *cones, double rounding, double *best, double *swept, double *work) {
+/* Sweeps on from where the ones before came to, first from swept; what Newton's method makes of that is tried. Returns the miss. */
+static double come_to_law(struct Cones *cones, int trials, double *best, double *swept, double *work) {
   size_t bytes = cones->pushes->count * sizeof(double);
-  double least = INFINITY, enough = law_holds, left = INFINITY;
-  memset(swept, 0, bytes);
-  for (int trial = 0; trial < LAW_TRIALS && !(least <= enough); trial++) {
+  double least = INFINITY, enough = law_holds;
+  for (int trial = 0; trial < trials && !(least <= enough); trial++) {
     memcpy(cones->impulse, swept, bytes);
     for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep_contacts(cones, parts[2 * trial / LAW_TRIALS]);
     memcpy(swept, cones->impulse, bytes);
-    double rate = cone_newton(cones, work), miss = share_of_miss(cones, rate);
+    double miss = share_of_miss(cones, cone_newton(cones, work));
     if (miss < least) memcpy(best, cones->impulse, bytes);
-    if (miss < least) left = rate;
     least = fmin(least, miss);
     if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
   }
   memcpy(cones->impulse, best, bytes);
-  return least <= law_roughly_holds || left <= rounding;
+  return least;
+}
+
+/* Room for cones, and for what they work with behind it; impulses NULL for some inside it. NULL where there is no memory. */
+static double *create_cones(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                            double *impulse, struct Cones *cones) {
+  struct Instance *instance = settlement->instance;
+  size_t n = pushes->count;
+  double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cone_newton_work_count(n)) * sizeof *block);
+  *cones = (struct Cones){.settlement = settlement, .pushes = pushes, .rate = rate, .scale = block};
+  if (block == NULL) {
+    solver_lacks_memory(instance);
+    return NULL;
+  }
+  cones->impulse = impulse != NULL ? impulse : block + n;
+  return block + 2 * n;
+}
+
+/* Impulses that fulfil the law, but for so much as rounding makes of velocities, which the slowest impacts do not exceed by far. */
+static bool fulfil_law(struct Cones *cones, double *best, double *swept, double *work) {
+  double miss = come_to_law(cones, LAW_TRIALS, best, swept, work);
+  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->pushes->rounding;
 }
 
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
-                        double rounding, double *impulse) {
-  struct Instance *instance = settlement->instance;
+                        double *impulse) {
+  struct Cones cones;
   size_t n = pushes->count;
-  double *block = scratch_take(instance, SCRATCH_CONES, (3 * n + cone_newton_work_count(n)) * sizeof *block);
-  struct Cones cones = {.settlement = settlement, .pushes = pushes, .rate = rate, .impulse = impulse, .scale = block};
-  if (block == NULL) {
-    solver_lacks_memory(instance);
-    return false;
-  }
-  bool is_done = fill_scales(&cones) && come_to_law(&cones, rounding, block + n, block + 2 * n, block + 3 * n);
-  scratch_return(instance, SCRATCH_CONES);
+  double *work = create_cones(settlement, pushes, rate, impulse, &cones);
+  if (work == NULL) return false;
+  bool is_done = fill_scales(&cones) && fulfil_law(&cones, work, work + n, work + 2 * n);
+  scratch_return(settlement->instance, SCRATCH_CONES);
   return is_done;
+}
+
+/* One contact alone is hit, as hard as the hardest, and its frictions push as much as they can in one direction. */
+static void fill_start(struct Cones *cones, const double *found, size_t hit, const double *direction, double *start) {
+  size_t contacts = cones->pushes->contact_count;
+  memset(cones->impulse, 0, cones->pushes->count * sizeof *cones->impulse);
+  for (size_t i = 0; i < contacts; i++) cones->impulse[hit] = fmax(cones->impulse[hit], found[i]);
+  for (size_t row = contacts; row < cones->pushes->count;) {
+    size_t rows = cones_row_count(cones, row);
+    for (size_t i = 0; i < rows; i++) cones->impulse[row + i] = direction[i] * cones_limit(cones, row + i);
+    row += rows;
+  }
+  memcpy(start, cones->impulse, cones->pushes->count * sizeof *start);
+}
+
+bool cone_impulses_have_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                               const double *impulse) {
+  struct Cones cones;
+  size_t n = pushes->count, starts = sizeof start_directions / sizeof *start_directions;
+  double *work = create_cones(settlement, pushes, rate, NULL, &cones);
+  bool is_other = false, moves = work != NULL && fill_scales(&cones);
+  for (size_t i = 0; i < pushes->contact_count * starts && moves && !is_other; i++) {
+    fill_start(&cones, impulse, i / starts, start_directions[i % starts], work + n);
+    double miss = come_to_law(&cones, OTHER_LAW_TRIALS, work, work + n, work + 2 * n);
+    is_other = miss <= law_nearly_holds && is_other_outcome(pushes, cones.impulse, impulse);
+  }
+  if (work != NULL) scratch_return(settlement->instance, SCRATCH_CONES);
+  return is_other;
 }

@@ -183,4 +183,5 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .check = frictions_check,
                                                  .guess = guess,
                                                  .set_plane = set_plane,
-                                                 .find_impulses = cone_impulses_find};
+                                                 .find_impulses = cone_impulses_find,
+                                                 .has_other_impulses = cone_impulses_have_others};

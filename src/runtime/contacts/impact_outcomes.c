@@ -1,0 +1,141 @@
+/*
+ * Each contact leaves or presses, and each friction sticks or slides one way or the other. For each such combination the impulses
+ * of what presses and of what sticks follow from linear equations; it is an outcome where they and the rates fulfil the law. Of
+ * impulses that are shared in many ways some share has a friction at its limit, and is found as one that slides at a rate of 0.
+ */
+#include "contacts/impact_outcomes.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "contacts/elimination.h"
+#include "contacts/impacts.h"
+
+enum { MOST_PUSHES = 8 };
+
+/* In units of the largest impulse: less is rounding. */
+static const double rounded_impulse = 1e-9;
+
+/* In units in which the mobility of each push by itself is 1. */
+struct Combination {
+  const struct Pushes *pushes;
+  double unit[MOST_PUSHES], rate[MOST_PUSHES], impulse[MOST_PUSHES];
+  double scale[MOST_PUSHES]; /* what makes impulses of these */
+  int way
+      [MOST_PUSHES]; /* of a contact: 1 where it presses; of a friction: 0 where it sticks, else the sign of its sliding */
+  size_t sought[MOST_PUSHES], sought_count; /* the pushes whose rates are to be 0 */
+  double equations[MOST_PUSHES * (MOST_PUSHES + 1)];
+};
+
+static bool is_contact(const struct Combination *combination, size_t row) {
+  return row < combination->pushes->contact_count;
+}
+
+static double mobility(const struct Combination *combination, size_t i, size_t j) {
+  const struct Pushes *pushes = combination->pushes;
+  return pushes->mobility[i * pushes->count + j] * combination->unit[i] * combination->unit[j];
+}
+
+/* What a contact's impulse of 1 lets a friction push. */
+static double coefficient(const struct Combination *combination, size_t friction, size_t contact) {
+  size_t contacts = combination->pushes->contact_count;
+  double unit = combination->unit[friction];
+  if (!(unit > 0.0)) return 0.0;
+  return combination->pushes->coefficient[(friction - contacts) * contacts + contact] * combination->unit[contact] /
+         unit;
+}
+
+static double limit_of(const struct Combination *combination, size_t friction) {
+  double limit = 0.0;
+  for (size_t i = 0; i < combination->pushes->contact_count; i++)
+    limit += coefficient(combination, friction, i) * combination->impulse[i];
+  return limit;
+}
+
+static double rate_behind(const struct Combination *combination, size_t row) {
+  double rate = combination->rate[row];
+  for (size_t j = 0; j < combination->pushes->count; j++)
+    rate += mobility(combination, row, j) * combination->impulse[j];
+  return rate;
+}
+
+/* How the impulse of a push that is sought, with those of what slides on it, changes a rate. */
+static double effect(const struct Combination *combination, size_t row, size_t push) {
+  double sum = mobility(combination, row, push);
+  for (size_t f = combination->pushes->contact_count; f < combination->pushes->count && is_contact(combination, push);
+       f++)
+    sum -= combination->way[f] * coefficient(combination, f, push) * mobility(combination, row, f);
+  return sum;
+}
+
+static bool find_impulses(struct Combination *combination) {
+  size_t n = 0, count = combination->pushes->count;
+  for (size_t i = 0; i < count; i++)
+    if (is_contact(combination, i) == (combination->way[i] != 0)) combination->sought[n++] = i;
+  for (size_t i = 0; i < n; i++) {
+    double *row = combination->equations + i * (n + 1);
+    for (size_t j = 0; j < n; j++) row[j] = effect(combination, combination->sought[i], combination->sought[j]);
+    row[n] = -combination->rate[combination->sought[i]];
+  }
+  if (!eliminate(n, combination->equations)) return false;
+  for (size_t i = 0; i < count; i++) combination->impulse[i] = 0.0;
+  for (size_t i = 0; i < n; i++) combination->impulse[combination->sought[i]] = combination->equations[i * (n + 1) + n];
+  for (size_t f = combination->pushes->contact_count; f < count; f++)
+    if (combination->way[f] != 0) combination->impulse[f] = -combination->way[f] * limit_of(combination, f);
+  return true;
+}
+
+static bool fulfils_law(const struct Combination *combination) {
+  double size = 1.0;
+  bool is_fine = true;
+  for (size_t i = 0; i < combination->pushes->count; i++) size = fmax(size, fabs(combination->impulse[i]));
+  for (size_t i = 0; i < combination->pushes->count; i++) {
+    double impulse = combination->impulse[i], spare;
+    if (is_contact(combination, i)) spare = combination->way[i] != 0 ? impulse : rate_behind(combination, i);
+    else if (combination->way[i] == 0) spare = limit_of(combination, i) - fabs(impulse);
+    else spare = combination->way[i] * rate_behind(combination, i);
+    is_fine &= spare >= -rounded_impulse * size;
+  }
+  return is_fine;
+}
+
+/* Counts the ways like the digits of a number; false behind the last. */
+static bool next_ways(struct Combination *combination) {
+  for (size_t i = 0; i < combination->pushes->count; i++) {
+    if (combination->way[i]++ < 1) return true;
+    combination->way[i] = is_contact(combination, i) ? 0 : -1;
+  }
+  return false;
+}
+
+static void fill_units(struct Combination *combination, const double *rate) {
+  const struct Pushes *pushes = combination->pushes;
+  double largest = 0.0;
+  for (size_t i = 0; i < pushes->count; i++) {
+    double own = pushes->mobility[i * pushes->count + i];
+    combination->unit[i] = own > DBL_MIN ? 1.0 / sqrt(own) : 0.0;
+    combination->rate[i] = rate[i] * combination->unit[i];
+    combination->way[i] = is_contact(combination, i) ? 0 : -1;
+    largest = fmax(largest, fabs(combination->rate[i]));
+  }
+  for (size_t i = 0; i < pushes->count && largest > 0.0; i++) {
+    combination->rate[i] /= largest;
+    combination->scale[i] = combination->unit[i] * largest;
+  }
+}
+
+bool impact_has_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+                       const double *impulse) {
+  (void)settlement;
+  if (pushes->count > MOST_PUSHES) return false;
+  struct Combination combination = {.pushes = pushes};
+  bool is_other = false;
+  fill_units(&combination, rate);
+  do {
+    double candidate[MOST_PUSHES];
+    if (!find_impulses(&combination) || !fulfils_law(&combination)) continue;
+    for (size_t i = 0; i < pushes->count; i++) candidate[i] = combination.impulse[i] * combination.scale[i];
+    is_other = is_other_outcome(pushes, candidate, impulse);
+  } while (!is_other && next_ways(&combination));
+  return is_other;
+}
