@@ -93,11 +93,14 @@ void plane_carry(struct Settlement *settlement, const struct PlaneState *state, 
   }
 }
 
-/* Where there is none, it keeps the one that it has. */
+/* Where there is none, it keeps the one that it has, or takes any. */
 static void set_heading(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
-  double length = hypot(heading[0], heading[1]);
-  for (int i = 0; i < 2 && length > 0.0; i++)
-    settlement_set_mode(settlement, state->facts->heading[i], heading[i] / length);
+  const double any[] = {1.0, 0.0};
+  const size_t *mode = state->facts->heading;
+  double length = hypot(heading[0], heading[1]),
+         kept = hypot(mode_of(settlement, mode[0]), mode_of(settlement, mode[1]));
+  if (!(length > 0.0) && kept > 0.0) return;
+  for (int i = 0; i < 2; i++) settlement_set_mode(settlement, mode[i], length > 0.0 ? heading[i] / length : any[i]);
 }
 
 void plane_slide(struct Settlement *settlement, const struct PlaneState *state) {
