@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contacts/frictions.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "planes/shared_loads.h"
@@ -17,6 +18,9 @@ enum { SHARE_LIMIT = 5 };
 
 /* What has less to spare, as a share of its limit, is at it, where all are that can be. */
 static const double share_at_limit = 1e-9;
+
+/* In units of the largest limit: what can take less can take little. */
+static const double weak_share = 0.01;
 
 struct PlaneLoads {
   struct Settlement *settlement;
@@ -29,7 +33,9 @@ struct PlaneLoads {
 
 static bool carries(const struct PlaneLoads *loads, size_t plane) {
   struct PlaneState state = plane_state(loads->settlement, plane);
-  return state.mode == PLANE_STICKS && state.stiction > 0.0 && state.sliding > 0.0;
+  bool is_slow = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
+  bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->settlement, &state));
+  return rests && state.stiction > 0.0 && state.sliding > 0.0;
 }
 
 static size_t count_carrying(const struct PlaneLoads *loads) {
@@ -87,11 +93,11 @@ static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
   for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
     if (loads->member[i] == 0.0) continue;
     struct PlaneState state = plane_state(loads->settlement, i);
-    load->limit[next] = state.stiction;
     for (size_t side = 0; side < 2; side++) {
-      load->force[2 * next + side] = state.force[side];
+      load->share[2 * next + side] = state.force[side] / state.stiction;
       for (size_t k = 0; k < loads->n; k++)
-        load->lever[k * 2 * load->count + 2 * next + side] = loads->lever[(2 * i + side) * loads->n + k];
+        load->lever[k * 2 * load->count + 2 * next + side] =
+            state.stiction * loads->lever[(2 * i + side) * loads->n + k];
     }
     next++;
   }
@@ -103,11 +109,32 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
   for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
     if (loads->member[i] == 0.0) continue;
     struct PlaneState state = plane_state(loads->settlement, i);
-    const double *force = load->force + 2 * next;
-    if (slides && shared_load_share(load, next) > 1.0 - share_at_limit) plane_head(loads->settlement, &state, force);
+    const double *share = load->share + 2 * next, force[] = {share[0] * state.stiction, share[1] * state.stiction};
+    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_head(loads->settlement, &state, force);
     else plane_carry(loads->settlement, &state, force);
     next++;
   }
+}
+
+/*
+ * Those that can take little, as their contacts are about to part, push with a share of what presses, where others hold them: what
+ * their constraints took of a load that changes would be too much again and again. False where that cannot be told.
+ */
+static bool let_weak_push(const struct PlaneLoads *loads) {
+  struct Settlement *settlement = loads->settlement;
+  double most = 0.0;
+  for (size_t i = 0; i < settlement->switches->plane_count; i++)
+    if (loads->member[i] != 0.0) most = fmax(most, plane_state(settlement, i).stiction);
+  bool is_told = true;
+  for (size_t i = 0; i < settlement->switches->plane_count && is_told; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    bool is_held = false, is_weak = state.stiction < weak_share * most && plane_has_part(settlement, &state);
+    if (loads->member[i] == 0.0 || !is_weak) continue;
+    plane_push(settlement, &state);
+    is_told = frictions_find_held(settlement, state.facts->along, &is_held);
+    if (!is_held) plane_hold(settlement, &state);
+  }
+  return is_told;
 }
 
 /* The members share what they carry. False where they cannot. */
@@ -123,7 +150,7 @@ static bool share_load(const struct PlaneLoads *loads) {
   enum LoadSharing sharing = shared_load_carry(&load);
   if (sharing != LOAD_OVERCOMES) take_forces(loads, &load, sharing == LOAD_IS_AT_LIMIT);
   scratch_return(instance, SCRATCH_SHARES);
-  return sharing != LOAD_OVERCOMES;
+  return sharing == LOAD_IS_AT_LIMIT || (sharing == LOAD_IS_SHARED && let_weak_push(loads));
 }
 
 bool plane_loads_share(struct Settlement *settlement, size_t plane) {

@@ -13,6 +13,9 @@ static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
 /* Where it is slow and cannot stick, this is tried again at this share of its speed. */
 static const double slower_share = 0.1;
 
+/* A heading that is shorter than 1 by less is so by rounding. */
+static const double least_part = 1e-9;
+
 /* Speeds that are not reached, and where it turns from its heading to the side, which no importer passes over unseen. */
 static const double never = -1e300, turned_aside = -1e-300;
 /* One that goes back in less than this slope to the heading, without an impact, was at rest in between. */
@@ -80,17 +83,30 @@ static void set_plane_mode(struct Settlement *settlement, const struct PlaneStat
   settlement_set_mode(settlement, state->facts->upper, upper);
 }
 
-void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
-  const double nothing[] = {0.0, 0.0};
+void plane_hold(struct Settlement *settlement, const struct PlaneState *state) {
   set_plane_mode(settlement, state, PLANE_STICKS, state->none, never);
-  plane_carry(settlement, state, nothing);
 }
 
 void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]) {
+  plane_hold(settlement, state);
   for (int i = 0; i < 2; i++) {
     double share = force[i] != 0.0 ? force[i] / state->sliding : 0.0;
     settlement_set_mode(settlement, state->facts->heading[i], share);
   }
+}
+
+void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
+  const double nothing[] = {0.0, 0.0};
+  plane_carry(settlement, state, nothing);
+}
+
+void plane_push(struct Settlement *settlement, const struct PlaneState *state) {
+  set_plane_mode(settlement, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+}
+
+bool plane_has_part(const struct Settlement *settlement, const struct PlaneState *state) {
+  double share = hypot(mode_of(settlement, state->facts->heading[0]), mode_of(settlement, state->facts->heading[1]));
+  return share < 1.0 - least_part;
 }
 
 /* Where there is none, it keeps the one that it has, or takes any. */
@@ -118,5 +134,5 @@ void plane_free(struct Settlement *settlement, const struct PlaneState *state) {
 
 void plane_head(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
   set_heading(settlement, state, heading);
-  set_plane_mode(settlement, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+  plane_push(settlement, state);
 }

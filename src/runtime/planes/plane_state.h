@@ -47,8 +47,15 @@ void plane_count_switch(struct Settlement *settlement, const struct PlaneState *
 /* Where forces are not determined, it takes its part of them as of those of equally stiff points. */
 void plane_stick(struct Settlement *settlement, const struct PlaneState *state);
 
-/* One that sticks takes this force, and beside it such a part of what is missing. */
+/* It sticks and takes this force, and beside it such a part of what is missing. */
 void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]);
+
+/* One that carries a force takes it alone, while others hold it; and again a part of what is missing. */
+void plane_push(struct Settlement *settlement, const struct PlaneState *state);
+void plane_hold(struct Settlement *settlement, const struct PlaneState *state);
+
+/* Whether this force is less than what it pushes with as it slides. */
+bool plane_has_part(const struct Settlement *settlement, const struct PlaneState *state);
 
 /* Lets it slide until it is slow, or else much slower or faster than now. */
 void plane_slide(struct Settlement *settlement, const struct PlaneState *state);

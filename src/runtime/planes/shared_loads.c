@@ -42,19 +42,18 @@ static size_t load_work_count(size_t n) {
 }
 
 size_t shared_load_bytes(size_t rows, size_t count) {
-  return (rows * 2 * count + 3 * count + load_work_count(2 * count)) * sizeof(double);
+  return (rows * 2 * count + 2 * count + load_work_count(2 * count)) * sizeof(double);
 }
 
 struct SharedLoad shared_load_in(void *block, size_t rows, size_t count) {
   struct SharedLoad load = {.rows = rows, .count = count, .lever = block};
-  load.limit = load.lever + rows * 2 * count;
-  load.force = load.limit + count;
-  load.work = load.force + 2 * count;
+  load.share = load.lever + rows * 2 * count;
+  load.work = load.share + 2 * count;
   return load;
 }
 
-double shared_load_share(const struct SharedLoad *load, size_t plane) {
-  return hypot(load->force[2 * plane], load->force[2 * plane + 1]) / load->limit[plane];
+double shared_load_size(const struct SharedLoad *load, size_t plane) {
+  return hypot(load->share[2 * plane], load->share[2 * plane + 1]);
 }
 
 /* Gauss and Jordan's elimination of the levers, with full pivoting. Returns how many are independent. */
@@ -90,22 +89,21 @@ static void fill_balance(struct Centre *centre) {
 
 static double largest_share(const struct SharedLoad *load) {
   double largest = 0.0;
-  for (size_t i = 0; i < load->count; i++) largest = fmax(largest, shared_load_share(load, i));
+  for (size_t i = 0; i < load->count; i++) largest = fmax(largest, shared_load_size(load, i));
   return largest;
 }
 
-/* What one plane adds to the derivatives, at the room level^2 - share^2; along: the shares' size times its derivatives by y. */
+/* What one plane adds to the derivatives, at the room level^2 - share^2; along: half the derivatives of this square by y. */
 static void add_plane(struct Centre *centre, size_t plane, double room, double *along) {
   size_t count = centre->free_count;
-  double limit = centre->load->limit[plane];
-  const double *force = centre->load->force + 2 * plane, *row = centre->balance + 2 * plane * count;
+  const double *share = centre->load->share + 2 * plane, *row = centre->balance + 2 * plane * count;
   for (size_t j = 0; j < count; j++) {
-    along[j] = (force[0] * row[j] + force[1] * row[count + j]) / (limit * limit);
+    along[j] = share[0] * row[j] + share[1] * row[count + j];
     centre->slope[j] += 2.0 * along[j] / room;
   }
   for (size_t j = 0; j < count; j++)
     for (size_t k = 0; k <= j; k++) {
-      double product = (row[j] * row[k] + row[count + j] * row[count + k]) / (limit * limit);
+      double product = row[j] * row[k] + row[count + j] * row[count + k];
       centre->curve[j * count + k] += 2.0 * product / room + 4.0 * along[j] / room * (along[k] / room);
     }
 }
@@ -115,7 +113,7 @@ static void fill_derivatives(struct Centre *centre) {
   memset(centre->slope, 0, centre->free_count * sizeof(double));
   memset(centre->curve, 0, centre->free_count * centre->free_count * sizeof(double));
   for (size_t i = 0; i < centre->load->count; i++) {
-    double share = shared_load_share(centre->load, i), room = (centre->level - share) * (centre->level + share);
+    double share = shared_load_size(centre->load, i), room = (centre->level - share) * (centre->level + share);
     add_plane(centre, i, room, centre->step);
     centre->weights += 2.0 * share / room;
     centre->weighted += 2.0 * share * share / room;
@@ -151,7 +149,7 @@ static void come_nearer(struct Centre *centre) {
   double part = centre->distance < 0.25 ? 1.0 : 1.0 / (1.0 + centre->distance);
   for (size_t i = 0; i < centre->n; i++)
     for (size_t j = 0; j < count; j++)
-      centre->load->force[i] += part * centre->balance[i * count + j] * centre->step[j];
+      centre->load->share[i] += part * centre->balance[i * count + j] * centre->step[j];
   centre->largest = largest_share(centre->load);
   /* Beside the centre the mean errs by less than this distance times how wide it is where forces may be, in the same units. */
   double pieces = 2.0 * (double)centre->load->count;
@@ -160,7 +158,7 @@ static void come_nearer(struct Centre *centre) {
 
 /* Whether the search has ended; else the level falls where the centre is near. */
 static bool has_ended(struct Centre *centre) {
-  if (!(centre->largest < centre->level)) return true;
+  if (!isfinite(centre->distance) || !(centre->largest < centre->level)) return true;
   if (!(centre->level > 1.0)) return !(centre->distance > at_centre);
   if (centre->distance > near_centre) return false;
   double next = centre->largest + part_of_level * (centre->level - centre->largest);
@@ -184,6 +182,7 @@ enum LoadSharing shared_load_carry(struct SharedLoad *load) {
     come_nearer(&centre);
     if (has_ended(&centre)) break;
   }
+  if (!isfinite(centre.distance)) return LOAD_OVERCOMES;
   if (centre.largest < 1.0 - least_spare) return LOAD_IS_SHARED;
   return centre.largest < 1.0 + rounded_spare ? LOAD_IS_AT_LIMIT : LOAD_OVERCOMES;
 }

@@ -8,12 +8,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Of so many planes, each with the forces along and across. */
+/* Of so many planes, each with the forces along and across, in units of its limit. */
 struct SharedLoad {
   size_t rows, count;
   double *lever; /* rows by rows, with what a force of 1 does, 2 count of them; this does not last */
-  double *limit; /* of the size of each plane's force, above 0 */
-  double *force; /* those that carry the load at first, then others that do */
+  double *share; /* forces that carry the load at first, then others that do */
   double *work;
 };
 
@@ -25,10 +24,10 @@ struct SharedLoad shared_load_in(void *block, size_t rows, size_t count);
 /* LOAD_OVERCOMES: some forces are the only ones that carry it, or all go beyond the limits. LOAD_IS_AT_LIMIT: but for rounding. */
 enum LoadSharing { LOAD_IS_SHARED, LOAD_IS_AT_LIMIT, LOAD_OVERCOMES };
 
-/* Where there are forces within the limits, these leave much of what can be left; else those whose largest share is least. */
+/* Where there are forces within the limits, these leave much of what can be left; else those of which the largest is least. */
 enum LoadSharing shared_load_carry(struct SharedLoad *load);
 
-/* The share of the limit that the force of a plane takes. */
-double shared_load_share(const struct SharedLoad *load, size_t plane);
+/* The size of a plane's force. */
+double shared_load_size(const struct SharedLoad *load, size_t plane);
 
 #endif
