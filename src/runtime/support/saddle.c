@@ -82,8 +82,8 @@ static void take_along(size_t c, const Real *balance, Real *force) {
  * what they have along the columns before, twice because of rounding, they are a column of the balances: numbers of the constraints
  * up to c, of which its own is 1 and not kept. In its place stands 1 by the square of the length, 0 where there is no column.
  */
-static void fill_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m, size_t i,
-                         size_t c) {
+static void balance_constraint(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
+                               size_t i, size_t c) {
   Real *balance = m + place_of_balance(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
   Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row(start, m, i));
   balance[c] = REAL(0.0);
@@ -99,7 +99,7 @@ static void fill_balance(size_t n, const size_t *start, const size_t *column, co
 
 void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   for (size_t i = 0, c = 0; i < n; i++)
-    if (coordinate[i] < 0) fill_balance(n, start, column, coordinate, m, i, c++);
+    if (coordinate[i] < 0) balance_constraint(n, start, column, coordinate, m, i, c++);
 }
 
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
