@@ -13,7 +13,7 @@ static void swap_equations(size_t width, double *one, double *other) {
   }
 }
 
-bool eliminate(size_t n, double *rows) {
+bool solve_by_elimination(size_t n, double *rows) {
   size_t width = n + 1;
   for (size_t k = 0; k < n; k++) {
     size_t best = k;
