@@ -51,7 +51,7 @@ CASES = [
     ("free joint in a body", 10, '<freejoint name="elbow"/>', 10, "the free joint 'elbow' is in the body 'lower'; expected it in a <body> of the <worldbody>"),
     ("range", 10, '<joint name="elbow" range="1 -1"/>', 10, "range of <joint> is from 1 to -1; expected the lower one first"),
     ("springy ball", 10, '<joint name="elbow" type="ball" stiffness="3"/>', 10, f'stiffness="3" of <joint> {UNKNOWN}'),
-    ("damped free joint", 6, '<body name="upper"><joint type="free"/></body><body name="other">', 6, f'damping="0.1" of <joint> {UNKNOWN}'),
+    ("rubbing free joint", 6, '<body name="upper"><joint type="free" frictionloss="1"/></body><body name="other">', 6, f'frictionloss="1" of <joint> {UNKNOWN}'),
     ("damping", 10, '<joint name="elbow" damping="-1"/>', 10, 'damping="-1" of <joint> is negative'),
     ("no mass", 11, '<geom size="0.1" mass="0"/>', 10, "the joint 'elbow' moves no inertia"),
     ("no size", 11, "<geom/>", 11, "a <geom> of type sphere has a size of 0"),

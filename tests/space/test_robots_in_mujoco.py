@@ -30,7 +30,7 @@ EACH = """\
     <geom type="plane" size="1 1 1"/>
     <frame pos="0.1 0 0" euler="5 6 7">
       <body name="stand" pos="0 0 1" euler="10 20 30">
-        <joint name="turn" axis="0 0 1" ref="15"/>
+        <joint name="turn" axis="0 0 1" ref="15" actuatorfrcrange="-6 4"/>
         <joint name="swing" axis="0 1 0.2" pos="0.1 0 0.2" class="stiff"/>
         <geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0" axisangle="1 1 0 40"/>
         <frame pos="0 0 0.3" quat="1 1 0 0"><geom type="cylinder" size="0.1 0.2" mass="2"/></frame>
@@ -47,7 +47,7 @@ EACH = """\
       </body>
     </frame>
     <body name="drone" pos="1 2 3" euler="30 40 50">
-      <freejoint/><geom type="cylinder" size="0.2 0.1" pos="0.1 0.2 0"/>
+      <joint name="drone" type="free" damping="0.4"/><geom type="cylinder" size="0.2 0.1" pos="0.1 0.2 0"/>
       <body name="rotor" pos="0 0 0.2">
         <joint name="rotor" class="main" axis="0 0 -1" springref="30" stiffness="0.2"/><geom type="box" fromto="0 0 0 0.3 0 0" size="0.02"/>
       </body>
@@ -55,6 +55,7 @@ EACH = """\
   </worldbody>
   <actuator>
     <motor name="m" joint="turn" gear="5" ctrlrange="-1 1"/>
+    <position name="n" joint="turn" kp="3"/>
     <position name="p" joint="swing" kp="10" kv="0.5" gear="2" forcerange="-3 4"/>
     <velocity joint="slide" kv="7"/>
     <general joint="rotor" gainprm="2" biastype="affine" biasprm="0.1 -0.3 -0.2"/>

@@ -84,7 +84,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
   mjcf_refuse(mjcf, node, "springdamper");
-  mjcf_refuse(mjcf, node, "actuatorfrcrange");
+  mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->push);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   joint->lower = limits[0] * scale;
   joint->upper = limits[1] * scale;
@@ -95,18 +95,13 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/* A ball joint turns against its damping and armature about any axis; what else acts along a single coordinate has no place in several. */
+/* These move against damping and armature in any direction; what else acts along a single coordinate has no place in several. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
-  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper"};
+  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
-  if (joint->type == BALL) {
-    joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
-    joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
-    if (mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
-    return;
-  }
-  mjcf_refuse(mjcf, node, "damping");
-  mjcf_refuse(mjcf, node, "armature");
+  joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
 }
 
 /* The body of a free joint starts where it is placed. */
