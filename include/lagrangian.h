@@ -35,6 +35,7 @@ struct Seed {
   const Real *input;
   const Real *parameter;
   const Real *result; /* of a weighted sum alone */
+  bool repeats;       /* the point is that of the call before, and nothing has touched its workspace since */
 };
 
 enum VariableKind {

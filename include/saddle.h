@@ -3,8 +3,9 @@
  * each constraint comes after its coordinates: then no pivoting is needed, and the pivots of the constraints, those of
  * -J M^-1 J^T, are negative. For blocks of the mass matrix with constraints.
  *
- * m holds the e elements of K's pattern, SADDLE_MASS(e, n) numbers in all: the factors, K itself, the share that is left of
- * the weakest constraint's row, and workspace. Right sides are arrays of SADDLE_SIDE(n) numbers.
+ * m holds the e elements of K's pattern, SADDLE_MASS(e, n, c) numbers in all with c constraints: the factors, K itself, the share
+ * that is left of the weakest constraint's row, workspace, and forces that balance each other, see saddle_least_forces(). Right
+ * sides are arrays of SADDLE_SIDE(n) numbers.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
@@ -15,7 +16,7 @@
 #include "arithmetic.h"
 #include "real.h"
 
-#define SADDLE_MASS(elements, n) (2 * (elements) + 1 + 2 * (n))
+#define SADDLE_MASS(elements, n, constraints) (2 * (elements) + 1 + 2 * (n) + (constraints) * ((constraints) + 1) / 2)
 #define SADDLE_SIDE(n) (4 * (n))
 
 /*
@@ -70,6 +71,9 @@ static inline Condition saddle_is_weak(size_t elements, const Real *m) {
  * digits that K has lost.
  */
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
+
+/* Finds what saddle_least_forces() needs behind the factors; saddle_factor() does so itself. */
+void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*
  * Where constraints follow from others, many forces F have the same J^T F. Replaces those in x by the ones among them of

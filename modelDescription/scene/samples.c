@@ -82,6 +82,25 @@ static double *moved_symbols(const struct Model *model, size_t sample, bool is_s
   return symbols;
 }
 
+static Node later(Node first, Node second) {
+  return first > second ? first : second;
+}
+
+/* The last node that is looked at: the equations that were derived from it are many times as many. */
+static Node last_node(const struct Samples *samples) {
+  const struct Model *model = samples->model;
+  Node last = ZERO;
+  for (size_t i = 0; i < samples->thing_count; i++) {
+    const struct Thing *thing = &samples->things[i];
+    for (int axis = 0; axis < 3; axis++) last = later(last, thing->position[axis]);
+    last = later(last, thing->angle);
+  }
+  for (size_t i = 0; i < model->coordinates.count; i++) last = later(last, model->coordinates.items[i].node);
+  for (size_t i = 0; i < model->constraints.count; i++) last = later(last, model->constraints.items[i].node);
+  for (size_t i = 0; i < model->switches.contact_count; i++) last = later(last, model->switches.contacts[i].gap);
+  return last;
+}
+
 struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters) {
   struct Samples samples = {.model = model};
   find_things(&samples);
@@ -90,7 +109,7 @@ struct Samples take_samples(const struct Model *model, bool is_still, const doub
   samples.values = allocate(samples.count, sizeof *samples.values);
   for (size_t k = 0; k < samples.count; k++) {
     double *symbols = moved_symbols(model, k, is_still, parameters);
-    samples.values[k] = graph_evaluate(model->graph, symbols);
+    samples.values[k] = graph_evaluate_first(model->graph, symbols, (size_t)last_node(&samples) + 1);
     release(symbols);
   }
   return samples;

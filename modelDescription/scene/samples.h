@@ -19,7 +19,7 @@ struct Samples {
   size_t thing_count;
   size_t *constraints; /* among the model's: those of positions; none where there are very many */
   size_t constraint_count;
-  double **values; /* of each sample, of each node */
+  double **values; /* of each sample, of each node up to the last one that these and the coordinates and gaps are */
   size_t count;
 };
 
@@ -29,5 +29,5 @@ struct Samples {
  */
 struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters);
 
-/* Large systems have many nodes. */
+/* There are many of large systems. */
 void release_samples(struct Samples *samples);

@@ -201,12 +201,28 @@ static void test_fractions_cancel(void **state) {
   assert_string_equal(text, "x + y");
 }
 
+static void test_sums_that_stay_whole(void **state) {
+  (void)state;
+  struct Expressions e = expressions_create();
+  struct Graph *graph = e.graph;
+  Node x = parse(&e, "x"), y = parse(&e, "y"), whole = parse(&e, "x + y"), two = graph_constant(graph, 2.0);
+  assert_int_equal(add(graph, whole, x), parse(&e, "2*x + y"));
+  Node sum = add_whole(graph, whole, x);
+  assert_true(graph->vertices[sum].operation == ADD &&
+              graph->vertices[sum].left + graph->vertices[sum].right == whole + x);
+  assert_int_equal(add_whole(graph, whole, whole), multiply(graph, two, whole));
+  assert_int_equal(add_whole(graph, whole, negate(graph, whole)), ZERO);
+  assert_int_equal(add_whole(graph, ZERO, y), y);
+  assert_int_equal(add_whole(graph, ONE, ONE), two);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_simplifications),           cmocka_unit_test(test_signs_and_precedence),
       cmocka_unit_test(test_algebra_keeps_values),      cmocka_unit_test(test_printed_text_reads_back),
       cmocka_unit_test(test_fractions_cancel),          cmocka_unit_test(test_roots_of_even_powers),
       cmocka_unit_test(test_long_products_keep_values), cmocka_unit_test(test_functions_of_special_operands),
+      cmocka_unit_test(test_sums_that_stay_whole),
   };
   return cmocka_run_group_tests_name("simplify", tests, NULL, NULL);
 }

@@ -1,8 +1,11 @@
 """Deep trees of joints, whose accelerations articulated inertias give: against energies by mpmath, a closed form, and the balance of energy."""
 
+import re
+
 import mpmath as mp
 import numpy as np
 import pytest
+from fmpy.fmi2 import FMU2Model
 from robots_by_energies import Robot
 
 import fmu
@@ -74,13 +77,17 @@ def test_robot(open_fmu):
     np.testing.assert_allclose(instance.get(*[f"der({name}_velocity)" for name in names]), expected, rtol=1e-9)
 
 
-def test_code_grows_as_the_chain(tmp_path):
-    """What is written of a chain of joints, its frames and bodies included, and what is done to derive it."""
-    sizes = []
+def test_cost_grows_as_the_chain(tmp_path):
+    """Of what is written of a chain of joints, its frames and bodies included; and an evaluation takes about what the articulated-body algorithm does
+    for a joint, 224 multiplications and 205 additions where offsets have a component of 0 (Featherstone 2008, table 10.1), which these have not."""
+    sizes, operations = [], []
     for count in (100, 200):
         assert fmu.lagc(chain(count), "-o", tmp_path).returncode == 0
-        sizes.append((tmp_path / "system.c").stat().st_size)
+        source = (tmp_path / "system.c").read_text()
+        sizes.append(len(source))
+        operations.append(int(re.search(r"(\d+) operations[^\n]*\nstatic int derivatives\(", source)[1]))
     assert sizes[1] < 2.5 * sizes[0]
+    assert operations[1] - operations[0] < 1.05 * 100 * (224 + 205)
 
 
 def absolute_accelerations(angles, rates, held=None):
@@ -109,8 +116,8 @@ def test_pendulum(name, open_fmu):
 
 
 @pytest.mark.parametrize("solver", ["taylor", "radau"])
-def test_energy(solver, open_fmu):
-    """Of a gantry that moves along three axes at once, motors, a slider in its frame, and damping; radau has the Jacobian from directions."""
+def test_arm(solver, open_fmu):
+    """The energy of a gantry that moves along three axes at once, motors, a slider in its frame, and damping; radau has the Jacobian from directions."""
     name = f"BranchedArm_{solver}"
     text = (fmu.ROOT / "tests" / "support" / "branched_arm.xml").read_text()
     build_systems(f"trees-{solver}", {name: text.replace("BranchedArm", name).replace("<work/>", f'<work/><solver method="{solver}"/>')})
@@ -119,6 +126,21 @@ def test_energy(solver, open_fmu):
     instance.step(1.5)
     assert instance.get("nonConservativeWork") < -0.1
     assert instance.get("totalEnergy") - instance.get("nonConservativeWork") == pytest.approx(start, abs=1e-8)
+    check_direction(open_fmu(name, kind=FMU2Model))
+
+
+def check_direction(instance):
+    """What the accelerations change by along a random direction, against difference quotients of the fourth order."""
+    random, states = np.random.default_rng(3), [name for name in fmu.states_of(instance.description.modelName) if name != "nonConservativeWork"]
+    place, direction = random.uniform(-1, 1, (2, len(states)))
+    accelerations = [f"der({name})" for name in states if name[0] in "vw"]
+    ahead, behind, further_ahead, further_behind = [
+        np.array(instance.put(dict(zip(states, place + 1e-3 * steps * direction))).get(*accelerations)) for steps in (1, -1, 2, -2)
+    ]
+    expected = (8 * (ahead - behind) - (further_ahead - further_behind)) / 12e-3
+    instance.put(dict(zip(states, place)))
+    ours = instance.fmu.getDirectionalDerivative(instance.vr(*accelerations), instance.vr(*states), list(direction))
+    np.testing.assert_allclose(ours, expected, rtol=1e-7, atol=1e-7 * np.max(np.abs(expected)))
 
 
 def wrist(axes):

@@ -155,8 +155,12 @@ static void evaluate(const struct Graph *graph, Node node, const double *symbol_
 }
 
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values) {
-  double *values = allocate(graph->count, sizeof *values);
-  for (Node node = 0; node < graph->count; node++) evaluate(graph, node, symbol_values, values);
+  return graph_evaluate_first(graph, symbol_values, graph->count);
+}
+
+double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count) {
+  double *values = allocate(count, sizeof *values);
+  for (Node node = 0; node < count; node++) evaluate(graph, node, symbol_values, values);
   return values;
 }
 

@@ -143,6 +143,9 @@ void graph_mark(const struct Graph *graph, const Node *targets, size_t count, bo
 /* Evaluates all nodes; symbol_values in the order of graph->symbols; one value for each. */
 double *graph_evaluate(const struct Graph *graph, const double *symbol_values);
 
+/* Evaluates the first nodes, which need none behind them. */
+double *graph_evaluate_first(const struct Graph *graph, const double *symbol_values, size_t count);
+
 /* The same of these nodes alone, operands before what they are operands of; values has a place for each node of the graph. */
 void graph_evaluate_part(const struct Graph *graph, const Node *nodes, size_t count, const double *symbol_values,
                          double *values);

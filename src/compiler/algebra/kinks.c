@@ -29,6 +29,7 @@ static const char *find_kink(const struct Graph *graph, const Node *nodes, size_
   graph_mark(graph, nodes, count, needed);
   for (Node node = 0; node < graph->count && kink == NULL; node++)
     if (needed[node] && !graph_is_constant_in_time(graph, node)) kink = at(graph, node);
+  release(needed);
   return kink;
 }
 

@@ -305,6 +305,12 @@ Node add(struct Graph *graph, Node left, Node right) {
   return sum(graph, left, right);
 }
 
+Node add_whole(struct Graph *graph, Node left, Node right) {
+  if (graph_is_constant(graph, left) && graph_is_constant(graph, right)) return add(graph, left, right);
+  if (left == right) return scale(graph, 2.0, left);
+  return right == negate(graph, left) ? ZERO : sum(graph, left, right);
+}
+
 Node subtract(struct Graph *graph, Node left, Node right) {
   return add(graph, left, negate(graph, right));
 }

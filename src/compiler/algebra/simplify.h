@@ -7,6 +7,10 @@
 #include "algebra/graph.h"
 
 Node add(struct Graph *graph, Node left, Node right);
+
+/* left + right in one operation: sums stay as they are, and as others need them, where gathering like terms takes them apart. */
+Node add_whole(struct Graph *graph, Node left, Node right);
+
 Node subtract(struct Graph *graph, Node left, Node right);
 Node multiply(struct Graph *graph, Node left, Node right);
 Node divide(struct Graph *graph, Node left, Node right);

@@ -112,8 +112,9 @@ static Node lower_indicator(const struct Model *model, const struct Friction *al
   struct Graph *graph = model->graph;
   Node left = power_number(graph, along->stiction, 2.0);
   for (int i = 0; i < 2; i++) {
-    Node square = power_number(graph, model->unknowns.forces[along[i].constraint], 2.0);
-    left = subtract(graph, left, square);
+    Node share = multiply(graph, along[i].sliding, along[i].plane.heading);
+    Node force = add(graph, model->unknowns.forces[along[i].constraint], share);
+    left = subtract(graph, left, power_number(graph, force, 2.0));
   }
   Node lower = along->plane.lower, above = subtract(graph, divide(graph, square_of_speed(graph, along), lower), lower);
   Node ahead = add(graph, velocity_by_heading(graph, along, false), lower);

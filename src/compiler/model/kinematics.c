@@ -52,6 +52,13 @@ struct Vector matrix_apply_transposed(struct Graph *graph, const struct Matrix *
   return product;
 }
 
+struct Matrix matrix_transposed(const struct Matrix *matrix) {
+  struct Matrix result;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) result.row[i].along[j] = matrix->row[j].along[i];
+  return result;
+}
+
 struct Pose pose_of_base(void) {
   return (struct Pose){.rotation.row = {{{ONE, ZERO, ZERO}}, {{ZERO, ONE, ZERO}}, {{ZERO, ZERO, ONE}}}};
 }

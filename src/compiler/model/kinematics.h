@@ -37,6 +37,8 @@ Node vector_dot(struct Graph *graph, struct Vector a, struct Vector b);
 struct Vector matrix_apply(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 struct Vector matrix_apply_transposed(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 
+struct Matrix matrix_transposed(const struct Matrix *matrix);
+
 /* The pose of the base. */
 struct Pose pose_of_base(void);
 

@@ -23,24 +23,24 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
   return add(graph, first, second);
 }
 
-/* This component of the unit vector against which a friction in a plane pushes; of its heading as it begins to slide. */
+/* This component of the vector against which a friction in a plane pushes: of the velocity's direction, or of the heading. */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
-  Node square = ZERO, component[2];
-  for (int i = 0; i < 2; i++) {
-    component[i] = choose_node(graph, along->mode, along[i].velocity, along[i].plane.heading);
-    square = add(graph, square, power_number(graph, component[i], 2.0));
-  }
-  return divide(graph, component[friction - along], power_number(graph, square, 0.5));
+  Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.heading);
+  Node square = choose_node(graph, friction->mode, square_of_speed(graph, along), ONE);
+  return divide(graph, component, power_number(graph, square, 0.5));
 }
 
 Node sliding_push(struct Graph *graph, const struct Friction *friction) {
   if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, friction->sliding);
-  Node moves = power_number(graph, friction->mode, 2.0);
-  return multiply(graph, friction->sliding, function(graph, GATE, moves, direction_in_plane(graph, friction)));
+  return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
+}
+
+Node friction_sticks(struct Graph *graph, const struct Friction *friction) {
+  return subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
 }
 
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
-  Node push = sliding_push(graph, friction);
-  return choose_node(graph, power_number(graph, friction->mode, 2.0), push, force);
+  Node held = function(graph, GATE, friction_sticks(graph, friction), force);
+  return add(graph, held, sliding_push(graph, friction));
 }

@@ -27,13 +27,14 @@ struct Contact {
 /*
  * What a friction along one of two velocities has that acts in their plane: Coulomb's cone. Both are frictions of the model, the
  * one across follows the one along, and share their modes: the common mode is 1 while the friction slides against the velocity
- * in the plane, 0 while it sticks, and -1 while it slides along the heading, as it does from rest on.
+ * in the plane, 0 while it sticks, and -1 while it slides along the heading, as it does from rest on. While it sticks the heading
+ * is what it carries beside its constraint, as a share of what it pushes with sliding: 0 but where several carry a load.
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
 struct PlaneSide {
   enum PlaneAxis axis;
-  Node heading;      /* a mode: this component of a unit vector */
+  Node heading;      /* a mode: this component of a unit vector, or of a share */
   Node lower, upper; /* modes: speeds at which the mode may change; a negative upper one is along the heading */
 };
 
@@ -87,8 +88,11 @@ bool has_planes(const struct Switches *switches);
 /* Of a friction that acts in a plane, of which this is the part along: the square of the speed. */
 Node square_of_speed(struct Graph *graph, const struct Friction *along);
 
-/* What it pushes with against its velocity as it slides, and along it where that is negative. */
+/* What it pushes with against its velocity without its constraint, and along it where that is negative. */
 Node sliding_push(struct Graph *graph, const struct Friction *friction);
+
+/* Positive while its constraint holds, else 0. */
+Node friction_sticks(struct Graph *graph, const struct Friction *friction);
 
 /* The force of a friction, from that of its constraint: while it slides it belongs to none. */
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);

@@ -20,7 +20,7 @@ static void weigh_fixed(const struct Program *program, struct Values *values, co
 /* Forces that follow from others have no part in a correction, nor in what an impulse does by itself. */
 static void leave_oblique_out(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
-  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count);
+  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
     values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
 }

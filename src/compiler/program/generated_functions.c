@@ -70,8 +70,11 @@ static void append_along(const struct Program *program, struct Values *values, s
   const struct Equations *equations = program->equations;
   const Node *along = program->expressions->along;
   size_t row_total = equations->explicit_form ? equations->count : row_count(equations);
-  append_needed_accelerations(program, values, along, row_total);
-  values_compute(values, along, row_total, false);
+  struct NodeList needed = {0};
+  for (size_t i = 0; i < row_total; i++)
+    if (i < count || (!equations->explicit_form && is_looped(equations, i))) append_node(&needed, along[i]);
+  append_needed_accelerations(program, values, needed.nodes, needed.count);
+  values_compute(values, needed.nodes, needed.count, false);
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
   for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)

@@ -7,13 +7,14 @@
  * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
  * table takes a fraction of one. The derivatives and the series of the motion may be as long by themselves: as statements,
  * they take a fifth and three quarters of the time. Those of trees are written in parts, which a compiler takes as long for as
- * they are together.
+ * they are together; so are directions, if a column of a Jacobian is one.
  */
 enum {
   STATEMENT_LIMIT = 6000,
   SERIES_STATEMENT_LIMIT = 8000,
   DERIVATIVES_STATEMENT_LIMIT = 20000,
-  TREE_STATEMENT_LIMIT = 200000
+  TREE_STATEMENT_LIMIT = 200000,
+  DIRECTIONAL_STATEMENT_LIMIT = 40000
 };
 
 /* Series of up to this many recurrences an order have code of their own for each product: more of it would leave the caches. */
@@ -86,6 +87,12 @@ bool program_solves_by_statements(const struct Program *program, size_t number) 
   return !program->is_table && block->count <= ROWS && block->constraint_count > 0 && block->force_count == 0;
 }
 
+/* Whether a Jacobian is made of directions, which can be written in parts. */
+static bool has_columns_in_parts(const struct Program *program) {
+  const struct JacobianExpressions *jacobian = program->expressions->jacobian;
+  return jacobian != NULL && jacobian->value == NULL && program->blocks.count == 0;
+}
+
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
@@ -98,6 +105,8 @@ static void choose_form(struct Program *program, enum CodeForm form) {
   size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
       all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);
+  bool is_long = count_of(program->routines[FUNCTION_DIRECTIONAL]) > DIRECTIONAL_STATEMENT_LIMIT;
+  program->directional_is_table = all || (program->is_table && (is_long || !has_columns_in_parts(program)));
 }
 
 static void choose_parts_of_runtime(struct Program *program) {

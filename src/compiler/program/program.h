@@ -30,8 +30,8 @@ struct Program {
   struct SeriesProgram *series, *output_series;
   struct SeriesProgram *watched_series; /* NULL where events look at nothing that can hide */
   bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
-  /* So are the derivatives and the series of the motion, where a simulation spends its time. */
-  bool derivatives_are_table, series_is_table;
+  /* So are those parts of the motion in which a simulation spends its time. */
+  bool derivatives_are_table, directional_is_table, series_is_table;
   bool switches_are_table;   /* so are the functions of struct SwitchTable */
   enum ProductForm products; /* of an order of the series */
   const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */

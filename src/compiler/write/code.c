@@ -70,14 +70,23 @@ static void write_runtime(FILE *file, const struct Program *program) {
   fputs("#endif\n", file);
 }
 
+/* What is asked of GCC alone, so that it moves and compiles less; NULL for nothing. */
+static const char *optimization_of(const struct Program *program) {
+  if (!program->is_table) return NULL;
+  /* Long statements of series take a compiler half the time so, and the processor not more. */
+  if (!program->series_is_table) return "O1";
+  /* Long derivatives go through the processor once, as fast as their code comes: it is a twentieth shorter so. */
+  return program->derivatives_are_table ? NULL : "Os";
+}
+
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   if (has_lanes(program))
     fputs("#ifdef LANES /* these functions alone, over lanes */\n#undef FMU_IN_ONE_FILE\n#endif\n", file);
   write_runtime(file, program);
-  /* Long statements of series take a compiler half the time so, and the processor not more. */
-  if (program->is_table && !program->series_is_table)
-    fputs("#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize(\"O1\")\n#endif\n", file);
+  const char *level = optimization_of(program);
+  if (level != NULL)
+    fprintf(file, "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC optimize(\"%s\")\n#endif\n", level);
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
@@ -144,7 +153,10 @@ static void write_small_factor(FILE *file, const struct InertiaBlock *block, siz
               k, k, start[column[k] + 1] - 1, k, k, k, k, k);
     write_pivot(file, block, i, numbers.items[i] < 0, number);
   }
-  fprintf(file, "  mass[%zu] = weakest;\n  return 0;\n}\n\n", 2 * elements);
+  fprintf(
+      file,
+      "  mass[%zu] = weakest;\n  saddle_balance(%zu, start%zu, column%zu, coordinate%zu, mass);\n  return 0;\n}\n\n",
+      2 * elements, n, number, number, number);
 }
 
 /* Solves a small block by its factors, as saddle_solve() does where nothing is to be refined. */
@@ -181,21 +193,30 @@ static void write_blocks(FILE *file, const struct Program *program) {
   }
 }
 
-/* The functions of one routine that struct Lagrangian holds, as far as the system has them. */
-static void write_routines(FILE *file, const struct Program *program, const struct Encoding *tables,
-                           const struct Parts *derivatives) {
+/* Where a simulation spends its time, statements may stand among tables. */
+static bool is_in_statements(const struct Program *program, enum FunctionName name) {
+  return (name == FUNCTION_DERIVATIVES && !program->derivatives_are_table) ||
+         (name == FUNCTION_DIRECTIONAL && !program->directional_is_table);
+}
+
+/*
+ * The functions of one routine that struct Lagrangian holds, as far as the system has them. Returns how much of the workspace
+ * those need that are statements in parts.
+ */
+static size_t write_routines(FILE *file, const struct Program *program, const struct Encoding *tables) {
+  size_t shared = 0;
   for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
     const struct Routine *routine = program->routines[i];
     if (routine == NULL) continue;
-    bool is_table = tables != NULL && (i != FUNCTION_DERIVATIVES || program->derivatives_are_table);
-    if (is_table) instruction_tables_function(file, tables, i, routine);
-    else if (i == FUNCTION_DERIVATIVES && derivatives != NULL) statements_derivatives(file, program, derivatives);
-    else statements_function(file, program, i, "", routine);
+    if (tables == NULL) statements_function(file, program, i, "", routine);
+    else if (is_in_statements(program, i)) shared = larger(shared, statements_in_parts(file, program, i));
+    else instruction_tables_function(file, tables, i, routine);
   }
+  return shared;
 }
 
 static void write_as_statements(FILE *file, const struct Program *program) {
-  write_routines(file, program, NULL, NULL);
+  write_routines(file, program, NULL);
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
@@ -205,18 +226,14 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 
 static void write_as_tables(FILE *file, const struct Program *program) {
   struct Encoding *tables = encoding_create(program);
-  struct Parts derivatives = {0};
-  struct Routine *routine = program->routines[FUNCTION_DERIVATIVES];
-  bool has_parts = routine != NULL && !program->derivatives_are_table;
-  if (has_parts) derivatives = parts_of(routine);
   instruction_tables_shared(file, tables);
-  write_routines(file, program, tables, has_parts ? &derivatives : NULL);
+  size_t shared = write_routines(file, program, tables);
   if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);
   instruction_tables_results(file, tables);
   switching_write(file, program);
-  description_write(file, program, larger(encoding_work_count(tables), derivatives.shared_count));
+  description_write(file, program, larger(encoding_work_count(tables), shared));
 }
 
 void code_write(FILE *file, const struct Program *program) {

@@ -16,11 +16,20 @@ static void note_use(struct Local *locals, Place place, size_t part, size_t *sha
   if (local->part != part && local->shared == 0) local->shared = ++*shared_count;
 }
 
-static struct Local *find_shared(const struct Routine *routine, size_t *shared_count) {
+/* A part holds steady instructions alone, or none of them. */
+static size_t end_of_part(const struct Routine *routine, size_t steady_count, size_t first) {
+  size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
+  return first < steady_count && end > steady_count ? steady_count : end;
+}
+
+static struct Local *find_shared(const struct Routine *routine, size_t steady_count, size_t *shared_count) {
   struct Local *locals = allocate(routine->local_count, sizeof *locals);
-  for (size_t i = 0; i < routine->count; i++) {
+  for (size_t i = 0, part = 0, end = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
-    size_t part = i / PART_LENGTH;
+    if (i == end) {
+      end = end_of_part(routine, steady_count, i);
+      part++;
+    }
     for (int j = 0; j < opcode_arity(instruction->opcode); j++)
       note_use(locals, instruction->operands[j], part, shared_count);
     if (opcode_has_result(instruction->opcode) && space_of(instruction->result) == SPACE_LOCAL)
@@ -29,35 +38,73 @@ static struct Local *find_shared(const struct Routine *routine, size_t *shared_c
   return locals;
 }
 
-static Place placed(const struct Local *locals, Place place) {
+/* keeps_accelerations: they are the first of what parts share. */
+static Place placed(const struct Local *locals, bool keeps_accelerations, Place place) {
+  if (space_of(place) == SPACE_ACCELERATION && keeps_accelerations)
+    return place_in((enum Space)SPACE_SHARED, index_in(place));
   if (space_of(place) != SPACE_LOCAL || locals[index_in(place)].shared == 0) return place;
   return place_in((enum Space)SPACE_SHARED, locals[index_in(place)].shared - 1);
 }
 
-static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, size_t first, size_t end) {
+static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, bool keeps_accelerations,
+                               size_t first, size_t end) {
   struct Routine *part = routine_create();
   for (size_t i = first; i < end; i++) {
     struct Instruction instruction = routine->instructions[i];
     Place *operands = instruction.operands;
-    for (int j = 0; j < opcode_arity(instruction.opcode); j++) operands[j] = placed(locals, operands[j]);
-    if (opcode_has_result(instruction.opcode)) instruction.result = placed(locals, instruction.result);
+    for (int j = 0; j < opcode_arity(instruction.opcode); j++)
+      operands[j] = placed(locals, keeps_accelerations, operands[j]);
+    if (opcode_has_result(instruction.opcode))
+      instruction.result = placed(locals, keeps_accelerations, instruction.result);
     routine_append(part, instruction.opcode, instruction.result, operands[0], operands[1], operands[2]);
     part->instructions[part->count - 1].function = instruction.function;
   }
   return part;
 }
 
-struct Parts parts_of(struct Routine *routine) {
-  struct Parts parts = {.items = allocate(1 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
+/* Whether an instruction computes with a seed, or fills what the caller has; is_along: the local variables that do. */
+static bool note_along(const struct Instruction *instruction, bool *is_along) {
+  bool along = false;
+  for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
+    enum Space space = space_of(instruction->operands[j]);
+    along |= (space >= SPACE_SEED_PARAMETER && space <= SPACE_SEED_RESULT) ||
+             (space == SPACE_LOCAL && is_along[index_in(instruction->operands[j])]);
+  }
+  if (!opcode_has_result(instruction->opcode)) return along;
+  if (space_of(instruction->result) == SPACE_LOCAL) is_along[index_in(instruction->result)] = along;
+  return along || space_of(instruction->result) == SPACE_TARGET;
+}
+
+/* The instructions with those first that are steady, which are the same along all directions. */
+static struct Routine *with_steady_first(const struct Routine *routine, size_t *steady_count) {
+  struct Routine *sorted = routine_create();
+  bool *is_along = allocate(routine->local_count, sizeof *is_along);
+  *sorted = *routine;
+  sorted->instructions = allocate(routine->count, sizeof *sorted->instructions);
+  size_t count = 0;
+  for (size_t i = 0; i < routine->count; i++)
+    if (!note_along(&routine->instructions[i], is_along)) sorted->instructions[count++] = routine->instructions[i];
+  *steady_count = count;
+  for (size_t i = 0; i < routine->count; i++)
+    if (note_along(&routine->instructions[i], is_along)) sorted->instructions[count++] = routine->instructions[i];
+  return sorted;
+}
+
+struct Parts parts_of(struct Routine *routine, size_t accelerations) {
+  struct Parts parts = {.items = allocate(2 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
   bool has_blocks = routine_uses(routine, SPACE_SIDE) || routine_uses(routine, SPACE_MASS);
   if (has_blocks || routine->count <= 2 * (size_t)PART_LENGTH) {
     parts.items[parts.count++] = routine;
     return parts;
   }
-  const struct Local *locals = find_shared(routine, &parts.shared_count);
-  for (size_t first = 0; first < routine->count; first += PART_LENGTH) {
-    size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
-    parts.items[parts.count++] = part_of(routine, locals, first, end);
+  size_t steady_count = 0;
+  if (routine_uses(routine, SPACE_SEED_STATE)) routine = with_steady_first(routine, &steady_count);
+  parts.shared_count = accelerations;
+  const struct Local *locals = find_shared(routine, steady_count, &parts.shared_count);
+  for (size_t first = 0, end; first < routine->count; first = end) {
+    end = end_of_part(routine, steady_count, first);
+    if (first < steady_count) parts.steady_count++;
+    parts.items[parts.count++] = part_of(routine, locals, accelerations > 0, first, end);
   }
   return parts;
 }

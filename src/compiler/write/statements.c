@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "write/instruction_text.h"
+#include "write/parts.h"
 
 /* Whether the routine reads elements from .. to - 1 of the space. */
 static bool reads(const struct Routine *routine, enum Space space, size_t from, size_t to) {
@@ -58,25 +59,27 @@ void statements_function(FILE *file, const struct Program *program, enum Functio
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
 }
 
-void statements_derivatives(FILE *file, const struct Program *program, const struct Parts *parts) {
-  const struct GeneratedFunction *text = &generated_functions[FUNCTION_DERIVATIVES];
-  size_t operations = 0;
-  if (parts->count == 1) {
-    statements_function(file, program, FUNCTION_DERIVATIVES, "", parts->items[0]);
-    return;
+size_t statements_in_parts(FILE *file, const struct Program *program, enum FunctionName name) {
+  const struct GeneratedFunction *text = &generated_functions[name];
+  bool keeps_accelerations = text->accelerations == IN_WORKSPACE;
+  struct Parts parts = parts_of(program->routines[name], keeps_accelerations ? row_count(program->equations) : 0);
+  if (parts.count == 1) {
+    statements_function(file, program, name, "", parts.items[0]);
+    return 0;
   }
-  for (size_t i = 0; i < parts->count; i++) {
-    statements_function(file, program, FUNCTION_DERIVATIVES, format_text("_%zu", i + 1), parts->items[i]);
-    operations += parts->items[i]->operation_count;
-  }
-  write_head(file, FUNCTION_DERIVATIVES, "", operations);
+  for (size_t i = 0; i < parts.count; i++)
+    statements_function(file, program, name, format_text("_%zu", i + 1), parts.items[i]);
+  write_head(file, name, "", program->routines[name]->operation_count);
   /* By their addresses, since compilers make functions that are called once a part of what calls them. */
   fprintf(file, "  static int (*const parts[])(%s) = {", text->arguments);
-  for (size_t i = 0; i < parts->count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);
+  for (size_t i = 0; i < parts.count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);
+  const char *first = parts.steady_count > 0 ? format_text("seed->repeats ? %zu : 0", parts.steady_count) : "0";
+  const char *seed = takes(name, "*seed") ? "seed, " : "";
   fprintf(file,
-          "};\n  int singular = 0;\n  for (int i = 0; i < %zu && singular == 0; i++) singular = parts[i](point, %s);\n"
-          "  return singular;\n}\n\n",
-          parts->count, text->target);
+          "};\n  int singular = 0;\n  for (int i = %s; i < %zu && singular == 0; i++)\n"
+          "    singular = parts[i](point, %s%s);\n  return singular;\n}\n\n",
+          first, parts.count, seed, text->target);
+  return parts.shared_count;
 }
 
 /* How many results are computed together with this one. */

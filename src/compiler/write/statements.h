@@ -2,7 +2,6 @@
 #pragma once
 
 #include "write/function_text.h"
-#include "write/parts.h"
 
 /* Names for what the routine reads of the point and the direction. */
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);
@@ -11,8 +10,8 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
 void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
                          const struct Routine *routine);
 
-/* derivatives(), in parts where it is long; what they share is in point->work. */
-void statements_derivatives(FILE *file, const struct Program *program, const struct Parts *parts);
+/* A function of a status, in parts where it is long. Returns how many numbers of point->work they share. */
+size_t statements_in_parts(FILE *file, const struct Program *program, enum FunctionName name);
 
 /* result() and result_along(), which choose among a function for each result. */
 void statements_results(FILE *file, const struct Program *program);

@@ -100,7 +100,7 @@ static void let_all_slide(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
 }
 
-/* What slides in a plane and is stopped altogether by an impact has no direction any more but the one that it had. */
+/* What slides in a plane and is stopped altogether, by an impact or with what rests, has no direction any more but the one that it had. */
 static bool let_stopped_head(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (switches->plane_count == 0) return true;
@@ -326,7 +326,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
   size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
   if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
-  if (close_contacts(settlement)) return settlement_push(settlement) ? NULL : no_impact;
+  if (close_contacts(settlement)) return settlement_push(settlement) && let_stopped_head(settlement) ? NULL : no_impact;
   bool lifts;
   if (!lift(settlement, &lifts)) return no_impact;
   if (lifts) return NULL;

@@ -3,9 +3,9 @@
 #include <math.h>
 
 /* A pivot below this is that of a singular matrix. */
-static const double least_pivot = 1e-11;
+static const double smallest_elimination_pivot = 1e-11;
 
-static void swap_rows(size_t width, double *one, double *other) {
+static void swap_equations(size_t width, double *one, double *other) {
   for (size_t j = 0; j < width; j++) {
     double number = one[j];
     one[j] = other[j];
@@ -19,8 +19,8 @@ bool eliminate(size_t n, double *rows) {
     size_t best = k;
     for (size_t i = k + 1; i < n; i++)
       if (fabs(rows[i * width + k]) > fabs(rows[best * width + k])) best = i;
-    if (!(fabs(rows[best * width + k]) > least_pivot)) return false;
-    if (best != k) swap_rows(width, rows + k * width, rows + best * width);
+    if (!(fabs(rows[best * width + k]) > smallest_elimination_pivot)) return false;
+    if (best != k) swap_equations(width, rows + k * width, rows + best * width);
     for (size_t i = 0; i < n; i++) {
       double share = i == k ? 0.0 : rows[i * width + k] / rows[k * width + k];
       for (size_t j = k; j < width; j++) rows[i * width + j] -= share * rows[k * width + j];

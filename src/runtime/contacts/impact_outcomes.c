@@ -27,17 +27,17 @@ struct Combination {
   double equations[MOST_PUSHES * (MOST_PUSHES + 1)];
 };
 
-static bool is_contact(const struct Combination *combination, size_t row) {
+static bool is_contact_in(const struct Combination *combination, size_t row) {
   return row < combination->pushes->contact_count;
 }
 
-static double mobility(const struct Combination *combination, size_t i, size_t j) {
+static double mobility_between(const struct Combination *combination, size_t i, size_t j) {
   const struct Pushes *pushes = combination->pushes;
   return pushes->mobility[i * pushes->count + j] * combination->unit[i] * combination->unit[j];
 }
 
 /* What a contact's impulse of 1 lets a friction push. */
-static double coefficient(const struct Combination *combination, size_t friction, size_t contact) {
+static double coefficient_of(const struct Combination *combination, size_t friction, size_t contact) {
   size_t contacts = combination->pushes->contact_count;
   double unit = combination->unit[friction];
   if (!(unit > 0.0)) return 0.0;
@@ -45,43 +45,43 @@ static double coefficient(const struct Combination *combination, size_t friction
          unit;
 }
 
-static double limit_of(const struct Combination *combination, size_t friction) {
+static double limit_in(const struct Combination *combination, size_t friction) {
   double limit = 0.0;
   for (size_t i = 0; i < combination->pushes->contact_count; i++)
-    limit += coefficient(combination, friction, i) * combination->impulse[i];
+    limit += coefficient_of(combination, friction, i) * combination->impulse[i];
   return limit;
 }
 
-static double rate_behind(const struct Combination *combination, size_t row) {
+static double rate_behind_in(const struct Combination *combination, size_t row) {
   double rate = combination->rate[row];
   for (size_t j = 0; j < combination->pushes->count; j++)
-    rate += mobility(combination, row, j) * combination->impulse[j];
+    rate += mobility_between(combination, row, j) * combination->impulse[j];
   return rate;
 }
 
 /* How the impulse of a push that is sought, with those of what slides on it, changes a rate. */
-static double effect(const struct Combination *combination, size_t row, size_t push) {
-  double sum = mobility(combination, row, push);
-  for (size_t f = combination->pushes->contact_count; f < combination->pushes->count && is_contact(combination, push);
-       f++)
-    sum -= combination->way[f] * coefficient(combination, f, push) * mobility(combination, row, f);
+static double effect_in(const struct Combination *combination, size_t row, size_t push) {
+  double sum = mobility_between(combination, row, push);
+  for (size_t f = combination->pushes->contact_count;
+       f < combination->pushes->count && is_contact_in(combination, push); f++)
+    sum -= combination->way[f] * coefficient_of(combination, f, push) * mobility_between(combination, row, f);
   return sum;
 }
 
-static bool find_impulses(struct Combination *combination) {
+static bool find_combined_impulses(struct Combination *combination) {
   size_t n = 0, count = combination->pushes->count;
   for (size_t i = 0; i < count; i++)
-    if (is_contact(combination, i) == (combination->way[i] != 0)) combination->sought[n++] = i;
+    if (is_contact_in(combination, i) == (combination->way[i] != 0)) combination->sought[n++] = i;
   for (size_t i = 0; i < n; i++) {
     double *row = combination->equations + i * (n + 1);
-    for (size_t j = 0; j < n; j++) row[j] = effect(combination, combination->sought[i], combination->sought[j]);
+    for (size_t j = 0; j < n; j++) row[j] = effect_in(combination, combination->sought[i], combination->sought[j]);
     row[n] = -combination->rate[combination->sought[i]];
   }
   if (!eliminate(n, combination->equations)) return false;
   for (size_t i = 0; i < count; i++) combination->impulse[i] = 0.0;
   for (size_t i = 0; i < n; i++) combination->impulse[combination->sought[i]] = combination->equations[i * (n + 1) + n];
   for (size_t f = combination->pushes->contact_count; f < count; f++)
-    if (combination->way[f] != 0) combination->impulse[f] = -combination->way[f] * limit_of(combination, f);
+    if (combination->way[f] != 0) combination->impulse[f] = -combination->way[f] * limit_in(combination, f);
   return true;
 }
 
@@ -91,9 +91,9 @@ static bool fulfils_law(const struct Combination *combination) {
   for (size_t i = 0; i < combination->pushes->count; i++) size = fmax(size, fabs(combination->impulse[i]));
   for (size_t i = 0; i < combination->pushes->count; i++) {
     double impulse = combination->impulse[i], spare;
-    if (is_contact(combination, i)) spare = combination->way[i] != 0 ? impulse : rate_behind(combination, i);
-    else if (combination->way[i] == 0) spare = limit_of(combination, i) - fabs(impulse);
-    else spare = combination->way[i] * rate_behind(combination, i);
+    if (is_contact_in(combination, i)) spare = combination->way[i] != 0 ? impulse : rate_behind_in(combination, i);
+    else if (combination->way[i] == 0) spare = limit_in(combination, i) - fabs(impulse);
+    else spare = combination->way[i] * rate_behind_in(combination, i);
     is_fine &= spare >= -rounded_impulse * size;
   }
   return is_fine;
@@ -103,7 +103,7 @@ static bool fulfils_law(const struct Combination *combination) {
 static bool next_ways(struct Combination *combination) {
   for (size_t i = 0; i < combination->pushes->count; i++) {
     if (combination->way[i]++ < 1) return true;
-    combination->way[i] = is_contact(combination, i) ? 0 : -1;
+    combination->way[i] = is_contact_in(combination, i) ? 0 : -1;
   }
   return false;
 }
@@ -115,7 +115,7 @@ static void fill_units(struct Combination *combination, const double *rate) {
     double own = pushes->mobility[i * pushes->count + i];
     combination->unit[i] = own > DBL_MIN ? 1.0 / sqrt(own) : 0.0;
     combination->rate[i] = rate[i] * combination->unit[i];
-    combination->way[i] = is_contact(combination, i) ? 0 : -1;
+    combination->way[i] = is_contact_in(combination, i) ? 0 : -1;
     largest = fmax(largest, fabs(combination->rate[i]));
   }
   for (size_t i = 0; i < pushes->count && largest > 0.0; i++) {
@@ -133,7 +133,7 @@ bool impact_has_others(const struct Settlement *settlement, const struct Pushes 
   fill_units(&combination, rate);
   do {
     double candidate[MOST_PUSHES];
-    if (!find_impulses(&combination) || !fulfils_law(&combination)) continue;
+    if (!find_combined_impulses(&combination) || !fulfils_law(&combination)) continue;
     for (size_t i = 0; i < pushes->count; i++) candidate[i] = combination.impulse[i] * combination.scale[i];
     is_other = is_other_outcome(pushes, candidate, impulse);
   } while (!is_other && next_ways(&combination));

@@ -272,7 +272,7 @@ static void refuse_planes(const struct Settlement *settlement, const struct Push
 }
 
 /* Once, so that what bounces for long does not fill the log. */
-static void tell_of_others(const struct Settlement *settlement, struct ImpactProblem *problem) {
+static void tell_of_other_outcomes(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   const struct SwitchTable *switches = settlement->switches;
   if (pushes->friction_count == 0 || settlement->instance->told_other_impulses) return;
@@ -290,7 +290,7 @@ static bool take_several(struct Settlement *settlement, const struct Pushes *pus
   struct ImpactProblem problem;
   bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
   if (is_done) {
-    tell_of_others(settlement, &problem);
+    tell_of_other_outcomes(settlement, &problem);
     add_impulses(settlement, pushes, problem.impulse);
   } else refuse_planes(settlement, pushes);
   if (problem.block != NULL) scratch_return(settlement->instance, SCRATCH_IMPACT);

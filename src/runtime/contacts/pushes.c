@@ -131,6 +131,7 @@ static void find_rates(const struct Settlement *settlement, struct Pushes *pushe
     size_t place = row < pushes->contact_count ? contact_place(settlement->switches, member, CONTACT_RATE)
                                                : friction_place(settlement->switches, member, FRICTION_VELOCITY);
     pushes->rate[row] = settlement->value[place];
+    pushes->rounding = fmax(pushes->rounding, settlement->noise[place]);
   }
 }
 

@@ -14,6 +14,7 @@ struct Pushes {
   double *velocities;                          /* count rows: the change of the velocities by each push of 1 */
   double *mobility;                            /* count rows: the change of the rates by each push of 1 */
   double *rate;                                /* of the gaps, then the velocities of the frictions */
+  double rounding;                             /* what it may make of any rate */
   double *coefficient; /* friction_count rows: what each contact's push of 1 lets the friction push */
   void *block;
 };

@@ -46,12 +46,13 @@ static int jacobian_by_directions(struct Instance *instance, const struct Point 
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   const size_t states = lagrangian.state_count;
   double *direction = instance->work + lagrangian.input_count, *column = direction + states, *zeros = column + states;
-  const struct Seed seed = {.state = direction, .input = zeros, .parameter = zeros + lagrangian.input_count};
+  struct Seed seed = {.state = direction, .input = zeros, .parameter = zeros + lagrangian.input_count};
   int singular = 0;
   memset(direction, 0, states * sizeof *direction);
   memset(zeros, 0, (lagrangian.input_count + lagrangian.parameter_count) * sizeof *zeros);
   for (size_t j = 0; j < states && singular == 0; j++) {
     direction[j] = 1.0;
+    seed.repeats = j > 0;
     singular = lagrangian.directional(point, &seed, column);
     direction[j] = 0.0;
     for (int k = pattern->start[j]; k < pattern->start[j + 1]; k++) values[k] = column[pattern->row[k]];

@@ -6,7 +6,16 @@
 #include <stddef.h>
 
 /* What works in a block of its own, one at a time. */
-enum ScratchUse { SCRATCH_PUSHES, SCRATCH_IMPACT, SCRATCH_RESTING, SCRATCH_CONES, SCRATCH_FORCES, SCRATCH_USES };
+enum ScratchUse {
+  SCRATCH_PUSHES,
+  SCRATCH_IMPACT,
+  SCRATCH_RESTING,
+  SCRATCH_CONES,
+  SCRATCH_FORCES,
+  SCRATCH_LEVERS,
+  SCRATCH_SHARES,
+  SCRATCH_USES
+};
 
 struct Scratch {
   void *block;

@@ -141,14 +141,19 @@ static double *create_cones(const struct Settlement *settlement, const struct Pu
   return block + 2 * n;
 }
 
+/* Impulses that fulfil the law, but for so much as rounding makes of velocities, which the slowest impacts do not exceed by far. */
+static bool fulfil_law(struct Cones *cones, double *best, double *swept, double *work) {
+  double miss = come_to_law(cones, LAW_TRIALS, best, swept, work);
+  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->pushes->rounding;
+}
+
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                         double *impulse) {
   struct Cones cones;
   size_t n = pushes->count;
   double *work = create_cones(settlement, pushes, rate, impulse, &cones);
   if (work == NULL) return false;
-  bool is_done =
-      fill_scales(&cones) && come_to_law(&cones, LAW_TRIALS, work, work + n, work + 2 * n) <= law_roughly_holds;
+  bool is_done = fill_scales(&cones) && fulfil_law(&cones, work, work + n, work + 2 * n);
   scratch_return(settlement->instance, SCRATCH_CONES);
   return is_done;
 }

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "planes/pivoting.h"
+
 enum { NEWTON_LIMIT = 60 };
 
 /* A step that leaves more of what is missing is none; less of a pivot is rounding; so is what is missing, of the largest impulse. */
@@ -103,35 +105,17 @@ static double fill_equations(const struct ConeNewton *newton) {
   return most;
 }
 
-static void swap_numbers(double *a, double *b) {
-  double other = *a;
-  *a = *b;
-  *b = other;
-}
-
-/* The largest element from row and column k on comes to their crossing; returns its size. */
-static double take_pivot(const struct ConeNewton *newton, size_t k) {
-  size_t n = newton->n, row = k, column = k;
-  for (size_t i = k; i < n; i++)
-    for (size_t j = k; j < n; j++)
-      if (fabs(slope_row(newton, i)[j]) > fabs(slope_row(newton, row)[column])) {
-        row = i;
-        column = j;
-      }
-  for (size_t j = 0; j < n && row != k; j++) swap_numbers(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
-  for (size_t i = 0; i < n && column != k; i++) swap_numbers(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
-  swap_numbers(&newton->miss[row], &newton->miss[k]);
-  swap_numbers(&newton->column[column], &newton->column[k]);
-  return fabs(slope_row(newton, k)[k]);
-}
-
 /* The step that leaves nothing missing, by Gauss elimination with full pivoting; 0 where it is not determined. */
 static void find_step(const struct ConeNewton *newton) {
   size_t n = newton->n, rank = 0;
   double largest = 0.0;
-  for (size_t j = 0; j < n; j++) newton->column[j] = (double)j;
+  const struct Pivoting pivoting = {.rows = n, .columns = n, .matrix = newton->slope, .order = newton->column};
+  pivoting_begin(&pivoting);
   for (; rank < n; rank++) {
-    double pivot = take_pivot(newton, rank);
+    size_t taken;
+    double pivot = pivoting_take(&pivoting, rank, &taken), miss = newton->miss[taken];
+    newton->miss[taken] = newton->miss[rank];
+    newton->miss[rank] = miss;
     largest = fmax(largest, pivot);
     if (!(pivot > least_law_pivot * largest)) break;
     const double *first = slope_row(newton, rank);

@@ -164,6 +164,7 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   forces->behind = block + 2 * n;
   fill_rates_of_planes(forces);
   join_sliding(forces);
+  forces->pushes.rounding = 0.0; /* it is that of velocities */
   bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
   if (is_done) {
     double none = least_force_share * fill_behind(forces);

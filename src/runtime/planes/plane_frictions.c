@@ -9,6 +9,7 @@
 #include "evaluation/evaluate.h"
 #include "planes/cone_impulses.h"
 #include "planes/plane_forces.h"
+#include "planes/plane_loads.h"
 #include "planes/plane_starts.h"
 #include "planes/plane_stops.h"
 
@@ -39,10 +40,15 @@ static bool is_sliding_otherwise(const struct Settlement *settlement, const stru
   return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
 }
 
+/* Whether one that sticks would need more than its stiction. */
+static bool is_overcome(const struct Settlement *settlement, const struct PlaneState *state) {
+  bool is_reached = state->has_slowed && state->is_first && !settlement->jumped;
+  return state->mode == PLANE_STICKS && (state->needed > state->stiction || is_reached);
+}
+
 /* One that sticks slides where it moves, as by an impact, or where it would need more than its stiction. Whether it does. */
 static bool leave_rest(struct Settlement *settlement, const struct PlaneState *state) {
-  bool is_reached = state->has_slowed && state->is_first && !settlement->jumped;
-  if (!(state->speed > state->small || state->needed > state->stiction || is_reached)) return false;
+  if (!(state->speed > state->small || is_overcome(settlement, state))) return false;
   if (plane_moves(state)) plane_slide(settlement, state);
   else plane_head(settlement, state, state->force);
   plane_count_switch(settlement, state);
@@ -102,8 +108,21 @@ static size_t find_flipping(const struct Settlement *settlement, double often) {
   return switches->friction_count;
 }
 
+/* Lets those that are at rest share what is too much for one of them. Whether there is such a one. */
+static bool share_loads(struct Settlement *settlement) {
+  bool shares = false;
+  for (size_t i = 0; i < settlement->switches->plane_count && !shares; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    bool rests = state.has_force && !(state.speed > state.small);
+    shares = rests && is_overcome(settlement, &state) && plane_loads_share(settlement, i);
+  }
+  return shares;
+}
+
 static const char *act_on_planes(struct Settlement *settlement, bool *again) {
   bool stops = false;
+  *again = share_loads(settlement);
+  if (*again) return NULL;
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
     if (state.is_free || !state.has_force) *again |= change_force(settlement, &state);

@@ -13,6 +13,9 @@ static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
 /* Where it is slow and cannot stick, this is tried again at this share of its speed. */
 static const double slower_share = 0.1;
 
+/* A heading that is shorter than 1 by less is so by rounding. */
+static const double least_part = 1e-9;
+
 /* Speeds that are not reached, and where it turns from its heading to the side, which no importer passes over unseen. */
 static const double never = -1e300, turned_aside = -1e-300;
 /* One that goes back in less than this slope to the heading, without an impact, was at rest in between. */
@@ -36,15 +39,16 @@ struct PlaneState plane_state(const struct Settlement *settlement, size_t plane)
     state.velocity[i] = settlement->value[place + FRICTION_VELOCITY];
     state.rate[i] = settlement->value[place + FRICTION_RATE];
     state.stiction = settlement->value[place + FRICTION_STICTION];
+    state.sliding = settlement->value[place + FRICTION_FORCE];
     size_t constraint = switches->frictions[facts->along + i].constraint;
-    state.force[i] = settlement->acceleration[lagrangian.coordinate_count + constraint];
+    state.force[i] = settlement->acceleration[lagrangian.coordinate_count + constraint] +
+                     mode_of(settlement, facts->heading[i]) * state.sliding;
   }
   double c = mode_of(settlement, facts->heading[0]), s = mode_of(settlement, facts->heading[1]);
   state.ahead = c * state.velocity[0] + s * state.velocity[1];
   state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
   state.needed = hypot(state.force[0], state.force[1]);
-  const double *value = &settlement->value[friction_place(switches, facts->along, 0)];
-  state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || value[FRICTION_FORCE] != 0.0;
+  state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || state.sliding != 0.0;
   state.is_free = state.mode == PLANE_HEADS && state.upper < 0.0;
   double unit = tolerance_of(settlement->instance) * settlement->value[plane_place(switches, plane)];
   state.small = small_share * unit;
@@ -79,15 +83,40 @@ static void set_plane_mode(struct Settlement *settlement, const struct PlaneStat
   settlement_set_mode(settlement, state->facts->upper, upper);
 }
 
-void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
+void plane_hold(struct Settlement *settlement, const struct PlaneState *state) {
   set_plane_mode(settlement, state, PLANE_STICKS, state->none, never);
 }
 
-/* Where there is none, it keeps the one that it has. */
+void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]) {
+  plane_hold(settlement, state);
+  for (int i = 0; i < 2; i++) {
+    double share = force[i] != 0.0 ? force[i] / state->sliding : 0.0;
+    settlement_set_mode(settlement, state->facts->heading[i], share);
+  }
+}
+
+void plane_stick(struct Settlement *settlement, const struct PlaneState *state) {
+  const double nothing[] = {0.0, 0.0};
+  plane_carry(settlement, state, nothing);
+}
+
+void plane_push(struct Settlement *settlement, const struct PlaneState *state) {
+  set_plane_mode(settlement, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+}
+
+bool plane_has_part(const struct Settlement *settlement, const struct PlaneState *state) {
+  double share = hypot(mode_of(settlement, state->facts->heading[0]), mode_of(settlement, state->facts->heading[1]));
+  return share < 1.0 - least_part;
+}
+
+/* Where there is none, it keeps the one that it has, or takes any. */
 static void set_heading(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
-  double length = hypot(heading[0], heading[1]);
-  for (int i = 0; i < 2 && length > 0.0; i++)
-    settlement_set_mode(settlement, state->facts->heading[i], heading[i] / length);
+  const double any[] = {1.0, 0.0};
+  const size_t *mode = state->facts->heading;
+  double length = hypot(heading[0], heading[1]),
+         kept = hypot(mode_of(settlement, mode[0]), mode_of(settlement, mode[1]));
+  if (!(length > 0.0) && kept > 0.0) return;
+  for (int i = 0; i < 2; i++) settlement_set_mode(settlement, mode[i], length > 0.0 ? heading[i] / length : any[i]);
 }
 
 void plane_slide(struct Settlement *settlement, const struct PlaneState *state) {
@@ -105,5 +134,5 @@ void plane_free(struct Settlement *settlement, const struct PlaneState *state) {
 
 void plane_head(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
   set_heading(settlement, state, heading);
-  set_plane_mode(settlement, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+  plane_push(settlement, state);
 }

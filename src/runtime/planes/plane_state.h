@@ -10,12 +10,12 @@ enum PlaneMode { PLANE_HEADS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
 struct PlaneState {
   const struct PlaneFacts *facts;
   int mode;
-  double speed, stiction;
+  double speed, stiction, sliding;  /* sliding: what it pushes with as it slides */
   bool has_force;                   /* else the contact that it rests on gives none: nothing sticks */
   bool is_free;                     /* it was let slide without force */
   double velocity[2], ahead, aside; /* along and across; the speeds along its heading, and to a side of it */
   double rate[2];                   /* of the velocities along and across */
-  double force[2], needed;          /* of its constraints, where it sticks, and their size */
+  double force[2], needed;          /* what it carries, where it sticks, and the size of that */
   double lower, upper; /* speeds at which the mode may change; upper < 0 for none, or back along the heading */
   /*
    * Speeds that count as small, and as none, by the errors of the method. At a small one it is brought to rest at once where it
@@ -44,7 +44,18 @@ bool plane_evaluate(struct Settlement *settlement);
 /* It was looked at once more. */
 void plane_count_switch(struct Settlement *settlement, const struct PlaneState *state);
 
+/* Where forces are not determined, it takes its part of them as of those of equally stiff points. */
 void plane_stick(struct Settlement *settlement, const struct PlaneState *state);
+
+/* It sticks and takes this force, and beside it such a part of what is missing. */
+void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]);
+
+/* One that carries a force takes it alone, while others hold it; and again a part of what is missing. */
+void plane_push(struct Settlement *settlement, const struct PlaneState *state);
+void plane_hold(struct Settlement *settlement, const struct PlaneState *state);
+
+/* Whether this force is less than what it pushes with as it slides. */
+bool plane_has_part(const struct Settlement *settlement, const struct PlaneState *state);
 
 /* Lets it slide until it is slow, or else much slower or faster than now. */
 void plane_slide(struct Settlement *settlement, const struct PlaneState *state);

@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "contacts/frictions.h"
+#include "planes/plane_loads.h"
 
 /* In settlement->takes_part: it is tried; and found to have no hold of what moves, as a slider at the dead centre of its crank. */
 static const double is_tried = 1.0, has_no_hold = 2.0;
@@ -51,6 +52,12 @@ static size_t find_overcome(const struct Settlement *settlement) {
   return found;
 }
 
+/* Whether others take what is too much for it. */
+static bool shares_load(struct Settlement *settlement, size_t plane) {
+  struct PlaneState state = plane_state(settlement, plane);
+  return !goes_on(settlement, &state) && plane_loads_share(settlement, plane);
+}
+
 /* It slides on, or begins anew where its velocity is none. */
 static void let_plane_slide(struct Settlement *settlement, size_t plane) {
   struct PlaneState state = plane_state(settlement, plane);
@@ -84,7 +91,7 @@ bool planes_stop(struct Settlement *settlement) {
   while (overcome < count) {
     if (!plane_evaluate(settlement)) return false;
     overcome = find_overcome(settlement);
-    if (overcome < count) let_plane_slide(settlement, overcome);
+    if (overcome < count && !shares_load(settlement, overcome)) let_plane_slide(settlement, overcome);
   }
   return bring_to_rest(settlement);
 }

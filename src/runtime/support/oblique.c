@@ -22,7 +22,9 @@ struct Oblique {
 
 static struct Oblique oblique_of(size_t n, const size_t *start, const int *coordinate) {
   struct Oblique oblique = {.count = (size_t)coordinate[n], .force = coordinate + n + 1};
-  oblique.c = SADDLE_MASS(start[n], n);
+  size_t constraints = 0;
+  for (size_t i = 0; i < n; i++) constraints += coordinate[i] < 0 ? 1 : 0;
+  oblique.c = SADDLE_MASS(start[n], n, constraints);
   oblique.response = oblique.c + n * oblique.count;
   oblique.factor = oblique.response + n * oblique.count;
   oblique.pivot = oblique.factor + oblique.count * oblique.count;
@@ -49,7 +51,7 @@ static bool eliminate_small(size_t r, double *a, double *pivot) {
     swap_rows(a, r, best, k);
     for (size_t i = k + 1; i < r; i++) {
       double share = a[i * r + k] /= a[k * r + k];
-      for (size_t j = k + 1; j < r; j++) a[i * r + j] -= share * a[k * r + j];
+      for (size_t j = k + 1; j < r && share != 0.0; j++) a[i * r + j] -= share * a[k * r + j];
     }
   }
   return true;

@@ -6,9 +6,6 @@
 
 #include "ldlt.h"
 
-/* What a step takes from the forces, squared, as a share of what it leaves, when it is rounding. */
-static const double rounding_of_forces = 1e-32;
-
 /* rest -= K x */
 static void subtract_product(size_t n, const size_t *start, const size_t *column, const Real *matrix, const Real *x,
                              Real *rest) {
@@ -60,6 +57,51 @@ static Condition has_row(const size_t *start, const Real *m, size_t i) {
   return sum != 0.0;
 }
 
+/* Column c of the balances, see below; they stand behind the workspace. */
+static size_t place_of_balance(size_t n, const size_t *start, size_t c) {
+  return 2 * start[n] + 1 + 2 * n + c * (c + 1) / 2;
+}
+
+/* What a column of the balances and c + 1 forces have in common, by the square of the column's length. */
+static Real share_along(size_t c, const Real *balance, const Real *force) {
+  Real product = force[c];
+  for (size_t k = 0; k < c; k++) product += balance[k] * force[k];
+  return product * balance[c];
+}
+
+/* Takes from forces what they have along a column of the balances. */
+static void take_along(size_t c, const Real *balance, Real *force) {
+  if (!ANYWHERE(balance[c] > 0.0)) return;
+  Real share = share_along(c, balance, force);
+  for (size_t k = 0; k < c; k++) force[k] -= share * balance[k];
+  force[c] -= share;
+}
+
+/*
+ * Constraint c, which follows from others at row i where its pivot is infinite: L^-T e_i holds forces that balance each other. Less
+ * what they have along the columns before, twice because of rounding, they are a column of the balances: numbers of the constraints
+ * up to c, of which its own is 1 and not kept. In its place stands 1 by the square of the length, 0 where there is no column.
+ */
+static void balance_constraint(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
+                               size_t i, size_t c) {
+  Real *balance = m + place_of_balance(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
+  Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row(start, m, i));
+  balance[c] = REAL(0.0);
+  if (!ANYWHERE(follows)) return;
+  combine(start, column, m, i, forces);
+  for (size_t row = 0, k = 0; row < i; row++)
+    if (coordinate[row] < 0) balance[k++] = forces[row];
+  balance[c] = REAL(1.0);
+  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + place_of_balance(n, start, j % c), balance);
+  for (size_t k = 0; k < c; k++) length += balance[k] * balance[k];
+  balance[c] = WHERE(follows, 1.0 / length, 0.0);
+}
+
+void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
+  for (size_t i = 0, c = 0; i < n; i++)
+    if (coordinate[i] < 0) balance_constraint(n, start, column, coordinate, m, i, c++);
+}
+
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   Real *matrix = m + start[n], *weakest = matrix + start[n], *work = weakest + 1;
   memcpy(matrix, m, start[n] * sizeof *m);
@@ -89,6 +131,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
     m[last] = saddle_pivot(hold, mobility, weakest);
   }
+  saddle_balance(n, start, column, coordinate, m);
   return 0;
 }
 
@@ -104,75 +147,15 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const Rea
   for (size_t i = 0; i < n; i++) x[i] = WHERE(is_weak, x[i] + rest[i], x[i]);
 }
 
-/*
- * For each constraint r that follows from others, L^-T e_r holds forces that balance each other: a column of N, whose
- * columns are all F with J^T F = 0.
- */
-static Condition is_redundant(const size_t *start, const Real *m, size_t i) {
-  return m[start[i + 1] - 1] == -INFINITY;
-}
-
-/* rest = N^T forces, in the rows of the constraints that follow; returns the square of its length. */
-static Real project_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                           const Real *forces, Real *rest) {
-  Real square = REAL(0.0);
-  for (size_t i = 0; i < n; i++) {
-    rest[i] = coordinate[i] < 0 ? forces[i] : REAL(0.0);
-    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) rest[i] -= m[k] * rest[column[k]];
-    square += WHERE(is_redundant(start, m, i), rest[i] * rest[i], 0.0);
-  }
-  return square;
-}
-
-/* rest = N direction, in the rows of all constraints; returns the square of its length. */
-static Real spread_direction(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                             const Real *direction, Real *rest) {
-  Real square = REAL(0.0);
-  for (size_t i = 0; i < n; i++) rest[i] = WHERE(is_redundant(start, m, i), direction[i], 0.0);
-  for (size_t i = n; i-- > 0;) {
-    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) rest[column[k]] -= m[k] * rest[i];
-    if (coordinate[i] < 0) square += rest[i] * rest[i];
-  }
-  return square;
-}
-
-/*
- * Takes from the forces what they have along N direction, which is the rest. Returns the square of what was taken as a
- * share of what is left: whatever rounding has made of the direction, the forces do not grow.
- */
-static Real take_along(size_t n, const int *coordinate, Real length, const Real *rest, Real *forces) {
-  Real product = REAL(0.0), left = REAL(0.0);
+/* The forces in x less what they have along all balances: the shortest with the same load. */
+static void shorten_forces(size_t n, const size_t *start, const int *coordinate, const Real *m, Real *x) {
+  Real *force = x + n;
+  size_t count = 0;
   for (size_t i = 0; i < n; i++)
-    if (coordinate[i] < 0) product += rest[i] * forces[i];
-  Real share = WHERE(length > 0.0, product / length, 0.0);
-  for (size_t i = 0; i < n; i++) {
-    if (coordinate[i] >= 0) continue;
-    forces[i] -= share * rest[i];
-    left += forces[i] * forces[i];
-  }
-  return share * product / left;
-}
-
-/*
- * The conjugate gradient method for least squares |F - N y|: in exact numbers it takes a step a column at most. A direction
- * of 0, where it has ended, takes nothing.
- */
-static void shorten_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                           Real steps, Real *x) {
-  Real *direction = x + n, *rest = direction + n;
-  Real square = project_forces(n, start, column, coordinate, m, x, rest);
-  memcpy(direction, rest, n * sizeof *direction);
-  for (double step = 0.0;; step += 1.0) {
-    Condition goes_on = BOTH(steps > step, square > 0.0);
-    if (!ANYWHERE(goes_on)) return;
-    for (size_t i = 0; i < n; i++) direction[i] = WHERE(goes_on, direction[i], 0.0);
-    Real length = spread_direction(n, start, column, coordinate, m, direction, rest);
-    Real taken = take_along(n, coordinate, length, rest, x);
-    Real before = square;
-    square = project_forces(n, start, column, coordinate, m, x, rest);
-    square = WHERE(BOTH(goes_on, taken > rounding_of_forces), square, 0.0);
-    for (size_t i = 0; i < n; i++) direction[i] = rest[i] + square / before * direction[i];
-  }
+    if (coordinate[i] < 0) force[count++] = x[i];
+  for (size_t c = 0; c < count; c++) take_along(c, m + place_of_balance(n, start, c), force);
+  for (size_t i = n; i-- > 0;)
+    if (coordinate[i] < 0) x[i] = force[--count];
 }
 
 /* Gives the forces in x the load J^T F of others. */
@@ -190,17 +173,23 @@ static void carry_load(size_t n, const size_t *start, const size_t *column, cons
     if (coordinate[i] < 0) x[i] += missing[i];
 }
 
-/* N balances only as well as the constraints before those that follow have hold: what it spoils is mended once. */
+static bool has_balances(size_t n, const size_t *start, const int *coordinate, const Real *m) {
+  bool has = false;
+  for (size_t i = 0, c = 0; i < n; i++) {
+    if (coordinate[i] >= 0) continue;
+    has |= ANYWHERE(m[place_of_balance(n, start, c) + c] > 0.0);
+    c++;
+  }
+  return has;
+}
+
+/* They balance only as well as the constraints before those that follow have hold: what that spoils is mended once. */
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x) {
-  Real *given = x + 3 * n, steps = REAL(0.0), rows = REAL(0.0);
-  for (size_t i = 0; i < n; i++) {
-    steps += WHERE(is_redundant(start, m, i), 3.0, 0.0);
-    rows += WHERE(BOTH(is_redundant(start, m, i), has_row(start, m, i)), 1.0, 0.0);
-  }
-  if (!ANYWHERE(rows > 0.0)) return;
+  Real *given = x + 3 * n;
+  if (!has_balances(n, start, coordinate, m)) return;
   memcpy(given, x, n * sizeof *given);
-  shorten_forces(n, start, column, coordinate, m, steps, x);
+  shorten_forces(n, start, coordinate, m, x);
   carry_load(n, start, column, coordinate, m, given, x);
-  shorten_forces(n, start, column, coordinate, m, steps, x);
+  shorten_forces(n, start, coordinate, m, x);
 }

@@ -84,31 +84,37 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
   return inertia;
 }
 
-/* What the coordinates of a link move, without the turns that its moments need. */
+/*
+ * What the coordinates of a link move, stretched as far as it goes: joints that turn leave this as it is, so that it costs
+ * an evaluation nothing.
+ */
 struct Load {
   Node mass;
-  struct Vector lever; /* the mass times where its centre is */
-  Node trace;          /* of the moments about the link's origin */
+  Node lever; /* the mass times the distance of its centre from the link's origin, at most */
+  Node trace; /* of the moments about the origin, at most */
 };
+
+static Node length_of(struct Graph *graph, struct Vector vector) {
+  return power_number(graph, vector_dot(graph, vector, vector), 0.5);
+}
 
 /* With the load of the links behind. */
 static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bodies, const struct Load *behind) {
   const struct Vector *moment = bodies->moment.row, *coupling = bodies->coupling.row;
   struct Vector lever = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* of -[lever] */
   struct Load load = {.mass = add(graph, bodies->mass.row[0].along[0], behind->mass),
-                      .lever = vector_add(graph, lever, behind->lever),
+                      .lever = add(graph, length_of(graph, lever), behind->lever),
                       .trace = behind->trace};
   for (int i = 0; i < 3; i++) load.trace = add(graph, load.trace, moment[i].along[i]);
   return load;
 }
 
 static void add_load_to_parent(struct Graph *graph, struct Load *parent, const struct Pose *pose, struct Load load) {
-  struct Vector r = pose->origin, shift = vector_scale(graph, load.mass, r);
-  load.lever = matrix_apply(graph, &pose->rotation, load.lever);
-  Node steiner = vector_dot(graph, r, vector_add(graph, vector_add(graph, load.lever, load.lever), shift));
+  Node distance = length_of(graph, pose->origin), shift = multiply(graph, load.mass, distance);
+  Node steiner = multiply(graph, distance, add(graph, scale(graph, 2.0, load.lever), shift));
   parent->mass = add(graph, parent->mass, load.mass);
-  parent->lever = vector_add(graph, parent->lever, vector_add(graph, load.lever, shift));
-  parent->trace = add(graph, parent->trace, add(graph, load.trace, add(graph, steiner, steiner)));
+  parent->lever = add(graph, parent->lever, add(graph, load.lever, shift));
+  parent->trace = add(graph, parent->trace, add(graph, load.trace, scale(graph, 2.0, steiner)));
 }
 
 /* The size of the elements of M on the diagonal: a pivot far below it is rounding. */

@@ -15,7 +15,7 @@ struct ArticulatedLink {
   size_t *rows;  /* of its coordinates among those of the tree */
   struct FactorPattern pattern;
   Node *mass, *factor;        /* of its coordinates, in the pattern of a full matrix */
-  Node *scale;                /* of each coordinate: of the size of its element of M on the diagonal */
+  Node *scale;                /* of each coordinate: its element of M on the diagonal is no larger */
   struct SpatialVector *gain; /* of each coordinate: forces = gain times what pushes along it */
 };
 

@@ -122,6 +122,9 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
   return false;
 }
 
+/* Of a pivot that is none, rounding leaves less; the first of n links in a row has about n^-3. */
+static const double least_share = 1e-13;
+
 /* The smallest share that a pivot of the tree has of its scale; NAN where one is not finite. */
 static double smallest_share_in(const struct ArticulatedTree *tree, size_t coordinate_count, const double *values) {
   double smallest = 1.0;
@@ -146,9 +149,9 @@ bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *t
   bool is_regular = false;
   for (int trial = 0; trial < 8 && !is_regular; trial++) {
     for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = next_random(&seed);
-    is_regular = smallest_share_in(tree, n, graph_evaluate(graph, symbols)) > 1e-10;
+    is_regular = smallest_share_in(tree, n, graph_evaluate(graph, symbols)) > least_share;
   }
-  bool is_negative = smallest_share_in(tree, n, graph_evaluate(graph, start_values(model))) < -1e-10;
+  bool is_negative = smallest_share_in(tree, n, graph_evaluate(graph, start_values(model))) < -least_share;
   return is_regular && !is_negative;
 }
 

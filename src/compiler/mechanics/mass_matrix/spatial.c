@@ -1,6 +1,7 @@
 #include "mechanics/mass_matrix/spatial.h"
 
 #include "algebra/simplify.h"
+#include "mechanics/mass_matrix/turned.h"
 
 const struct SpatialVector spatial_zero = {{{ZERO, ZERO, ZERO}}, {{ZERO, ZERO, ZERO}}};
 
@@ -19,24 +20,18 @@ Node spatial_dot(struct Graph *graph, struct SpatialVector force, struct Spatial
   return add(graph, linear, vector_dot(graph, force.angular, motion.angular));
 }
 
-static struct Matrix transposed(const struct Matrix *matrix) {
-  struct Matrix result;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) result.row[i].along[j] = matrix->row[j].along[i];
-  return result;
-}
-
 static struct Matrix matrix_add(struct Graph *graph, const struct Matrix *a, const struct Matrix *b) {
   struct Matrix sum;
-  for (int i = 0; i < 3; i++) sum.row[i] = vector_add(graph, a->row[i], b->row[i]);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) sum.row[i].along[j] = add_whole(graph, a->row[i].along[j], b->row[i].along[j]);
   return sum;
 }
 
 /* [r] matrix, where [r] x is the cross product of r and x. */
 static struct Matrix crossed(struct Graph *graph, struct Vector r, const struct Matrix *matrix) {
-  struct Matrix columns = transposed(matrix);
+  struct Matrix columns = matrix_transposed(matrix);
   for (int i = 0; i < 3; i++) columns.row[i] = vector_cross(graph, r, columns.row[i]);
-  return transposed(&columns);
+  return matrix_transposed(&columns);
 }
 
 /* Makes a matrix that is known to be symmetric so to the node: its upper triangle is computed, and no other. */
@@ -99,15 +94,6 @@ struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct Spa
   return force;
 }
 
-/* R matrix R^T */
-static struct Matrix turned(struct Graph *graph, const struct Matrix *rotation, const struct Matrix *matrix) {
-  struct Matrix rows, columns;
-  for (int i = 0; i < 3; i++) rows.row[i] = matrix_apply(graph, rotation, matrix->row[i]);
-  rows = transposed(&rows);
-  for (int i = 0; i < 3; i++) columns.row[i] = matrix_apply(graph, rotation, rows.row[i]);
-  return transposed(&columns);
-}
-
 /*
  * With the inertia turned, T^T inertia T for T = (1 -[r]; 0 1): coupling - mass [r], and
  * moment - coupling^T [r] + [r] (coupling - mass [r]).
@@ -115,16 +101,16 @@ static struct Matrix turned(struct Graph *graph, const struct Matrix *rotation, 
 struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struct Pose *pose,
                                                 const struct SpatialInertia *inertia) {
   struct Vector r = pose->origin;
-  struct SpatialInertia result = {.mass = turned(graph, &pose->rotation, &inertia->mass)};
+  struct SpatialInertia result = {.mass = matrix_turned(graph, &pose->rotation, &inertia->mass)};
   mirror(&result.mass);
-  struct Matrix coupling = turned(graph, &pose->rotation, &inertia->coupling);
-  struct Matrix moment = turned(graph, &pose->rotation, &inertia->moment);
+  struct Matrix coupling = matrix_turned(graph, &pose->rotation, &inertia->coupling);
+  struct Matrix moment = matrix_turned(graph, &pose->rotation, &inertia->moment);
   /* (X [r])^T = -[r] X^T */
   struct Matrix lever = crossed(graph, r, &result.mass);
-  lever = transposed(&lever);
+  lever = matrix_transposed(&lever);
   result.coupling = matrix_add(graph, &coupling, &lever);
   struct Matrix first = crossed(graph, r, &coupling), second = crossed(graph, r, &result.coupling);
-  first = transposed(&first);
+  first = matrix_transposed(&first);
   moment = matrix_add(graph, &moment, &first);
   result.moment = matrix_add(graph, &moment, &second);
   mirror(&result.moment);

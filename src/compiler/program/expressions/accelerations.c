@@ -7,8 +7,8 @@
 static size_t mass_count_of(const struct InertiaBlock *block) {
   size_t elements = block->start[block->count];
   if (block->constraint_count == 0) return elements;
-  if (block->force_count == 0) return SADDLE_MASS(elements, block->count);
-  return SADDLE_MASS(elements, block->count) + OBLIQUE_MASS(block->count, block->force_count);
+  if (block->force_count == 0) return SADDLE_MASS(elements, block->count, block->constraint_count);
+  return SADDLE_MASS(elements, block->count, block->constraint_count) + OBLIQUE_MASS(block->count, block->force_count);
 }
 
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
@@ -84,7 +84,7 @@ void append_masses(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
     values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
-  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count);
+  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
     values_copy(values, place_in(SPACE_MASS, first + i), block->oblique[i]);
 }

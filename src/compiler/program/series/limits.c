@@ -196,6 +196,7 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
     else if (form.kind == FORM_QUOTIENT && can_have_row(builder, form.right))
       check_division(&list, form.left, form.right);
   }
+  if (openers != NULL) release(openers);
   find_covered(&list);
   return take_rows(builder, &list);
 }

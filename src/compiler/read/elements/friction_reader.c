@@ -87,8 +87,7 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
   struct Graph *graph = reader->model->graph;
   struct Variable *constraint = &reader->model->constraints.items[friction->constraint];
   constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
-  Node sticks = subtract(graph, ONE, power_number(graph, friction->mode, 2.0));
-  constraint->node = function(graph, GATE, sticks, friction->velocity);
+  constraint->node = function(graph, GATE, friction_sticks(graph, friction), friction->velocity);
   if (friction->velocity != ZERO) check_constraint(reader, constraint);
 }
 

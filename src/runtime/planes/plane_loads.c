@@ -1,0 +1,178 @@
+/*
+ * A body that stands on more points than it needs sticks as long as any forces carry it within their limits: those of least norm
+ * need not be among them. What the planes can hand over to one another are forces that balance each other along all
+ * coordinates, so that contacts press as before.
+ */
+#include "planes/plane_loads.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "contacts/frictions.h"
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "planes/shared_loads.h"
+
+/* So often one may let others share in a settlement: their limits may change as they do, where the contacts press otherwise. */
+enum { SHARE_LIMIT = 5 };
+
+/* What has less to spare, as a share of its limit, is at it, where all are that can be. */
+static const double share_at_limit = 1e-9;
+
+/* In units of the largest limit: what can take less can take little. */
+static const double weak_share = 0.01;
+
+struct PlaneLoads {
+  struct Settlement *settlement;
+  size_t n;       /* coordinates */
+  size_t count;   /* of planes */
+  double *lever;  /* what a force of 1 does along the coordinates: 2 rows for each plane of the table */
+  double *buffer; /* for a response, and the impulse that makes it */
+  double *member; /* 1 of each plane of the table that carries with the first one, 0 of others */
+};
+
+static bool carries(const struct PlaneLoads *loads, size_t plane) {
+  struct PlaneState state = plane_state(loads->settlement, plane);
+  bool is_slow = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
+  bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->settlement, &state));
+  return rests && state.stiction > 0.0 && state.sliding > 0.0;
+}
+
+static size_t count_carrying(const struct PlaneLoads *loads) {
+  size_t count = 0;
+  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) count += carries(loads, i) ? 1 : 0;
+  return count;
+}
+
+/* False where there are none, as M is singular. */
+static bool fill_levers(const struct PlaneLoads *loads) {
+  struct Instance *instance = loads->settlement->instance;
+  const struct SwitchTable *switches = loads->settlement->switches;
+  size_t n = loads->n;
+  double *response = loads->buffer, *impulse = response + 2 * n;
+  struct Point point = solver_point(instance, loads->settlement->time, loads->settlement->state);
+  for (size_t row = 0; row < 2 * switches->plane_count; row++) {
+    if (!carries(loads, row / 2)) continue;
+    size_t place = n + switches->frictions[switches->planes[row / 2].along + row % 2].constraint;
+    impulse[place] = 1.0;
+    instance->singular = lagrangian.constraints.respond(&point, impulse, response);
+    impulse[place] = 0.0;
+    if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
+    memcpy(loads->lever + row * n, response + n, n * sizeof *response);
+  }
+  return true;
+}
+
+static bool push_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
+  const double *one = loads->lever + 2 * i * loads->n, *other = loads->lever + 2 * j * loads->n;
+  bool same = false;
+  for (size_t k = 0; k < loads->n; k++)
+    same |= (one[k] != 0.0 || one[loads->n + k] != 0.0) && (other[k] != 0.0 || other[loads->n + k] != 0.0);
+  return same;
+}
+
+/* All that push coordinates which it pushes, or others of these do. */
+static void collect_members(struct PlaneLoads *loads, size_t first) {
+  size_t count = loads->settlement->switches->plane_count;
+  loads->member[first] = 1.0;
+  loads->count = 1;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (size_t i = 0; i < count; i++)
+      for (size_t j = 0; j < count; j++) {
+        if (loads->member[i] == 0.0 || loads->member[j] != 0.0 || !push_the_same(loads, i, j)) continue;
+        loads->member[j] = 1.0;
+        loads->count++;
+        grows = true;
+      }
+  }
+}
+
+static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
+  size_t next = 0;
+  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
+    if (loads->member[i] == 0.0) continue;
+    struct PlaneState state = plane_state(loads->settlement, i);
+    for (size_t side = 0; side < 2; side++) {
+      load->share[2 * next + side] = state.force[side] / state.stiction;
+      for (size_t k = 0; k < loads->n; k++)
+        load->lever[k * 2 * load->count + 2 * next + side] =
+            state.stiction * loads->lever[(2 * i + side) * loads->n + k];
+    }
+    next++;
+  }
+}
+
+/* They take the forces that were found; those that have nothing to spare begin to slide against them. */
+static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad *load, bool slides) {
+  size_t next = 0;
+  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
+    if (loads->member[i] == 0.0) continue;
+    struct PlaneState state = plane_state(loads->settlement, i);
+    const double *share = load->share + 2 * next, force[] = {share[0] * state.stiction, share[1] * state.stiction};
+    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_head(loads->settlement, &state, force);
+    else plane_carry(loads->settlement, &state, force);
+    next++;
+  }
+}
+
+/*
+ * Those that can take little, as their contacts are about to part, push with a share of what presses, where others hold them: what
+ * their constraints took of a load that changes would be too much again and again. False where that cannot be told.
+ */
+static bool let_weak_push(const struct PlaneLoads *loads) {
+  struct Settlement *settlement = loads->settlement;
+  double most = 0.0;
+  for (size_t i = 0; i < settlement->switches->plane_count; i++)
+    if (loads->member[i] != 0.0) most = fmax(most, plane_state(settlement, i).stiction);
+  bool is_told = true;
+  for (size_t i = 0; i < settlement->switches->plane_count && is_told; i++) {
+    struct PlaneState state = plane_state(settlement, i);
+    bool is_held = false, is_weak = state.stiction < weak_share * most && plane_has_part(settlement, &state);
+    if (loads->member[i] == 0.0 || !is_weak) continue;
+    plane_push(settlement, &state);
+    is_told = frictions_find_held(settlement, state.facts->along, &is_held);
+    if (!is_held) plane_hold(settlement, &state);
+  }
+  return is_told;
+}
+
+/* The members share what they carry. False where they cannot. */
+static bool share_load(const struct PlaneLoads *loads) {
+  struct Instance *instance = loads->settlement->instance;
+  void *block = scratch_take(instance, SCRATCH_SHARES, shared_load_bytes(loads->n, loads->count));
+  if (block == NULL) {
+    solver_lacks_memory(instance);
+    return false;
+  }
+  struct SharedLoad load = shared_load_in(block, loads->n, loads->count);
+  fill_load(loads, &load);
+  enum LoadSharing sharing = shared_load_carry(&load);
+  if (sharing != LOAD_OVERCOMES) take_forces(loads, &load, sharing == LOAD_IS_AT_LIMIT);
+  scratch_return(instance, SCRATCH_SHARES);
+  return sharing == LOAD_IS_AT_LIMIT || (sharing == LOAD_IS_SHARED && let_weak_push(loads));
+}
+
+bool plane_loads_share(struct Settlement *settlement, size_t plane) {
+  const struct SwitchTable *switches = settlement->switches;
+  struct PlaneLoads loads = {.settlement = settlement, .n = lagrangian.coordinate_count};
+  struct PlaneState state = plane_state(settlement, plane);
+  bool is_tired = settlement->flips[friction_indicator(switches, state.facts->along)] >= SHARE_LIMIT;
+  if (is_tired || !carries(&loads, plane) || count_carrying(&loads) < 2) return false;
+  if (lagrangian.constraints.respond == NULL || evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  size_t levers = 2 * switches->plane_count * loads.n, buffer = 3 * loads.n + lagrangian.constraints.count;
+  loads.lever = scratch_take(settlement->instance, SCRATCH_LEVERS,
+                             (levers + buffer + switches->plane_count) * sizeof *loads.lever);
+  if (loads.lever == NULL) {
+    solver_lacks_memory(settlement->instance);
+    return false;
+  }
+  loads.buffer = loads.lever + levers;
+  loads.member = loads.buffer + buffer;
+  bool is_done = fill_levers(&loads);
+  if (is_done) collect_members(&loads, plane);
+  is_done = is_done && loads.count > 1 && share_load(&loads);
+  if (is_done) plane_count_switch(settlement, &state);
+  scratch_return(settlement->instance, SCRATCH_LEVERS);
+  return is_done;
+}
