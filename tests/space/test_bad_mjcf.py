@@ -63,6 +63,8 @@ CASES = [
     ("motor after its kind", 15, '<default><position kp="4"/><motor/></default><actuator><position joint="elbow"/></actuator>', 15, "<position> inherits the <motor> of a <default>"),
     ("law of all kinds", 15, '<default><general biastype="affine"/></default><actuator><position joint="elbow"/></actuator>', 15, "<position> inherits the <general> of a <default>"),
     ("range of no range", 15, '<actuator><position joint="elbow" inheritrange="1"/></actuator>', 15, "inheritrange of <position> is a share of the range of its joint or tendon, which has none; expected ctrlrange"),
+    ("range of nothing", 15, '<actuator><position inheritrange="1"/></actuator>', 15, "<position> needs the attribute 'joint'"),
+    ("range of no joint", 15, '<actuator><position joint="wrist" inheritrange="1"/></actuator>', 15, "there is no joint 'wrist' for an actuator"),
     ("two ranges", 15, '<actuator><position joint="shoulder" inheritrange="1" ctrlrange="0 1"/></actuator>', 15, "inheritrange of <position> is beside a ctrlrange; expected one of them"),
     ("limits of actuators", 10, '<joint name="elbow" actuatorfrcrange="2 -2"/>', 10, "actuatorfrcrange of <joint> is from 2 to -2"),
     ("limited ball", 10, '<joint name="elbow" type="ball" actuatorfrcrange="-2 2"/>', 10, f'actuatorfrcrange="-2 2" of <joint> {UNKNOWN}'),

@@ -31,39 +31,32 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
   }
 }
 
-/* At a joint, or along a tendon. */
-static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node) {
-  const char *name = attribute(node, "tendon");
-  const struct Tendon *tendon = name != NULL ? mjcf_tendon(mjcf, node, name) : NULL;
+/* Along a tendon, or at a joint where it names none. */
+static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   if (tendon != NULL) return tendon->transmission;
   struct Pull *pull = allocate(1, sizeof *pull);
   *pull = (struct Pull){.coefficient = 1};
-  if (name == NULL) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
-  return (struct Transmission){.pulls = pull, .count = name == NULL};
+  bool is_at_joint = !has_attribute(node, "tendon");
+  if (is_at_joint) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
+  return (struct Transmission){.pulls = pull, .count = is_at_joint};
 }
 
-/* Of what the actuator moves; false where it has none. */
-static bool range_of(struct Mjcf *mjcf, xmlNodePtr node, double range[2]) {
-  const char *name = attribute(node, "tendon");
-  const struct Tendon *tendon = name != NULL ? mjcf_tendon(mjcf, node, name) : NULL;
-  const struct Joint *joint = name == NULL ? mjcf_joint(mjcf, attribute(node, "joint")) : NULL;
-  range[0] = tendon != NULL ? tendon->lower : joint != NULL ? joint->lower : NAN;
-  range[1] = tendon != NULL ? tendon->upper : joint != NULL ? joint->upper : NAN;
-  return !isnan(range[0]) && !isnan(range[1]);
-}
-
-/* A servomotor whose control stays within the range of what it moves, or within a share of it. */
-static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
-  double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0), range[2];
+/* A servomotor whose control stays within a share of the range of what it moves; where that is missing, this is reported elsewhere. */
+static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, struct Actuator *actuator) {
+  double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
+  const char *joint_name = attribute(node, "joint");
   if (share == 0 || mjcf_is(mjcf, node, "ctrllimited", "false")) return;
-  bool is_known = range_of(mjcf, node, range);
+  const struct Joint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
+  if (tendon == NULL && joint == NULL) return;
+  double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
+  bool is_known = !isnan(lower) && !isnan(upper);
   if (!is_known || !isnan(actuator->control[0])) {
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "inheritrange of <position> %s",
                  is_known ? "is beside a ctrlrange; expected one of them"
                           : "is a share of the range of its joint or tendon, which has none; expected ctrlrange");
     return;
   }
-  double middle = (range[0] + range[1]) / 2, half = share * (range[1] - range[0]) / 2;
+  double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
   actuator->control[0] = middle - half;
   actuator->control[1] = middle + half;
 }
@@ -89,8 +82,10 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
     return;
   }
+  const char *tendon_name = attribute(node, "tendon");
+  const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
   struct Actuator actuator = {
-      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node)};
+      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node, tendon)};
   if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
   double gear[6] = {1};
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
@@ -98,7 +93,7 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_check_laws(mjcf, node);
   read_law(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
-  if (is_element(node, "position")) inherit_range(mjcf, node, &actuator);
+  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, &actuator);
   else mjcf_refuse(mjcf, node, "inheritrange");
   mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
   check_limited_joints(mjcf, node, &actuator);
