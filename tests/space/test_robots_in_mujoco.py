@@ -25,17 +25,18 @@ EACH = """\
     <joint damping="0.1" armature="0.02"/>
     <geom density="500"/>
     <default class="stiff"><joint stiffness="3" springref="20"/><default class="soft"><joint stiffness="1"/></default></default>
+    <default class="servo"><motor gear="2" ctrlrange="-2 2"/><position kp="9" forcerange="-8 9"/><default class="open"><motor gear="3"/><general ctrlrange="-1 2"/></default></default>
   </default>
   <worldbody>
     <geom type="plane" size="1 1 1"/>
     <frame pos="0.1 0 0" euler="5 6 7">
       <body name="stand" pos="0 0 1" euler="10 20 30">
-        <joint name="turn" axis="0 0 1" ref="15"/>
+        <joint name="turn" axis="0 0 1" ref="15" actuatorfrcrange="-6 4"/>
         <joint name="swing" axis="0 1 0.2" pos="0.1 0 0.2" class="stiff"/>
         <geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0" axisangle="1 1 0 40"/>
         <frame pos="0 0 0.3" quat="1 1 0 0"><geom type="cylinder" size="0.1 0.2" mass="2"/></frame>
         <body name="lower" pos="0.3 0 0" childclass="soft" zaxis="1 0.2 0.3">
-          <joint name="slide" type="slide" axis="1 0 0" ref="0.1"/>
+          <joint name="slide" type="slide" axis="1 0 0" ref="0.1" range="-0.5 1.5"/>
           <geom type="capsule" fromto="0 0 0 0.1 0.2 0.4" size="0.05"/>
           <geom type="ellipsoid" size="0.1 0.05 0.2" pos="0 0 0.1" quat="1 2 3 4"/>
           <body name="tip" pos="0 0 0.4" xyaxes="1 1 0 0 1 1">
@@ -47,7 +48,7 @@ EACH = """\
       </body>
     </frame>
     <body name="drone" pos="1 2 3" euler="30 40 50">
-      <freejoint/><geom type="cylinder" size="0.2 0.1" pos="0.1 0.2 0"/>
+      <joint name="drone" type="free" damping="0.4"/><geom type="cylinder" size="0.2 0.1" pos="0.1 0.2 0"/>
       <body name="rotor" pos="0 0 0.2">
         <joint name="rotor" class="main" axis="0 0 -1" springref="30" stiffness="0.2"/><geom type="box" fromto="0 0 0 0.3 0 0" size="0.02"/>
       </body>
@@ -55,9 +56,13 @@ EACH = """\
   </worldbody>
   <actuator>
     <motor name="m" joint="turn" gear="5" ctrlrange="-1 1"/>
+    <position name="n" joint="turn" kp="3"/>
     <position name="p" joint="swing" kp="10" kv="0.5" gear="2" forcerange="-3 4"/>
     <velocity joint="slide" kv="7"/>
     <general joint="rotor" gainprm="2" biastype="affine" biasprm="0.1 -0.3 -0.2"/>
+    <motor name="q" joint="swing" class="open"/>
+    <position name="s" joint="rotor" class="servo" kv="0.2"/>
+    <position name="u" joint="slide" inheritrange="0.8"/>
   </actuator>
 </mujoco>
 """
@@ -68,7 +73,7 @@ COUPLED = """\
   <worldbody>
     <body name="a"><joint name="lead" axis="0 1 0" ref="0.3" damping="0.1"/><geom size="0.1" pos="0.3 0 0"/>
       <body name="b" pos="0.4 0 0">
-        <joint name="follow" axis="0 1 1" ref="0.2" stiffness="3" springref="0.1" damping="0.2" armature="0.3"/><geom size="0.1" pos="0 0 0.3"/>
+        <joint name="follow" axis="0 1 1" ref="0.2" stiffness="3" springref="0.1" damping="0.2" armature="0.3" actuatorfrcrange="-4 3"/><geom size="0.1" pos="0 0 0.3"/>
         <body name="c" pos="0 0 0.4"><joint name="end" axis="1 0 0"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.2 0"/></body>
       </body>
     </body>
@@ -362,6 +367,13 @@ class Reference:
         return np.array(position), np.array(velocity), np.array(acceleration)
 
 
+def enter_and_leave_events(instance):
+    """Where the limits of controls and forces are seen."""
+    instance.fmu.enterEventMode()
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+
+
 def check_accelerations(name, text, instance, digits):
     reference = Reference(text)
     instance.initialize({})
@@ -380,9 +392,7 @@ def check_accelerations(name, text, instance, digits):
         values[order] = [*position, *velocity]
         state[:] = values
         instance.fmu.setContinuousStates(state, len(state))
-        instance.fmu.enterEventMode()  # where the limits of controls and forces are seen
-        instance.fmu.newDiscreteStates()
-        instance.fmu.enterContinuousTimeMode()
+        enter_and_leave_events(instance)
         instance.fmu.getDerivatives(derivatives, len(derivatives))
         found = np.array(derivatives)[order][len(names) :]
         assert np.max(np.abs(found - expected)) < digits * max(1, np.max(np.abs(expected)))
@@ -444,6 +454,7 @@ def test_joints_that_follow_others(open_fmu):
         values = {"r.lead": free[0], "r.end": free[1], "r.lead_velocity": rates[0], "r.end_velocity": rates[1]}
         state[:] = [values[name] for name in names]
         instance.fmu.setContinuousStates(state, 4)
+        enter_and_leave_events(instance)
         instance.fmu.getDerivatives(derivatives, 4)
         found = [derivatives[names.index(f"r.{name}_velocity")] for name in ("lead", "end")]
         assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))

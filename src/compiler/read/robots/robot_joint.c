@@ -187,23 +187,47 @@ static struct JointStart start_of_quaternion(const struct Joint *joint) {
   return start;
 }
 
-/* For a quaternion of length 1 the square of the angular velocity is 4 times that of its rate. */
-static void write_ball(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
-                       const char *description) {
-  const char *name = joint->symbol;
-  write_components(writer, name, 3, start, description);
-  const char *squares = format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name,
-                                    name, name, name);
+/* An inertia and a damper that are the same in every direction, by a square of velocities of which both have this share. */
+static void write_isotropic(const struct Writer *writer, const struct Joint *joint, const char *prefix, double share,
+                            const char *square, bool is_turning) {
+  const char *name = joint->symbol, *factor = number(share);
+  const char *how = is_turning ? "about any axis" : "in any direction";
   if (joint->armature > 0) {
-    write_parameter(writer, format_text("%s_armature", name), joint->armature, "kg.m2",
-                    format_text("inertia of %s about any axis", name));
-    set_content(write_element(writer, "kinetic"), format_text("2*%s_armature*%s", name, squares));
+    char *parameter = format_text("%s_%sarmature", name, prefix);
+    write_parameter(writer, parameter, joint->armature, is_turning ? "kg.m2" : "kg",
+                    format_text("inertia of %s %s", name, how));
+    set_content(write_element(writer, "kinetic"), format_text("%s*%s*%s", factor, parameter, square));
   }
   if (joint->damping > 0) {
-    write_parameter(writer, format_text("%s_damping", name), joint->damping, "N.m.s/rad",
-                    format_text("viscous damping of %s", name));
-    set_content(write_element(writer, "dissipation"), format_text("2*%s_damping*%s", name, squares));
+    char *parameter = format_text("%s_%sdamping", name, prefix);
+    write_parameter(writer, parameter, joint->damping, is_turning ? "N.m.s/rad" : "N.s/m",
+                    format_text("viscous damping of %s %s", name, how));
+    set_content(write_element(writer, "dissipation"), format_text("%s*%s*%s", factor, parameter, square));
   }
+}
+
+/* For a quaternion of length 1 the square of the angular velocity is 4 times that of its rate. */
+static void write_turning(const struct Writer *writer, const struct Joint *joint, const char *prefix) {
+  const char *name = joint->symbol;
+  write_isotropic(writer, joint, prefix, 2,
+                  format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name, name,
+                              name, name),
+                  true);
+}
+
+static void write_free(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+                       const char *description) {
+  const char *name = joint->symbol;
+  write_free_coordinates(writer, name, start, description);
+  write_isotropic(writer, joint, "", 0.5,
+                  format_text("(%s_x_velocity^2 + %s_y_velocity^2 + %s_z_velocity^2)", name, name, name), false);
+  write_turning(writer, joint, "turning_");
+}
+
+static void write_ball(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+                       const char *description) {
+  write_components(writer, joint->symbol, 3, start, description);
+  write_turning(writer, joint, "");
 }
 
 void write_joint(const struct Writer *writer, const struct Joint *joint) {
@@ -212,7 +236,7 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
   struct JointStart start = start_of_quaternion(joint);
   if (joint_is_single(joint)) write_single(writer, joint, description);
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
-  else if (joint->type == FLOATING) write_free_coordinates(writer, joint->symbol, &start, description);
+  else if (joint->type == FLOATING) write_free(writer, joint, &start, description);
   else if (joint->type == BALL) write_ball(writer, joint, &start, description);
 }
 

@@ -154,6 +154,10 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
     writer->line = robot->actuators[i].line;
     write_actuator(writer, &robot->actuators[i]);
   }
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    writer->line = robot->joints[i]->line;
+    write_limited_pushes(writer, robot->joints[i]);
+  }
   for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
   for (size_t i = 0; i < robot->tendon_link_count; i++) {
     writer->line = robot->tendon_links[i].line;

@@ -49,7 +49,7 @@ static void write_friction(const struct Writer *writer, const struct Tendon *ten
     set_attribute(friction, "force", format_text("%s_friction", name));
   } else
     write_pull(writer, &tendon->transmission, number(1), format_text("%s_sheath", name),
-               format_text("-%s_friction*tanh(%s/%s)", name, rate, creep));
+               format_text("-%s_friction*tanh(%s/%s)", name, rate, creep), false);
 }
 
 void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {

@@ -77,8 +77,19 @@ static void write_pushes(const struct Writer *writer, const struct Transmission 
   }
 }
 
+static void write_joint_force(const struct Writer *writer, const struct Joint *joint, char *force) {
+  xmlNodePtr node = write_element(writer, "force");
+  set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
+  set_content(node, force);
+}
+
+/* Joints that limit what all actuators do to them together get that at last. */
+static void add_push(struct Joint *joint, char *push) {
+  joint->pushes = joint->pushes == NULL ? push : format_text("%s + %s", joint->pushes, push);
+}
+
 void write_pull(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
-                const char *name, char *force) {
+                const char *name, char *force, bool is_of_actuator) {
   if (transmission->count > 1 || transmission->site_count > 0) {
     xmlNodePtr definition = write_element(writer, "define");
     set_attribute(definition, "name", format_text("%s_force", name));
@@ -88,10 +99,16 @@ void write_pull(const struct Writer *writer, const struct Transmission *transmis
   write_pushes(writer, transmission, format_text("%s*%s", gear, force));
   for (size_t i = 0; i < transmission->count; i++) {
     const struct Pull *pull = &transmission->pulls[i];
-    xmlNodePtr node = write_element(writer, "force");
-    set_attribute(node, "coordinate", copy_text(pull->joint->leader->symbol));
-    set_content(node, format_text("%s*%s*(%s)", gear, share_of(pull), force));
+    if (is_of_actuator && !isnan(pull->joint->push[0]))
+      add_push(pull->joint, format_text("%s*%s*(%s)", gear, coefficient_of(pull), force));
+    else write_joint_force(writer, pull->joint, format_text("%s*%s*(%s)", gear, share_of(pull), force));
   }
+}
+
+void write_limited_pushes(const struct Writer *writer, const struct Joint *joint) {
+  if (joint->pushes == NULL) return;
+  char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
+  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->push, joint->pushes)));
 }
 
 /* A control that a spring follows is a position, one that a damper follows a velocity; any other is the force itself, or scales it. */
@@ -130,5 +147,5 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
   set_attribute(input, "unit", copy_text(unit));
   set_number(input, "start", actuator->start);
   set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
-  write_pull(writer, transmission, gear, name, clamped(actuator->force, force));
+  write_pull(writer, transmission, gear, name, clamped(actuator->force, force), true);
 }

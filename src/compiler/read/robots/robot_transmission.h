@@ -14,10 +14,13 @@ char *transmission_rate(const struct Transmission *transmission);
 
 /*
  * What pushes its ends apart with a force times the gear: on joints, or on sites; the force has a name of its own, NAME_force, where
- * several rest on it.
+ * several rest on it. That of an actuator waits, at a joint that limits these, for write_limited_pushes().
  */
 void write_pull(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
-                const char *name, char *force);
+                const char *name, char *force, bool is_of_actuator);
 
 /* The input NAME_control of an actuator, and what it makes of it. */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
+
+/* What all actuators do to a joint that limits this. */
+void write_limited_pushes(const struct Writer *writer, const struct Joint *joint);

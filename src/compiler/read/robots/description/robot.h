@@ -55,6 +55,8 @@ struct Joint {
   struct JointStart start;
   bool has_motor;      /* an input for its force or torque; what a file's actuators do comes beside this */
   double effort;       /* the largest force or torque of its motor; NAN: no limit */
+  double push[2];      /* limits of what a file's actuators do together, along the coordinate; NAN: none */
+  char *pushes;        /* where it has these: what the actuators do, a sum of expressions; NULL before the first */
   char *mimicked_name; /* NULL unless the joint's position is multiplier*(that of the mimicked one) + offset */
   double multiplier, offset;
   /* What robot_connect() finds: */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/robots/mjcf/mjcf_actuators.h"
 #include "read/robots/mjcf/mjcf_equality.h"
 #include "read/robots/mjcf/mjcf_geoms.h"
 #include "read/robots/mjcf/mjcf_keyframe.h"
@@ -84,7 +85,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
   mjcf_refuse(mjcf, node, "springdamper");
-  mjcf_refuse(mjcf, node, "actuatorfrcrange");
+  mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->push);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   joint->lower = limits[0] * scale;
   joint->upper = limits[1] * scale;
@@ -95,18 +96,13 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/* A ball joint turns against its damping and armature about any axis; what else acts along a single coordinate has no place in several. */
+/* These move against damping and armature in any direction; what else acts along a single coordinate has no place in several. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
-  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper"};
+  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
-  if (joint->type == BALL) {
-    joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
-    joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
-    if (mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
-    return;
-  }
-  mjcf_refuse(mjcf, node, "damping");
-  mjcf_refuse(mjcf, node, "armature");
+  joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
 }
 
 /* The body of a free joint starts where it is placed. */
@@ -218,77 +214,6 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
   }
 }
 
-/* In MuJoCo the defaults of one kind of actuator hold for all others too, by what they mean there. */
-static void check_kinds(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const kinds[] = {"motor",    "position", "velocity", "general",  "intvelocity",
-                                      "cylinder", "damper",   "muscle",   "adhesion", "dcmotor"};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (!is_element(node, kinds[i]) && mjcf_inherits(mjcf, node, kinds[i]))
-      report_error(
-          mjcf->file.diagnostics, xmlGetLineNo(node),
-          "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of its "
-          "own",
-          (const char *)node->name, kinds[i]);
-}
-
-/* Gain and bias, in MuJoCo's words. */
-static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
-  static const char *const biases[] = {"none", "affine", NULL};
-  actuator->gain = 1;
-  if (is_element(node, "position")) {
-    actuator->gain = mjcf_number_not_negative(mjcf, node, "kp", 1);
-    actuator->bias[1] = -actuator->gain;
-    actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
-  } else if (is_element(node, "velocity")) {
-    actuator->gain = mjcf_number_not_negative(mjcf, node, "kv", 1);
-    actuator->bias[2] = -actuator->gain;
-  } else if (is_element(node, "general")) {
-    static const char *const gains[] = {"fixed", NULL}, *const dynamics[] = {"none", NULL};
-    double gain[10] = {1}, bias[10] = {0};
-    mjcf_word(mjcf, node, "dyntype", dynamics);
-    mjcf_word(mjcf, node, "gaintype", gains);
-    mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
-    mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
-    actuator->gain = gain[0];
-    if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
-  }
-}
-
-/* At a joint, or along a tendon. */
-static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node) {
-  const char *name = attribute(node, "tendon");
-  const struct Tendon *tendon = name != NULL ? mjcf_tendon(mjcf, node, name) : NULL;
-  if (tendon != NULL) return tendon->transmission;
-  struct Pull *pull = allocate(1, sizeof *pull);
-  *pull = (struct Pull){.coefficient = 1};
-  if (name == NULL) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
-  return (struct Transmission){.pulls = pull, .count = name == NULL};
-}
-
-static void read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[] = {"dampratio", "timeconst", "inheritrange", "actdim",
-                                        "delay",     "damping",   "armature"};
-  struct Robot *robot = mjcf->file.robot;
-  if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
-      !is_element(node, "general")) {
-    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
-    return;
-  }
-  struct Actuator actuator = {
-      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node)};
-  if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
-  double gear[6] = {1};
-  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
-  actuator.gear = gear[0];
-  check_kinds(mjcf, node);
-  read_law(mjcf, node, &actuator);
-  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
-  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
-  robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
-  robot->actuators[robot->actuator_count++] = actuator;
-}
-
 typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
 
 /* All sections of this name; each element in them, or these themselves. */
@@ -335,7 +260,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "worldbody", false, read_world);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
-  for_each(&mjcf, "actuator", true, read_actuator);
+  for_each(&mjcf, "actuator", true, mjcf_read_actuator);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
   leave_out_others(&mjcf.file, root, known);

@@ -46,28 +46,67 @@ static xmlNodePtr first_class(const struct Mjcf *mjcf, xmlNodePtr node) {
   return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, NULL);
 }
 
-/* Of the elements of a class the last that has the attribute, or of any where this is NULL; NULL for none. */
-static xmlNodePtr of_class(xmlNodePtr class, const char *element, const char *name) {
-  xmlNodePtr node = class->last;
-  while (node != NULL && !(is_element(node, element) && (name == NULL || has_attribute(node, name)))) node = node->prev;
-  return node;
+/* One of the words, which end with NULL. */
+static bool is_one_of(const char *text, const char *const *words) {
+  while (*words != NULL && strcmp(text, *words) != 0) words++;
+  return *words != NULL;
+}
+
+static bool is_actuator(xmlNodePtr node) {
+  static const char *const kinds[] = {"motor",  "position", "velocity", "general", "intvelocity", "cylinder",
+                                      "damper", "muscle",   "adhesion", "dcmotor", NULL};
+  return node->type == XML_ELEMENT_NODE && is_one_of((const char *)node->name, kinds);
+}
+
+/* What the kind of an actuator gives a meaning of its own; all else is the same for all of them. */
+static const char *const of_laws[] = {"kp",     "kv",       "dampratio", "timeconst", "inheritrange", "dyntype",
+                                      "dynprm", "gaintype", "gainprm",   "biastype",  "biasprm",      NULL};
+
+/* Whether what a <default> says of an element holds for this one: defaults of an actuator also for those of other kinds. */
+static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name) {
+  if (is_actuator(element) && !is_one_of(name, of_laws)) return is_actuator(node);
+  bool is_tendon = is_element(element, "fixed") || is_element(element, "spatial");
+  return is_element(node, is_tendon ? "tendon" : (const char *)element->name);
 }
 
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  bool is_tendon = is_element(node, "fixed") || is_element(node, "spatial");
-  const char *element = is_tendon ? "tendon" : (const char *)node->name;
   if (has_attribute(node, name)) return attribute(node, name);
-  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class)) {
-    xmlNodePtr found = of_class(class, element, name);
-    if (found != NULL) return attribute(found, name);
-  }
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
+    for (xmlNodePtr found = class->last; found != NULL; found = found->prev)
+      if (is_default_of(found, node, name) && has_attribute(found, name)) return attribute(found, name);
   return NULL;
 }
 
-bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element) {
-  xmlNodePtr class = first_class(mjcf, node);
-  while (class != NULL && of_class(class, element, NULL) == NULL) class = next_class(mjcf, class);
-  return class != NULL;
+static bool says_a_law(xmlNodePtr node) {
+  size_t i = 0;
+  while (of_laws[i] != NULL && !has_attribute(node, of_laws[i])) i++;
+  return of_laws[i] != NULL;
+}
+
+/*
+ * In MuJoCo each <default> of an actuator sets the law of all, a <motor> back to that without any; a <general> only as far as it says so.
+ * A motor's own law is always the same.
+ */
+static bool disturbs(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
+  if (!is_actuator(found)) return false;
+  if (is_element(found, (const char *)node->name)) return *is_set_back && says_a_law(found);
+  *is_set_back |= is_element(found, "motor");
+  return !is_element(found, "motor") && (!is_element(found, "general") || says_a_law(found));
+}
+
+void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
+  bool is_set_back = false;
+  if (is_element(node, "motor")) return;
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
+    for (xmlNodePtr found = class->last; found != NULL; found = found->prev) {
+      if (!disturbs(found, node, &is_set_back)) continue;
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of "
+                   "its own",
+                   (const char *)node->name,
+                   is_element(found, (const char *)node->name) ? "motor" : (const char *)found->name);
+      return;
+    }
 }
 
 static void check_class(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {

@@ -25,8 +25,8 @@ struct Mjcf {
 /* An attribute of the element, or of its class or what this inherits; NULL where none of them has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
 
-/* Whether the element's class, or one that this inherits, says anything of elements of a kind. */
-bool mjcf_inherits(const struct Mjcf *mjcf, xmlNodePtr node, const char *element);
+/* Reports an actuator whose gain and bias would be set by <default>s of another kind. */
+void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node);
 
 /* Reports classes that are not defined, or twice, in an element and all that is in it. */
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node);

@@ -1,0 +1,103 @@
+#include "read/robots/mjcf/mjcf_actuators.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "read/robots/mjcf/mjcf_tendons.h"
+#include "read/robots/mjcf/mjcf_tree.h"
+#include "read/xml/nodes.h"
+
+/* Gain and bias, in MuJoCo's words. */
+static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  static const char *const biases[] = {"none", "affine", NULL};
+  actuator->gain = 1;
+  if (is_element(node, "position")) {
+    actuator->gain = mjcf_number_not_negative(mjcf, node, "kp", 1);
+    actuator->bias[1] = -actuator->gain;
+    actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
+  } else if (is_element(node, "velocity")) {
+    actuator->gain = mjcf_number_not_negative(mjcf, node, "kv", 1);
+    actuator->bias[2] = -actuator->gain;
+  } else if (is_element(node, "general")) {
+    static const char *const gains[] = {"fixed", NULL}, *const dynamics[] = {"none", NULL};
+    double gain[10] = {1}, bias[10] = {0};
+    mjcf_word(mjcf, node, "dyntype", dynamics);
+    mjcf_word(mjcf, node, "gaintype", gains);
+    mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
+    mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
+    actuator->gain = gain[0];
+    if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
+  }
+}
+
+/* Along a tendon, or at a joint where it names none. */
+static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
+  if (tendon != NULL) return tendon->transmission;
+  struct Pull *pull = allocate(1, sizeof *pull);
+  *pull = (struct Pull){.coefficient = 1};
+  bool is_at_joint = !has_attribute(node, "tendon");
+  if (is_at_joint) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
+  return (struct Transmission){.pulls = pull, .count = is_at_joint};
+}
+
+/* A servomotor whose control stays within a share of the range of what it moves; where that is missing, this is reported elsewhere. */
+static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, struct Actuator *actuator) {
+  double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
+  const char *joint_name = attribute(node, "joint");
+  if (share == 0 || mjcf_is(mjcf, node, "ctrllimited", "false")) return;
+  const struct Joint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
+  if (tendon == NULL && joint == NULL) return;
+  double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
+  bool is_known = !isnan(lower) && !isnan(upper);
+  if (!is_known || !isnan(actuator->control[0])) {
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "inheritrange of <position> %s",
+                 is_known ? "is beside a ctrlrange; expected one of them"
+                          : "is a share of the range of its joint or tendon, which has none; expected ctrlrange");
+    return;
+  }
+  double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
+  actuator->control[0] = middle - half;
+  actuator->control[1] = middle + half;
+}
+
+/* A tendon through space turns joints by its lines: what it does to one of them is not told apart. */
+static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+  const struct Robot *robot = mjcf->file.robot;
+  for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)
+    if (!isnan(robot->joints[i]->push[0])) {
+      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                   "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
+                   "expected a file without this, or forcerange of the actuators",
+                   actuator->name, robot->joints[i]->name);
+      return;
+    }
+}
+
+void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const refused[] = {"dampratio", "timeconst", "actdim", "delay", "damping", "armature"};
+  struct Robot *robot = mjcf->file.robot;
+  if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
+      !is_element(node, "general")) {
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
+    return;
+  }
+  const char *tendon_name = attribute(node, "tendon");
+  const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
+  struct Actuator actuator = {
+      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node, tendon)};
+  if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
+  double gear[6] = {1};
+  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
+  actuator.gear = gear[0];
+  mjcf_check_laws(mjcf, node);
+  read_law(mjcf, node, &actuator);
+  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
+  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, &actuator);
+  else mjcf_refuse(mjcf, node, "inheritrange");
+  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
+  check_limited_joints(mjcf, node, &actuator);
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
+  robot->actuators[robot->actuator_count++] = actuator;
+}
