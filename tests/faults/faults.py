@@ -294,9 +294,8 @@ PLACES = [
     ("return lagrangian.constraints.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;",
      "return false;", pytest("test_constraints", "model_exchange", "PendulumCartesian")),
     # Redundant constraints, coordinates without inertia, inputs in constraints, tables of two arguments
-    ("forces[i] -= share * rest[i];", "", pytest("test_redundant", "random_states")),
-    ("direction[i] = rest[i] + square / before * direction[i];", "direction[i] = 0.0;",
-     pytest("test_redundant", "random_states")),
+    ("for (size_t k = 0; k < c; k++) force[k] -= share * balance[k];", "", pytest("test_redundant", "random_states")),
+    ("balance[c] = WHERE(follows, 1.0 / length, 0.0);", "balance[c] = WHERE(follows, 1.0, 0.0);", pytest("test_redundant", "random_states")),
     ("any |= program->expressions->constraints_along[k] != ZERO;", "any |= false;",
      pytest("test_redundant", "directional")),
     ("if (along[k] == ZERO) continue;", "if (true) continue;", pytest("test_redundant", "directional")),
@@ -430,7 +429,7 @@ PLACES = [
     ("if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);", "", pytest("test_roundings_of_contacts", "lift_off")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
     # Friction in a plane
-    ("return divide(graph, component[friction - along], power_number(graph, square, 0.5));", "return component[friction - along];",
+    ("return divide(graph, component, power_number(graph, square, 0.5));", "return component;",
      pytest("test_friction_in_a_plane", "stops_on_a_line")),
     ("state.needed = hypot(state.force[0], state.force[1]);", "state.needed = fmax(fabs(state.force[0]), fabs(state.force[1]));",
      pytest("test_friction_in_a_plane", "comes_to_rest")),

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "arithmetic.h"
+
 /* A pivot below this is that of a singular matrix. */
 static const double smallest_elimination_pivot = 1e-11;
 

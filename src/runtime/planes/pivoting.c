@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "arithmetic.h"
+
 void pivoting_begin(const struct Pivoting *pivoting) {
   for (size_t j = 0; j < pivoting->columns; j++) pivoting->order[j] = (double)j;
 }

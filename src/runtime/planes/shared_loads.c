@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "arithmetic.h"
 #include "planes/pivoting.h"
 
 enum { CENTRE_STEPS = 1000 };
