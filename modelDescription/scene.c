@@ -11,8 +11,6 @@
 #include "scene/surfaces.h"
 #include "xml_output.h"
 
-enum { BASE = 0 }; /* among the model's frames */
-
 /* To ten digits, which are the same wherever lagc runs. */
 static void write_rounded(xmlTextWriterPtr writer, const char *name, double value) {
   char text[32];
@@ -26,11 +24,11 @@ static void write_formula(xmlTextWriterPtr writer, const struct Graph *graph, co
 }
 
 static void write_frame_of(xmlTextWriterPtr writer, const struct Model *model, size_t frame) {
-  if (frame != BASE) write_attribute(writer, "in", model->mechanism.frames[frame].name);
+  if (frame != BASE_FRAME) write_attribute(writer, "in", model->mechanism.frames[frame].name);
 }
 
 static void write_frames(xmlTextWriterPtr writer, const struct Model *model) {
-  for (size_t i = BASE + 1; i < model->mechanism.frame_count; i++) {
+  for (size_t i = BASE_FRAME + 1; i < model->mechanism.frame_count; i++) {
     const struct ReferenceFrame *frame = &model->mechanism.frames[i];
     if (frame->is_of_body) continue; /* seen as that */
     xmlTextWriterStartElement(writer, BAD_CAST "frame");
@@ -193,7 +191,7 @@ static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model)
 }
 
 bool has_scene(const struct Model *model) {
-  return model->mechanism.body_count > 0 || model->mechanism.frame_count > BASE + 1;
+  return model->mechanism.body_count > 0 || model->mechanism.frame_count > BASE_FRAME + 1;
 }
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model) {

@@ -115,9 +115,20 @@ static struct Configurations configurations_with_stops(const struct Samples *sam
   return configurations_of(samples->model, &wanted);
 }
 
+/* Whether shapes say what things look like: where these touch at a stop is not known, and a block of it would lie in them. */
+static bool draws_shapes(const struct Mechanism *mechanism) {
+  bool draws = false;
+  for (size_t i = 0; i < mechanism->shape_count; i++) {
+    const struct ContactShape *shape = &mechanism->shapes[i];
+    draws |= !shape->is_hidden && (shape->frame != BASE_FRAME || shape->particle != NO_PARTICLE);
+  }
+  return draws;
+}
+
 struct Surfaces find_surfaces(const struct Samples *samples) {
   struct Surfaces surfaces = {.count = 0};
   const struct Switches *switches = &samples->model->switches;
+  bool has_stops = !draws_shapes(&samples->model->mechanism);
   if (switches->contact_count == 0) return surfaces;
   struct Configurations configurations = configurations_with_stops(samples);
   for (size_t i = 0; i < switches->contact_count; i++) {
@@ -126,7 +137,7 @@ struct Surfaces find_surfaces(const struct Samples *samples) {
       struct Surface surface = {.thing = thing};
       if (is_plane(samples, switches->contacts[i].gap, &surface)) append(&surfaces, surface);
     }
-    if (surfaces.count == before) add_stop(&surfaces, samples, &configurations, switches->contacts[i].gap);
+    if (surfaces.count == before && has_stops) add_stop(&surfaces, samples, &configurations, switches->contacts[i].gap);
   }
   return surfaces;
 }

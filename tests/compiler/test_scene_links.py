@@ -58,11 +58,19 @@ def test_surfaces(tmp_path):
     assert numbers[1] == pytest.approx([2, 0, 0, 0, 0, -1], abs=1e-4) and stop.get("of") == "bob" and stop.get("stop") == "true"
 
 
+def test_stops_of_what_shapes_draw(tmp_path):
+    """Where the shapes touch is not known: a block would lie in them."""
+    (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="phi" velocity="omega"/><frame name="arm"><rotate axis="y" angle="phi"/></frame>
+  <body name="rod" in="arm" x="l" mass="1" Iyy="1"/><shape name="rodShape" in="arm" type="capsule" radius="0.1" length="l"/>
+  <stop coordinate="phi" max="0.5*pi"/></system>""")
+    assert scene_of(tmp_path / "system.xml", tmp_path).findall("surface") == []
+
+
 def test_stops_of_a_closed_chain(tmp_path):
     """Each stop is shown where the chain is still closed, which is found by steps that a large system does not take as a whole."""
     inside = ""
     for k in range(20, 0, -1):
-        joint = f'<joint axis="{"0 1 0" if k % 2 else "0 0.6 0.8"}" range="-1 1"/><geom type="box" size="0.1 0.05 0.05" pos="0.1 0 0"/>'
+        joint = f'<joint axis="{"0 1 0" if k % 2 else "0 0.6 0.8"}" range="-1 1"/><inertial pos="0.1 0 0" mass="4" diaginertia="0.007 0.017 0.017"/>'
         inside = f'<body name="b{k}" pos="0.2 0 0" euler="0 0.3 0">{joint}{inside}</body>'
     closing = '<equality><connect body1="b20" anchor="0.2 0 0"/></equality>'
     (tmp_path / "chain.xml").write_text(f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody>{closing}</mujoco>')

@@ -84,7 +84,11 @@ CASES = [
     ("slack tendon", 15, '<tendon><fixed springlength="2 1"><joint joint="elbow" coef="1"/></fixed></tendon>', 15, "springlength of <fixed> is from 2 to 1"),
     ("friction of a tendon", 15, '<tendon><fixed frictionloss="-1"><joint joint="elbow" coef="1"/></fixed></tendon>', 15, 'frictionloss="-1" of <fixed> is negative'),
     ("motor of no tendon", 15, '<actuator><motor tendon="t"/></actuator>', 15, "there is no tendon 't' for a <motor>; expected one of the file"),
-    ("include", 15, '<include file="x.xml"/>', 15, f"<include> {UNKNOWN} one file"),
+    ("ratio of damping", 15, '<actuator><position joint="elbow" dampratio="1"/></actuator>', 15, 'dampratio="1" of <position> is not read; expected kv'),
+    ("ratio of damping in general", 15, '<actuator><general joint="elbow" gainprm="3" biastype="affine" biasprm="0 -3 1"/></actuator>', 15, "the third number of biasprm of <general> is above 0"),
+    ("include of nothing", 15, "<include/>", 15, "an <include> names no file"),
+    ("missing include", 15, '<include file="x.xml"/>', 15, "the file 'x.xml' of an <include> cannot be read: No such file or directory"),
+    ("include of itself", 15, '<include file="arm.xml"/>', 15, "the file 'arm.xml' is included twice, or includes itself"),
     ("weld", 15, '<equality><weld body1="uper"/></equality>', 15, "there is no body 'uper' for a <weld>; expected one of the file"),
     ("weld to its own", 15, '<equality><weld body1="upper" body2="upper"/></equality>', 15, "nothing moves what the joint 'loop1' holds"),
     ("no anchor", 15, '<equality><connect body1="lower"/></equality>', 15, "<connect> needs the attribute 'anchor'"),
@@ -117,6 +121,22 @@ def test_bad_line(name, replaced, new, line, message, tmp_path):
     lines = RIGHT.splitlines()
     lines[replaced - 1] = new
     check(tmp_path, "\n".join(lines), line, message)
+
+
+def test_mistakes_in_included_files(tmp_path):
+    lines = RIGHT.splitlines()
+    for i in range(10):
+        (tmp_path / f"part{i}.xml").write_text(f'<mujoco><include file="part{i + 1}.xml"/></mujoco>')
+    (tmp_path / "broken.xml").write_text("<mujoco>\n<worldbody></mujoco>")
+    (tmp_path / "motors.xml").write_text('<parts>\n\n<motor joint="wrist"/></parts>')
+    lines[14] = '<include file="part0.xml"/>'
+    check(tmp_path, "\n".join(lines), 15, "more than 8 files include each other in a row")
+    lines[14] = '<actuator><include file="motors.xml"/></actuator>'
+    check(tmp_path, "\n".join(lines), 15, "there is no joint 'wrist' for an actuator")
+    lines[14] = '<include file="broken.xml"/>'
+    (tmp_path / "arm.xml").write_text("\n".join(lines))
+    result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and re.search(r"^broken\.xml:2: .*\(included on line 15 of arm\.xml\)", result.stderr, re.MULTILINE), result.stderr
 
 
 KEYS = '<keyframe><key name="home" qpos="0.1 0.2"/><key name="short" qpos="1"/><key name="odd" qvel="0 x"/><key name="free" ctrl="1 2"/></keyframe>'

@@ -272,6 +272,8 @@ def test_a_file_of_any_name_makes_an_fmu(tmp_path):
     """The FMU is named as the robot, in letters of C."""
     bring_up_to_date(ROOT / "build")
     (tmp_path / "arm.urdf").write_text('<?xml version="1.0"?>\n' + ROD.replace("RobotRod", "2nd arm-6.x"))
-    words = [f"-DSYSTEMS={tmp_path / 'arm.urdf'}", f"-DTOOLS={ROOT / 'build'}"]
+    (tmp_path / "scene.xml").write_text('<!-- By include. -->\n<mujoco>\n<include file="arm.xml"/></mujoco>')
+    (tmp_path / "arm.xml").write_text('<mujoco model="arm"><worldbody><body name="upper"><joint/><geom size="0.1" pos="0 0 -1"/></body></worldbody></mujoco>')
+    words = [f"-DSYSTEMS={tmp_path / 'arm.urdf'};{tmp_path / 'arm.xml'};{tmp_path / 'scene.xml'}", f"-DTOOLS={ROOT / 'build'}"]
     subprocess.run([ROOT / "scripts" / "build", tmp_path / "build", *words], check=True)
-    assert [path.name for path in (tmp_path / "build" / "fmu").iterdir()] == ["_2nd_arm_6_x.fmu"]
+    assert sorted(path.name for path in (tmp_path / "build" / "fmu").iterdir()) == ["_2nd_arm_6_x.fmu", "arm.fmu", "robot.fmu"]

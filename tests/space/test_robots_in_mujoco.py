@@ -67,6 +67,19 @@ EACH = """\
 </mujoco>
 """
 
+def in_parts():
+    """The same in files that include each other, relative to the first and to the one that names it."""
+    text, parts = EACH, {}
+    for name, begin, end in [("parts/classes.xml", '<default class="stiff">', "</default></default>"), ("parts/settings.xml", "<compiler", "  <worldbody>"), ("bodies.xml", '<body name="drone"', "  </worldbody>")]:
+        first = text.index(begin)
+        last = text.index(end, first)
+        last += len(end) if begin.startswith("<default") else 0
+        parts[name] = f"<mujoco>{text[first:last]}</mujoco>"
+        text = text[:first] + f'<include file="{name}"/>' + text[last:]
+    parts["parts/settings.xml"] = parts["parts/settings.xml"].replace("parts/classes", "classes")
+    return {"Parts.xml": text} | parts
+
+
 COUPLED = """\
 <mujoco model="coupled">
   <compiler angle="radian"/>
@@ -302,6 +315,10 @@ def robots(tmp_path_factory):
     (folder / "Slack.xml").write_text(SLACK)
     (folder / "Meshed.xml").write_text(MESHED)
     (folder / "Started.xml").write_text(LOOPED.format(""))
+    files |= {"Parts": EACH}
+    (folder / "parts").mkdir()
+    for name, text in in_parts().items():
+        (folder / name).write_text(text)
     (folder / "shapes").mkdir()
     (folder / "shapes" / "u.obj").write_text(U)
     start = {"Started": 'keyframe="home"'}
@@ -321,8 +338,8 @@ def turning(quaternion, angular_velocity):
 class Reference:
     """MuJoCo's model at the states of the FMU."""
 
-    def __init__(self, text):
-        self.model = mujoco.MjModel.from_xml_string(text, {"u.obj": U.encode()})
+    def __init__(self, text, files=None):
+        self.model = mujoco.MjModel.from_xml_string(text, {name: part.encode() for name, part in ({"u.obj": U} | (files or {})).items()})
         flags = mujoco.mjtDisableBit
         self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_LIMIT | flags.mjDSBL_FRICTIONLOSS
         self.data = mujoco.MjData(self.model)
@@ -374,8 +391,8 @@ def enter_and_leave_events(instance):
     instance.fmu.enterContinuousTimeMode()
 
 
-def check_accelerations(name, text, instance, digits):
-    reference = Reference(text)
+def check_accelerations(name, text, instance, digits, files=None):
+    reference = Reference(text, files)
     instance.initialize({})
     instance.fmu.enterContinuousTimeMode()
     states, inputs, names = fmu.states_of(name), fmu.names_of(name, "input"), reference.names()
@@ -401,6 +418,11 @@ def check_accelerations(name, text, instance, digits):
 @pytest.mark.parametrize("name", FILES)
 def test_accelerations(name, open_fmu):
     check_accelerations(name, FILES[name], open_fmu(name, kind=FMU2Model), 1e-10)
+
+
+def test_included_files(open_fmu):
+    files = in_parts()
+    check_accelerations("Parts", files["Parts.xml"], open_fmu("Parts", kind=FMU2Model), 1e-10, files)
 
 
 def test_hand(open_fmu):

@@ -125,6 +125,9 @@ struct ContactShape {
 
 #define NO_PARTICLE ((size_t)-1)
 
+/* The place of the base among the frames. */
+enum { BASE_FRAME = 0 };
+
 /* Bodies, the frames that they are in, and their shapes. */
 struct Mechanism {
   struct Body *bodies;

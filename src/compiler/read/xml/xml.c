@@ -100,7 +100,7 @@ static xmlDocPtr parse(const char *path, const char *text, size_t length, struct
   return NULL;
 }
 
-xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
+xmlDocPtr xml_read(const char *path, struct Diagnostics *diagnostics) {
   size_t length;
   char *text = source_text(path, &length, diagnostics);
   xmlSetStructuredErrorFunc(diagnostics, (xmlStructuredErrorFunc)report_xml_error);
@@ -109,6 +109,11 @@ xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
   if (document == NULL && diagnostics->errors == 0)
     report_error(diagnostics, 0, "cannot be read; expected an XML file");
   xmlSetStructuredErrorFunc(NULL, NULL);
+  return document;
+}
+
+xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics) {
+  xmlDocPtr document = xml_read(path, diagnostics);
   if (document != NULL && !is_robot(document)) schema_check(document, diagnostics);
   if (diagnostics->errors == 0) return document;
   xmlFreeDoc(document);

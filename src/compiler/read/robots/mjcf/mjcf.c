@@ -7,6 +7,7 @@
 #include "read/robots/mjcf/mjcf_actuators.h"
 #include "read/robots/mjcf/mjcf_equality.h"
 #include "read/robots/mjcf/mjcf_geoms.h"
+#include "read/robots/mjcf/mjcf_includes.h"
 #include "read/robots/mjcf/mjcf_keyframe.h"
 #include "read/robots/mjcf/mjcf_tendons.h"
 #include "read/robots/mjcf/mjcf_tree.h"
@@ -15,8 +16,7 @@
 
 /* Reports elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[][2] = {{"include", "one file, as MuJoCo's mj_saveLastXML writes it"},
-                                           {"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
+  static const char *const refused[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
                                            {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
                                            {"composite", "rigid bodies"},
                                            {"flexcomp", "rigid bodies"},
@@ -231,6 +231,13 @@ static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
   read_children(mjcf, node, mjcf->file.robot->links[0]->name, &no_displacement);
 }
 
+static void check_world(struct Mjcf *mjcf) {
+  xmlNodePtr node = mjcf->root->children;
+  while (node != NULL && !is_element(node, "worldbody")) node = node->next;
+  if (node == NULL)
+    report_error(mjcf->file.diagnostics, mjcf->file.robot->line, "<mujoco> has no <worldbody>; expected one in it");
+}
+
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   static const char *const known[] = {"compiler", "option",   "default", "worldbody", "actuator",
                                       "equality", "keyframe", "asset",   "tendon",    NULL};
@@ -247,10 +254,11 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
   robot->line = xmlGetLineNo(root);
   robot->gravity[2] = -9.81;
-  required_child_of(&mjcf.file, root, "worldbody");
   if (options->floats)
     report_error(diagnostics, robot->line,
                  "base=\"floating\" is for URDF; expected a <freejoint> in the body that moves");
+  mjcf_insert_files(root, diagnostics);
+  check_world(&mjcf);
   mjcf_check_classes(&mjcf, root);
   check_elements(&mjcf, root);
   if (diagnostics->errors > errors) return robot;

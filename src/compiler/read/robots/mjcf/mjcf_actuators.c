@@ -1,6 +1,7 @@
 #include "read/robots/mjcf/mjcf_actuators.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -29,6 +30,22 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
     actuator->gain = gain[0];
     if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
   }
+}
+
+/* MuJoCo makes damping of a ratio to the critical one by the inertia that all of the robot sets against the force. */
+static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+  const char *ratio = is_element(node, "position") ? mjcf_text(mjcf, node, "dampratio") : NULL;
+  if (ratio != NULL && strtod(ratio, NULL) != 0)
+    report_error(
+        mjcf->file.diagnostics, xmlGetLineNo(node),
+        "dampratio=\"%.60s\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
+        "MuJoCo's compiled model",
+        ratio);
+  if (actuator->bias[2] > 0 && actuator->gain == -actuator->bias[1])
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
+                 "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
+                 (const char *)node->name);
 }
 
 /* Along a tendon, or at a joint where it names none. */
@@ -75,7 +92,7 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
 }
 
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[] = {"dampratio", "timeconst", "actdim", "delay", "damping", "armature"};
+  static const char *const refused[] = {"timeconst", "actdim", "delay", "damping", "armature"};
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
       !is_element(node, "general")) {
@@ -92,6 +109,7 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   actuator.gear = gear[0];
   mjcf_check_laws(mjcf, node);
   read_law(mjcf, node, &actuator);
+  refuse_ratio(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
   if (is_element(node, "position")) inherit_range(mjcf, node, tendon, &actuator);
   else mjcf_refuse(mjcf, node, "inheritrange");

@@ -1,0 +1,117 @@
+#include "read/robots/mjcf/mjcf_includes.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/paths.h"
+#include "read/names/names.h"
+#include "read/xml/nodes.h"
+#include "read/xml/xml.h"
+
+/* More files in a row would be a tree too deep to walk through. */
+enum { DEPTH_LIMIT = 8 };
+
+/* One file that is being read, and those that were. */
+struct Inclusion {
+  struct Diagnostics *diagnostics;
+  const char *robot; /* the first file */
+  const char *file;
+  struct Names *known; /* canonical paths */
+  long line;           /* in the first file; 0 while this is read */
+  int depth;
+};
+
+static long line_of(const struct Inclusion *inclusion, xmlNodePtr node) {
+  return inclusion->line > 0 ? inclusion->line : xmlGetLineNo(node);
+}
+
+/* The path of the file that an <include> names; NULL after reporting that there is none. */
+static char *find_file(struct Inclusion *inclusion, xmlNodePtr node) {
+  char *named = attribute(node, "file");
+  if (named == NULL || *named == '\0') {
+    report_error(inclusion->diagnostics, line_of(inclusion, node), "an <include> names no file; expected file=\"...\"");
+    return NULL;
+  }
+  char *path = path_beside_file(inclusion->robot, named), *canonical = canonical_path(path);
+  if (canonical == NULL) {
+    path = path_beside_file(inclusion->file, named);
+    canonical = canonical_path(path);
+  }
+  if (canonical == NULL)
+    report_error(inclusion->diagnostics, line_of(inclusion, node),
+                 "the file '%s' of an <include> cannot be read: %s; expected a path relative to the robot's file",
+                 named, strerror(errno));
+  else if (inclusion->depth == DEPTH_LIMIT)
+    report_error(inclusion->diagnostics, line_of(inclusion, node),
+                 "more than %d files include each other in a row; expected fewer, some of them side by side",
+                 DEPTH_LIMIT);
+  else if (names_find(inclusion->known, canonical) != NULL)
+    report_error(inclusion->diagnostics, line_of(inclusion, node),
+                 "the file '%s' is included twice, or includes itself; expected each file once", named);
+  else {
+    names_set(inclusion->known, canonical, path);
+    return path;
+  }
+  return NULL;
+}
+
+/* Messages name files by the path at which they were found. */
+static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) {
+  struct Diagnostics *diagnostics = inclusion->diagnostics;
+  const char *file = diagnostics->file, *origin = diagnostics->origin;
+  diagnostics->origin = format_text(" (included on line %ld of %s)", line, inclusion->robot);
+  diagnostics->file = path;
+  xmlDocPtr document = xml_read(path, diagnostics);
+  diagnostics->file = file;
+  diagnostics->origin = origin;
+  return document;
+}
+
+static void set_lines(xmlNodePtr node, long line) {
+  for (; node != NULL; node = node->next) {
+    node->line = (unsigned short)(line < 65535 ? line : 65535);
+    if (node->type == XML_ELEMENT_NODE) set_lines(node->children, line);
+  }
+}
+
+static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
+
+/* The elements of the file come before the <include>, which goes. */
+static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
+  char *path = find_file(inclusion, node);
+  long line = line_of(inclusion, node);
+  xmlDocPtr document = path != NULL ? load(inclusion, path, line) : NULL;
+  if (document == NULL) return;
+  struct Inclusion inner = *inclusion;
+  inner.file = path;
+  inner.line = line;
+  inner.depth++;
+  insert_in(&inner, xmlDocGetRootElement(document));
+  xmlNodePtr copies = xmlDocCopyNodeList(node->doc, xmlDocGetRootElement(document)->children);
+  xmlFreeDoc(document);
+  set_lines(copies, line);
+  while (copies != NULL) {
+    xmlNodePtr next = copies->next;
+    xmlUnlinkNode(copies);
+    xmlAddPrevSibling(node, copies);
+    copies = next;
+  }
+  xmlUnlinkNode(node);
+  xmlFreeNode(node);
+}
+
+static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children, next; node != NULL; node = next) {
+    next = node->next;
+    if (is_element(node, "include")) replace(inclusion, node);
+    else insert_in(inclusion, node);
+  }
+}
+
+void mjcf_insert_files(xmlNodePtr root, struct Diagnostics *diagnostics) {
+  struct Inclusion inclusion = {diagnostics, diagnostics->file, diagnostics->file, names_create(), 0, 0};
+  char *canonical = canonical_path(diagnostics->file);
+  if (canonical != NULL) names_set(inclusion.known, canonical, canonical);
+  insert_in(&inclusion, root);
+}
