@@ -272,6 +272,17 @@ static inline size_t friction_indicator(const struct SwitchTable *switches, size
   return contact_indicator(switches, switches->contact_count) + friction;
 }
 
+/* The plane of a friction along or across; plane_count for none. */
+static inline size_t plane_of(const struct SwitchTable *switches, size_t friction) {
+  size_t plane = 0;
+  while (plane < switches->plane_count && friction - switches->planes[plane].along > 1) plane++;
+  return plane;
+}
+
+static inline bool is_in_plane(const struct SwitchTable *switches, size_t friction) {
+  return plane_of(switches, friction) < switches->plane_count;
+}
+
 static inline size_t indicator_count(const struct SwitchTable *switches) {
   return switches == NULL ? 0 : friction_indicator(switches, switches->friction_count);
 }

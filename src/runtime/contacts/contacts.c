@@ -126,6 +126,7 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   open_all(settlement);
   let_go(settlement);
   settlement->jumped = true;
+  settlement->last.friction = settlement->switches->friction_count;
   settlement->impacts++;
   return done && let_stopped_head(settlement);
 }

@@ -113,11 +113,26 @@ static double mode_from_sliding(const struct Settlement *settlement, const struc
 }
 
 /* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
-static double friction_mode(const struct Settlement *settlement, size_t friction) {
-  struct FrictionState state = friction_state(settlement, friction);
-  if (state.has_no_force) return mode_without_force(&state);
-  if (state.is_moving && state.may_jump) return state.velocity > 0.0 ? 1.0 : -1.0;
-  return state.mode == 0.0 ? mode_from_rest(settlement, &state) : mode_from_sliding(settlement, &state);
+static double friction_mode(const struct Settlement *settlement, const struct FrictionState *state) {
+  if (state->has_no_force) return mode_without_force(state);
+  if (state->is_moving && state->may_jump) return state->velocity > 0.0 ? 1.0 : -1.0;
+  return state->mode == 0.0 ? mode_from_rest(settlement, state) : mode_from_sliding(settlement, state);
+}
+
+/* By how many times rounding it leaves its mode. */
+static double certainty_of(const struct FrictionState *state) {
+  if (state->is_moving) return INFINITY;
+  double excess = fabs(state->force) - state->stiction;
+  return state->mode == 0.0 ? excess / state->noise_of_force : fabs(state->rate) / state->noise_of_rate;
+}
+
+/*
+ * Whether it would go back to the mode that it has just left, which it left more clearly: what a contact holds slides without moving
+ * where that and its friction would share more than this can carry, and a rate is rounding there.
+ */
+static bool would_go_back(const struct Settlement *settlement, size_t friction, double mode, double certainty) {
+  return settlement->last.friction == friction && settlement->last.mode == mode &&
+         settlement->last.certainty > certainty;
 }
 
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
@@ -148,11 +163,15 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
   *switched = false;
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     if (is_in_plane(switches, i)) continue;
-    double mode = friction_mode(settlement, i);
-    if (mode == mode_of(settlement, switches->frictions[i].mode)) continue;
+    struct FrictionState state = friction_state(settlement, i);
+    double mode = friction_mode(settlement, &state), certainty = certainty_of(&state);
+    if (mode == state.mode || would_go_back(settlement, i, mode, certainty)) continue;
     if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT)
       return frictions_refuse(settlement, i);
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
+    settlement->last.friction = i;
+    settlement->last.mode = state.mode;
+    settlement->last.certainty = certainty;
     *switched = true;
   }
   return NULL;

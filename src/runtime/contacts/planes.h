@@ -6,17 +6,6 @@
 
 #include "events/settlement.h"
 
-/* The plane of a friction along or across; plane_count for none. */
-static inline size_t plane_of(const struct SwitchTable *switches, size_t friction) {
-  size_t plane = 0;
-  while (plane < switches->plane_count && friction - switches->planes[plane].along > 1) plane++;
-  return plane;
-}
-
-static inline bool is_in_plane(const struct SwitchTable *switches, size_t friction) {
-  return plane_of(switches, friction) < switches->plane_count;
-}
-
 /* The speed of a friction in a plane, which is the one along. */
 static inline double speed_in_plane(const struct Settlement *settlement, size_t along) {
   const double *value = settlement->value;

@@ -112,7 +112,9 @@ bool solver_rests(double time, double step) {
 }
 
 double solver_error(const struct Instance *instance) {
-  if (lagrangian.solver->finer == NULL) return 0.0;
+  const struct Solver *solver = lagrangian.solver;
+  if (solver->at_work != NULL) solver = solver->at_work(instance);
+  if (solver->finer == NULL) return 0.0;
   double smallest = INFINITY;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
   return instance->situation->tolerance * smallest;

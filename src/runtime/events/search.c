@@ -159,7 +159,8 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
 
 /*
  * Where f falls through 0, between a time before, where it is not negative, and one behind: of the two neighbouring times the
- * one where it is smaller, or, of a branch, the later one, where the next piece has a value.
+ * one where it is smaller, or the later one of a branch, where the next piece has a value, and of a force: what gives way
+ * there moves in its direction, and not back by what the force still lacks.
  * By the Illinois method, with every third step a bisection.
  */
 static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
@@ -179,7 +180,8 @@ static double refine(struct Search *search, size_t indicator, double sign, struc
     else before = next;
   }
   bool is_branch = indicator < lagrangian.switches->branch_count;
-  return before.f <= -behind.f && !is_branch ? before.time : behind.time;
+  bool is_later = is_branch || indicator_is_force(search->instance, indicator);
+  return before.f <= -behind.f && !is_later ? before.time : behind.time;
 }
 
 /* The same in a window in which f, with these values at the nodes, falls through 0 once. */
@@ -292,10 +294,22 @@ bool search_for_jump(struct Instance *instance, double *time, double *state, siz
   return true;
 }
 
-/* What an indicator may fall to without an event, that begins at a value: what an event, or the method, has made of it. */
+/* Whether it is the velocity of a friction that slides along a line. */
+static bool is_of_sliding(const struct Search *search, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t first = friction_indicator(switches, 0);
+  return indicator >= first && !is_in_plane(switches, indicator - first) &&
+         !indicator_is_force(search->instance, indicator);
+}
+
+/*
+ * What an indicator may fall to without an event, that begins at a value: what an event, or the method, has made of it. The
+ * method errs where it begins, too, in the velocity of what begins to slide and in the gap of what is lifted.
+ */
 static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
   double noise = FLOOR_IN_NOISE * search->noise[indicator], error = 0.0;
-  if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);
+  bool is_lifted = lifted != NULL && *lifted == indicator;
+  if (is_lifted || is_of_sliding(search, indicator)) error = solver_error(search->instance);
   return start >= -error - noise && (error == 0.0 || start <= error + noise) ? fmin(start, -error) : 0.0;
 }
 

@@ -59,7 +59,8 @@ size_t settlement_work_count(void) {
 }
 
 struct Settlement settlement_of(struct Instance *instance) {
-  struct Settlement settlement = {.instance = instance, .switches = lagrangian.switches};
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Settlement settlement = {.instance = instance, .switches = switches, .last = {switches->friction_count, 0, 0}};
   lay_out_settlement(&settlement, instance->switching_work);
   memset(settlement.largest, 0, (size_t)(settlement.value - settlement.largest) * sizeof(double));
   return settlement;
@@ -166,6 +167,7 @@ void settlement_set_mode(struct Settlement *settlement, size_t mode, double valu
   settlement->instance->parameter[mode] = value;
   settlement->instance->prepared_is_stale = true;
   settlement->changed = true;
+  settlement->last.friction = settlement->switches->friction_count;
 }
 
 static double *modes_of(const struct Settlement *settlement) {

@@ -35,6 +35,10 @@ struct Settlement {
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   bool has_found_forces;               /* modes were set by the forces of all at rest at once */
   int impacts, lifts;
+  struct {
+    size_t friction;        /* that has switched, where nothing else has changed since; friction_count for none */
+    double mode, certainty; /* which it had, and by how many times rounding it left that */
+  } last;
 };
 
 struct Pushes;

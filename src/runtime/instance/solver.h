@@ -52,6 +52,8 @@ struct Solver {
   const char *(*advance)(struct Instance *instance, const struct CommunicationStep *step);
   /* The state at a time in last_step. False where it is not known. */
   bool (*interpolate)(struct Instance *instance, double time, double *state);
+  /* Of several methods the one that made the last step; NULL for a solver that is one. */
+  const struct Solver *(*at_work)(const struct Instance *instance);
   /* The states at several times, a row each, to the same bits. NULL for a solver that does no better than one by one. */
   bool (*interpolate_at)(struct Instance *instance, const double *times, size_t count, double *states);
 };

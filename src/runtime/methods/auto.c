@@ -131,6 +131,11 @@ static bool auto_create(struct Instance *instance) {
   return is_complete;
 }
 
+static const struct Solver *auto_at_work(const struct Instance *instance) {
+  const struct Auto *automatic = instance->solver_memory;
+  return solvers[automatic != NULL ? automatic->choice->method : AUTO_TAYLOR];
+}
+
 static void begin_window(struct Choice *choice, double time) {
   choice->steps = choice->restarts = 0;
   choice->begin = time;
@@ -317,5 +322,6 @@ const struct Solver solver_auto = {.name = "the solver",
                                    .restart = auto_restart,
                                    .resume = auto_resume,
                                    .advance = auto_advance,
+                                   .at_work = auto_at_work,
                                    .interpolate = auto_interpolate,
                                    .interpolate_at = auto_interpolate_at};
