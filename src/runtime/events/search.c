@@ -26,18 +26,20 @@ struct Search {
   double *state, *rounded; /* state_count each */
   double *values;          /* one a indicator */
   double *samples;         /* CHEBYSHEV_NODES rows of them */
+  double *held;            /* the same with states on the constraints, where has_held */
   double *exact;           /* one a indicator */
   double *noise;           /* what rounding may make of each */
   int windows;             /* that may still be looked at */
   bool is_exact;           /* times are found to rounding, else ones a little before */
-  bool projects;           /* states onto the constraints: what they hold at 0 is not what rounding makes of it */
-  double departure;        /* the sign of what left 0 last */
-  double floor;            /* what an event has left of an indicator below 0, by rounding */
+  bool has_held;
+  bool projects;    /* states onto the constraints: what they hold at 0 is not what rounding makes of it */
+  double departure; /* the sign of what left 0 last */
+  double floor;     /* what an event has left of an indicator below 0, by rounding */
 };
 
 size_t search_work_count(void) {
-  size_t search =
-      window_sample_count() + 2 * lagrangian.state_count + (CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
+  size_t search = window_sample_count() + 2 * lagrangian.state_count +
+                  (2 * CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
   size_t window = window_work_count();
   return search > window ? search : window;
 }
@@ -50,6 +52,7 @@ static struct Search search_of(struct Instance *instance) {
   search.samples = search.values + count;
   search.noise = search.samples + CHEBYSHEV_NODES * count;
   search.exact = search.noise + count;
+  search.held = search.exact + count;
   return search;
 }
 
@@ -323,11 +326,14 @@ static bool may_be_held(const struct Search *search, size_t indicator) {
   return !is_gap && fabs(search->exact[indicator]) <= search->noise[indicator] && solver_is_held(search->instance);
 }
 
-/* The values of one indicator at the nodes, anew. */
-static void sample_nodes(struct Search *search, size_t indicator, double from, double to) {
+/* The values of one indicator at the nodes, with states on the constraints: those of all are found at once. */
+static void hold_nodes(struct Search *search, size_t indicator, double from, double to) {
   size_t count = indicator_count(lagrangian.switches);
-  for (int k = 0; k < CHEBYSHEV_NODES; k++)
-    search->samples[(size_t)k * count + indicator] = value_at(search, indicator, chebyshev_time(from, to, k));
+  for (size_t k = 0; k < CHEBYSHEV_NODES && !search->has_held; k++)
+    sample(search, chebyshev_time(from, to, (int)k), search->held + k * count);
+  search->has_held = true;
+  for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
+    search->samples[k * count + indicator] = search->held[k * count + indicator];
 }
 
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
@@ -347,7 +353,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     if (!knows_noise) measure_noise(&search, from);
     knows_noise = true;
     search.projects = may_be_held(&search, i);
-    if (search.projects) sample_nodes(&search, i, from, to);
+    if (search.projects) hold_nodes(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
     search.floor = floor_of(&search, i, start, lifted);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;
