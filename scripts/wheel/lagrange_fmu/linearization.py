@@ -28,13 +28,13 @@ class Linearization(NamedTuple):
 
 def _tangents(point, at):
     """
-    The directions in which the states can move, as orthonormal columns. Initialization projects onto the states that fulfil the constraints;
-    what it does to first order is a projection onto these directions, whose singular values are 0, or 1 and more.
+    The directions in which the states can move, as orthonormal columns. States are projected onto those that fulfil the constraints;
+    what that does to first order is a projection onto these directions, whose singular values are 0, or 1 and more.
     """
     columns = []
     for i in range(len(at)):
         step = np.eye(len(at))[i] * STEP * max(1.0, abs(at[i]))
-        one, two = (point.start(at + k * step) - point.start(at - k * step) for k in (1, 2))
+        one, two = (point.held(at + k * step) - point.held(at - k * step) for k in (1, 2))
         columns.append((8 * one - two) / (12 * step[i]))
     left, singular, _ = np.linalg.svd(np.array(columns).T)
     return left[:, : np.count_nonzero(singular > 0.5)]

@@ -80,6 +80,16 @@ class Point:
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
 
+    def held(self, states):
+        """The nearest states that fulfil the constraints. Initialization keeps fixed coordinates, event mode moves them too, but what can switch may do so there."""
+        if self.numbers or self.switches or self.indicator_count:
+            return self.start(states)
+        self.set_states(states)
+        self.model.enterEventMode()
+        self.model.newDiscreteStates()
+        self.model.enterContinuousTimeMode()
+        return self.read(self.states)
+
     def modes(self):
         """Of what switches; the same list where that does the same."""
         numbers, switches = ([self.references[name] for name in names] for names in (self.numbers, self.switches))
