@@ -426,7 +426,9 @@ PLACES = [
     ("if (half >= 0.5 * length) return true;", "if (half >= 0.1 * length) return true;", pytest("test_hills", "")),
     ("return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;", "return restitution;",
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
-    ("if (lifted != NULL && *lifted == indicator) error = solver_error(search->instance);", "", pytest("test_roundings_of_contacts", "lift_off")),
+    ("bool is_lifted = lifted != NULL && *lifted == indicator;", "bool is_lifted = false;", pytest("test_roundings_of_contacts", "lift_off")),
+    ("bool is_later = is_branch || indicator_is_force(search->instance, indicator);", "bool is_later = is_branch;", pytest("test_robots_on_ground", "limbs")),
+    ("is_idle |= rests;", "", pytest("test_rigid_shapes", "least_norm")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
     # Friction in a plane
     ("return divide(graph, component, power_number(graph, square, 0.5));", "return component;",

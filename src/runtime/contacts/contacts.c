@@ -8,6 +8,7 @@
 
 #include "contacts/contact_forces.h"
 #include "contacts/impacts.h"
+#include "contacts/load_shares.h"
 #include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
@@ -342,6 +343,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
 
 const struct ContactLaws contact_laws = {.act = act_once,
                                          .settle_forces = contact_forces_settle,
+                                         .share_load = contacts_share_load,
                                          .part = part,
                                          .check_gaps = check_gaps,
                                          .explain = contact_forces_explain};

@@ -33,6 +33,7 @@ struct Settlement {
   bool came_to_rest;                   /* contacts have, in the last round of them */
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
+  bool has_shared;                     /* what touches at rest shares the load */
   bool has_found_forces;               /* modes were set by the forces of all at rest at once */
   int impacts, lifts;
   struct {
@@ -55,6 +56,8 @@ struct ContactLaws {
    * there is none.
    */
   const char *(*settle_forces)(struct Settlement *settlement, bool *again);
+  /* Behind those: closes what touches at rest and shares the load; *again where there is any. NULL, or as above. */
+  const char *(*share_load)(struct Settlement *settlement, bool *again);
   /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
   bool (*part)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
