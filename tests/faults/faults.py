@@ -428,7 +428,7 @@ PLACES = [
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
     ("bool is_lifted = lifted != NULL && *lifted == indicator;", "bool is_lifted = false;", pytest("test_roundings_of_contacts", "lift_off")),
     ("bool is_later = is_branch || indicator_is_force(search->instance, indicator);", "bool is_later = is_branch;", pytest("test_robots_on_ground", "limbs")),
-    ("is_idle |= rests;", "", pytest("test_rigid_shapes", "least_norm")),
+    ("is_idle |= rests;", "", pytest("test_shared_frictions", "pressing_forces")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),
     # Friction in a plane
     ("return divide(graph, component, power_number(graph, square, 0.5));", "return component;",

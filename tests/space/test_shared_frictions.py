@@ -3,6 +3,8 @@ Bodies on two points of a line, whose frictions along the line are not determine
 cones allow carry the load, whatever the part of each.
 """
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -140,4 +142,57 @@ def test_box_tips(mu, slides, error):
     pressed = [i for i in range(1, 9) if forces(instance, i)[0] > 0]
     assert len(pressed) == 2 and all(whole(instance, f"c[{i}].friction.sliding") == [int(slides)] for i in pressed)
     assert whole(instance, "events")[0] < 100
+    instance.free()
+
+
+def feet(count):
+    return np.array([[np.cos(2 * k * np.pi / count), np.sin(2 * k * np.pi / count)] for k in range(count)])
+
+
+def table_on(count, friction):
+    """A table on a ring of feet, which is pushed and tilted, with its centre of mass in the ground."""
+    parameters = "".join(f'<parameter name="{name}" start="0"/>' for name in ("Fx", "Fy", "Fz", "Tz", "Tx", "Ty"))
+    coordinates = "".join(f'<coordinate name="{name}" velocity="v{name}"/>' for name in ("x", "y", "z", "yaw", "pitch", "roll"))
+    turns = "".join(f'<rotate axis="{axis}" angle="{angle}"/>' for axis, angle in {"z": "yaw", "y": "pitch", "x": "roll"}.items())
+    legs = "".join(
+        f'<shape name="foot{k}" in="a" type="sphere" radius="0.05" x="{float(x)}" y="{float(y)}" z="0.05"/>'
+        f'<contact name="c{k}" between="floor" and="foot{k}"{friction}/>'
+        for k, (x, y) in enumerate(feet(count))
+    )
+    return f"""<system name="Table{count}"><parameter name="mu" start="0.5"/>{parameters}<gravity z="-{G}"/><shape name="floor" type="plane"/>{coordinates}
+<frame name="a"><translate x="x" y="y" z="z"/>{turns}</frame><body name="b" in="a" mass="{M}" Ixx="0.3" Iyy="0.4" Izz="0.5"/><force on="b" x="Fx*time" y="Fy*time" z="Fz"/><torque on="b" x="Tx" y="Ty" z="Tz*time"/>{legs}<experiment stopTime="1"/></system>"""
+
+
+def pressing_forces(count, weight, tilting):
+    """Of least norm, by the moments about x and y."""
+    places = feet(count)
+    return np.linalg.lstsq(np.array([np.ones(count), places[:, 1], -places[:, 0]]), [weight, -tilting[0], -tilting[1]], rcond=None)[0]
+
+
+@pytest.fixture(scope="module")
+def tables():
+    build_systems("shared-frictions", {"Table8": table_on(8, ' friction="mu"'), "Table12": table_on(12, "")})
+
+
+def test_pressing_forces_are_of_least_norm(tables):
+    """Also where a foot would lift off, but for the others."""
+    for tilting in itertools.product(np.arange(0, 6, 0.5), repeat=2):
+        expected = pressing_forces(12, M * G, tilting)
+        if min(expected) < 0.01:
+            continue
+        instance = fmu.Instance("Table12").initialize({"Tx": tilting[0], "Ty": tilting[1]})
+        assert instance.get(*(f"c{k}.force" for k in range(12))) == pytest.approx(expected, abs=1e-9)
+        instance.free()
+
+
+def test_pushed_feet_keep_their_load(tables):
+    """Frictions share what grows; at 1 s forces of friction in their cones still carry it, as another program has found. What presses does not change."""
+    values = {"Fx": 3.169332221483987, "Fy": 5.365724363902007, "Tz": 3.764532498141972, "Fz": 2.8736791329964166, "mu": 0.4878756629363105}
+    tilting = {"Tx": -1.8820708939303965, "Ty": 0.39850565083107337}
+    expected = pressing_forces(8, M * G - values["Fz"], [*tilting.values()])
+    instance = fmu.Instance("Table8").initialize(values | tilting)
+    for k in range(1, 99):
+        instance.run(0.01 * k, 0.01)
+        assert instance.get(*(f"c{k}.force" for k in range(8))) == pytest.approx(expected, abs=1e-6)
+        assert np.max(np.abs(instance.get("vx", "vy", "vyaw"))) < 1e-9
     instance.free()

@@ -17,6 +17,7 @@
 #include "contacts/complementarity.h"
 #include "contacts/planes.h"
 #include "contacts/pushes.h"
+#include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
 enum { HALVINGS = 52, SOLUTIONS = 50 };
@@ -26,6 +27,9 @@ static const double least_gain = 1e-13;
 
 /* Outcomes differ where what their impulses differ by makes more than this share of the energy that they make. */
 static const double differing_share = 1e-8;
+
+/* In units of the largest velocity: what moves less rests, but for rounding. */
+static const double resting_share = 1e-9;
 
 /*
  * What is added to the mobilities keeps impulses small where they are not determined; further solutions remove what it does
@@ -271,11 +275,19 @@ static void refuse_planes(const struct Settlement *settlement, const struct Push
       settlement->time, settlement->switches->frictions[pushes->member[row]].name);
 }
 
+/* Whether all that is hit closes and slides as slowly as what rests: an impact by rounding alone. */
+static bool is_hit_at_rest(const struct Settlement *settlement, const struct Pushes *pushes) {
+  double fastest = 0.0;
+  for (size_t i = 0; i < pushes->count; i++) fastest = fmax(fastest, fabs(pushes->rate[i]));
+  return fastest <= resting_share * largest_scale(settlement->state, lagrangian.coordinate_count);
+}
+
 /* Once, so that what bounces for long does not fill the log. */
 static void tell_of_other_outcomes(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   const struct SwitchTable *switches = settlement->switches;
   if (pushes->friction_count == 0 || settlement->instance->told_other_impulses) return;
+  if (is_hit_at_rest(settlement, pushes)) return;
   fill_plain_rates(settlement, problem);
   if (!switches->friction_laws->has_other_impulses(settlement, pushes, problem->rate, problem->impulse)) return;
   settlement->instance->told_other_impulses = true;

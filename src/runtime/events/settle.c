@@ -33,7 +33,7 @@ static const char *settle_contact_forces(struct Settlement *settlement, bool *ag
   return laws != NULL ? laws->settle_forces(settlement, again) : NULL;
 }
 
-static const char *share_load(struct Settlement *settlement, bool *again) {
+static const char *let_touching_share(struct Settlement *settlement, bool *again) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
   return laws != NULL ? laws->share_load(settlement, again) : NULL;
 }
@@ -54,8 +54,8 @@ static const char *switch_sides(struct Settlement *settlement, bool *again) {
 
 /* What a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Settlement *settlement, bool *again) = {
-    act_by_contacts, switch_pieces,       act_by_frictions, settle_contact_forces,
-    share_load,      tell_friction_modes, switch_sides,     conditions_happen};
+    act_by_contacts,    switch_pieces,       act_by_frictions, settle_contact_forces,
+    let_touching_share, tell_friction_modes, switch_sides,     conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
 /* One round; *again where it changed something. */
