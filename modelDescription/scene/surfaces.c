@@ -128,9 +128,10 @@ static bool draws_shapes(const struct Mechanism *mechanism) {
 struct Surfaces find_surfaces(const struct Samples *samples) {
   struct Surfaces surfaces = {.count = 0};
   const struct Switches *switches = &samples->model->switches;
-  bool has_stops = !draws_shapes(&samples->model->mechanism);
   if (switches->contact_count == 0) return surfaces;
-  struct Configurations configurations = configurations_with_stops(samples);
+  bool has_stops = !draws_shapes(&samples->model->mechanism);
+  struct Configurations configurations = {0};
+  if (has_stops) configurations = configurations_with_stops(samples);
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t before = surfaces.count;
     for (size_t thing = 1; thing < samples->thing_count && surfaces.count == before; thing++) {

@@ -85,12 +85,16 @@ def test_constraints_leave_independent_states(command, tmp_path):
     assert "equilibrium" not in result.stderr and "eigenvalues of A: 0+3.13209j, 0-3.13209j" in text.replace("-0+", "0+").replace("-0-", "0-")
 
 
-def test_a_bicycle_rights_itself(command, tmp_path):
+@pytest.fixture(scope="module")
+def bicycle():
+    build_systems("bicycle", {"Bicycle": BICYCLE})
+
+
+def test_a_bicycle_rights_itself(bicycle, command, tmp_path):
     """
     Eigenvalues of J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab: Linearized dynamics equations for the balance and steer of a
     bicycle, 2007. Wheels are a line each; what is fixed at the start is moved to linearize.
     """
-    build_systems("bicycle", {"Bicycle": BICYCLE})
     benchmark = {3: [1.70675605663975 + 2.31582447384325j, -2.63366137253667, -10.3510146724592], 5: [-0.77534188219585 + 4.46486771378823j, -0.32286642900409, -14.0783896927982]}
     for v, expected in benchmark.items():
         text = succeed(command("linearize", fmu.archive("Bicycle"), "--set", f"v={v}", cwd=tmp_path))
@@ -99,9 +103,8 @@ def test_a_bicycle_rights_itself(command, tmp_path):
         np.testing.assert_allclose(np.sort_complex(found), np.sort_complex(expected), rtol=1e-7)
 
 
-def test_a_bicycle_keeps_its_energy(open_fmu):
+def test_a_bicycle_keeps_its_energy(bicycle, open_fmu):
     """At 4.6 m/s a push at the handlebar fades, and the energy that it has brought stays."""
-    build_systems("bicycle", {"Bicycle": BICYCLE})
     instance = open_fmu("Bicycle").initialize({"v": 4.6})
     instance.set({"torque": 2.0})
     instance.run(0.2, 0.02)

@@ -67,6 +67,7 @@ EACH = """\
 </mujoco>
 """
 
+
 def in_parts():
     """The same in files that include each other, relative to the first and to the one that names it."""
     text, parts = EACH, {}

@@ -76,6 +76,10 @@ class Point:
             self.model.setReal([self.references[name] for name in values], list(values.values()))
         self.model.enterInitializationMode()
         self.model.exitInitializationMode()
+        return self._go_on()
+
+    def _go_on(self):
+        """From event mode; the states."""
         self.model.newDiscreteStates()
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
@@ -86,9 +90,7 @@ class Point:
             return self.start(states)
         self.set_states(states)
         self.model.enterEventMode()
-        self.model.newDiscreteStates()
-        self.model.enterContinuousTimeMode()
-        return self.read(self.states)
+        return self._go_on()
 
     def modes(self):
         """Of what switches; the same list where that does the same."""

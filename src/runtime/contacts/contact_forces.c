@@ -103,8 +103,7 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
   for (size_t i = 0; i < n; i++) {
     forces->free[i] = contact_value(settlement, pushes->member[i], CONTACT_ACCELERATION) * resting->unit[i];
     for (size_t j = 0; j < n; j++) {
-      const struct ContactFacts *contact = &settlement->switches->contacts[pushes->member[j]];
-      double force = settlement->acceleration[lagrangian.coordinate_count + contact->constraint];
+      double force = contact_force(settlement, pushes->member[j]);
       double s = mobility_with_friction(settlement, pushes, i, j) * resting->unit[i] * resting->unit[j];
       forces->s[i * n + j] = s;
       if (contact_is_closed(settlement, pushes->member[j])) forces->free[i] -= s * force / resting->unit[j];

@@ -127,7 +127,6 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   open_all(settlement);
   let_go(settlement);
   settlement->jumped = true;
-  settlement->last.friction = settlement->switches->friction_count;
   settlement->impacts++;
   return done && let_stopped_head(settlement);
 }
@@ -282,7 +281,7 @@ static size_t find_pulling(const struct Settlement *settlement) {
   double most = 0.0;
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!contact_is_closed(settlement, i)) continue;
-    double force = settlement->acceleration[lagrangian.coordinate_count + switches->contacts[i].constraint];
+    double force = contact_force(settlement, i);
     /* An importer comes to a zero or past it, and does not tell whose. */
     bool is_reached = is_hit(settlement, contact_indicator(settlement->switches, i)) ||
                       (settlement->occasion == IN_EXCHANGE && force <= 0.0);

@@ -164,8 +164,10 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     if (is_in_plane(switches, i)) continue;
     struct FrictionState state = friction_state(settlement, i);
-    double mode = friction_mode(settlement, &state), certainty = certainty_of(&state);
-    if (mode == state.mode || would_go_back(settlement, i, mode, certainty)) continue;
+    double mode = friction_mode(settlement, &state);
+    if (mode == state.mode) continue;
+    double certainty = certainty_of(&state);
+    if (would_go_back(settlement, i, mode, certainty)) continue;
     if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT)
       return frictions_refuse(settlement, i);
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
@@ -222,8 +224,7 @@ static bool leaves_rest(const struct Settlement *settlement, size_t friction) {
 /* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
 bool frictions_tell(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
-  double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
-  double slowest = share * largest_scale(settlement->state, lagrangian.coordinate_count);
+  double slowest = resting_speed(settlement);
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionFacts *facts = &switches->frictions[i];

@@ -11,17 +11,6 @@
 #include "contacts/resting_forces.h"
 #include "evaluation/evaluate.h"
 
-static double force_of(const struct Settlement *settlement, size_t contact) {
-  size_t constraint = settlement->switches->contacts[contact].constraint;
-  return settlement->acceleration[lagrangian.coordinate_count + constraint];
-}
-
-/* Speeds up to this are those of what rests. */
-static double slowest(const struct Settlement *settlement) {
-  double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
-  return share * largest_scale(settlement->state, lagrangian.coordinate_count);
-}
-
 /* Gaps up to this are left by the projection of what holds. */
 static double narrowest(const struct Settlement *settlement) {
   double share = settlement->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
@@ -29,22 +18,23 @@ static double narrowest(const struct Settlement *settlement) {
 }
 
 /* Whether nothing slides on it. */
-static bool is_held_aside(const struct Settlement *settlement, size_t contact) {
+static bool is_held_aside(const struct Settlement *settlement, size_t contact, double slowest) {
   const struct SwitchTable *switches = settlement->switches;
   bool slides = false;
   for (size_t i = 0; i < switches->friction_count; i++)
-    slides |= rests_on(switches, i, contact) && sliding_speed(settlement, i) > slowest(settlement);
+    slides |= rests_on(switches, i, contact) && sliding_speed(settlement, i) > slowest;
   return !slides;
 }
 
 /* Notes in takes_part what touches at rest and is open. Whether there is any, and anything closed that holds it. */
 static bool find_idle(struct Settlement *settlement) {
+  double narrow = narrowest(settlement), slowest = resting_speed(settlement);
   bool is_held = false, is_idle = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
     bool is_closed = contact_is_closed(settlement, i);
-    bool is_touching = fabs(contact_value(settlement, i, CONTACT_GAP)) <= narrowest(settlement);
-    bool is_still = fabs(contact_value(settlement, i, CONTACT_RATE)) <= slowest(settlement);
-    bool rests = !is_closed && is_touching && is_still && is_held_aside(settlement, i);
+    bool touches = fabs(contact_value(settlement, i, CONTACT_GAP)) <= narrow;
+    bool is_still = fabs(contact_value(settlement, i, CONTACT_RATE)) <= slowest;
+    bool rests = !is_closed && touches && is_still && is_held_aside(settlement, i, slowest);
     settlement->takes_part[i] = rests ? 1.0 : 0.0;
     is_held |= is_closed;
     is_idle |= rests;
@@ -67,9 +57,9 @@ static size_t find_useless(const struct Settlement *settlement) {
   size_t count = settlement->switches->contact_count, found = count;
   double largest = 0.0, least = INFINITY;
   for (size_t i = 0; i < count; i++)
-    if (contact_is_closed(settlement, i)) largest = fmax(largest, fabs(force_of(settlement, i)));
+    if (contact_is_closed(settlement, i)) largest = fmax(largest, fabs(contact_force(settlement, i)));
   for (size_t i = 0; i < count; i++) {
-    double force = force_of(settlement, i);
+    double force = contact_force(settlement, i);
     if (settlement->takes_part[i] == 0.0 || force > rounded_force * largest || force >= least) continue;
     least = force;
     found = i;
@@ -86,25 +76,31 @@ static bool any_takes_part(const struct Settlement *settlement) {
 static bool any_pulls(const struct Settlement *settlement) {
   bool pulls = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    pulls |= contact_is_closed(settlement, i) && force_of(settlement, i) < 0.0;
+    pulls |= contact_is_closed(settlement, i) && contact_force(settlement, i) < 0.0;
   return pulls;
 }
 
+/* Closes those that take part, but for the ones that are useless then. Whether all that is closed presses. */
+static bool close_useful(struct Settlement *settlement) {
+  size_t count = settlement->switches->contact_count, useless;
+  do {
+    settlement_restore_modes(settlement);
+    if (!any_takes_part(settlement)) return false;
+    close_idle(settlement);
+    if (!settlement_evaluate(settlement)) return false;
+    useless = find_useless(settlement);
+    if (useless < count) settlement->takes_part[useless] = 0.0;
+  } while (useless < count);
+  return !any_pulls(settlement);
+}
+
 const char *contacts_share_load(struct Settlement *settlement, bool *again) {
-  bool changed = settlement->changed, is_known = true;
+  bool changed = settlement->changed;
   *again = false;
   if (settlement->has_shared || !find_idle(settlement)) return NULL;
   settlement->has_shared = true;
   settlement_keep_modes(settlement);
-  for (size_t useless = settlement->switches->contact_count; is_known && any_takes_part(settlement);) {
-    settlement_restore_modes(settlement);
-    close_idle(settlement);
-    is_known = settlement_evaluate(settlement);
-    useless = is_known ? find_useless(settlement) : useless;
-    if (useless == settlement->switches->contact_count) break;
-    settlement->takes_part[useless] = 0.0;
-  }
-  *again = is_known && any_takes_part(settlement) && !any_pulls(settlement);
+  *again = close_useful(settlement);
   if (*again) return NULL;
   settlement_restore_modes(settlement);
   settlement->changed = changed;

@@ -1,10 +1,17 @@
-/* Which frictions act in a plane. */
+/* How fast frictions slide, along a line or in a plane. */
 #ifndef PLANES_H
 #define PLANES_H
 
 #include <math.h>
 
+#include "evaluation/evaluate.h"
 #include "events/settlement.h"
+
+/* Speeds up to this are those of what rests; importers keep constraints less well. */
+static inline double resting_speed(const struct Settlement *settlement) {
+  double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
+  return share * largest_scale(settlement->state, lagrangian.coordinate_count);
+}
 
 /* The speed of a friction in a plane, which is the one along. */
 static inline double speed_in_plane(const struct Settlement *settlement, size_t along) {

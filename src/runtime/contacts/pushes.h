@@ -38,6 +38,12 @@ static inline double contact_value(const struct Settlement *settlement, size_t c
   return settlement->value[contact_place(settlement->switches, contact, part)];
 }
 
+/* What a closed contact presses with; below 0 where it pulls. */
+static inline double contact_force(const struct Settlement *settlement, size_t contact) {
+  size_t constraint = settlement->switches->contacts[contact].constraint;
+  return settlement->acceleration[lagrangian.coordinate_count + constraint];
+}
+
 static inline bool friction_sticks(const struct Settlement *settlement, size_t friction) {
   return friction_holds(settlement->instance, friction);
 }

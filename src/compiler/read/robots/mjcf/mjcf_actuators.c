@@ -1,7 +1,6 @@
 #include "read/robots/mjcf/mjcf_actuators.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -34,13 +33,12 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
 
 /* MuJoCo makes damping of a ratio to the critical one by the inertia that all of the robot sets against the force. */
 static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
-  const char *ratio = is_element(node, "position") ? mjcf_text(mjcf, node, "dampratio") : NULL;
-  if (ratio != NULL && strtod(ratio, NULL) != 0)
-    report_error(
-        mjcf->file.diagnostics, xmlGetLineNo(node),
-        "dampratio=\"%.60s\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
-        "MuJoCo's compiled model",
-        ratio);
+  double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
+  if (ratio != 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
+                 "MuJoCo's compiled model",
+                 ratio);
   if (actuator->bias[2] > 0 && actuator->gain == -actuator->bias[1])
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
                  "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "

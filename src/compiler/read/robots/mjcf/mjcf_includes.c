@@ -22,15 +22,11 @@ struct Inclusion {
   int depth;
 };
 
-static long line_of(const struct Inclusion *inclusion, xmlNodePtr node) {
-  return inclusion->line > 0 ? inclusion->line : xmlGetLineNo(node);
-}
-
 /* The path of the file that an <include> names; NULL after reporting that there is none. */
-static char *find_file(struct Inclusion *inclusion, xmlNodePtr node) {
+static char *find_file(struct Inclusion *inclusion, xmlNodePtr node, long line) {
   char *named = attribute(node, "file");
   if (named == NULL || *named == '\0') {
-    report_error(inclusion->diagnostics, line_of(inclusion, node), "an <include> names no file; expected file=\"...\"");
+    report_error(inclusion->diagnostics, line, "an <include> names no file; expected file=\"...\"");
     return NULL;
   }
   char *path = path_beside_file(inclusion->robot, named), *canonical = canonical_path(path);
@@ -39,15 +35,15 @@ static char *find_file(struct Inclusion *inclusion, xmlNodePtr node) {
     canonical = canonical_path(path);
   }
   if (canonical == NULL)
-    report_error(inclusion->diagnostics, line_of(inclusion, node),
+    report_error(inclusion->diagnostics, line,
                  "the file '%s' of an <include> cannot be read: %s; expected a path relative to the robot's file",
                  named, strerror(errno));
   else if (inclusion->depth == DEPTH_LIMIT)
-    report_error(inclusion->diagnostics, line_of(inclusion, node),
+    report_error(inclusion->diagnostics, line,
                  "more than %d files include each other in a row; expected fewer, some of them side by side",
                  DEPTH_LIMIT);
   else if (names_find(inclusion->known, canonical) != NULL)
-    report_error(inclusion->diagnostics, line_of(inclusion, node),
+    report_error(inclusion->diagnostics, line,
                  "the file '%s' is included twice, or includes itself; expected each file once", named);
   else {
     names_set(inclusion->known, canonical, path);
@@ -79,8 +75,8 @@ static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
 
 /* The elements of the file come before the <include>, which goes. */
 static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
-  char *path = find_file(inclusion, node);
-  long line = line_of(inclusion, node);
+  long line = inclusion->line > 0 ? inclusion->line : xmlGetLineNo(node);
+  char *path = find_file(inclusion, node, line);
   xmlDocPtr document = path != NULL ? load(inclusion, path, line) : NULL;
   if (document == NULL) return;
   struct Inclusion inner = *inclusion;
