@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 import fmu
@@ -104,6 +105,83 @@ def test_variables():
     assert fmu.description("IncludeRow").defaultExperiment.stopTime == "10"
     for name in TEXTS:
         assert validate_fmu(str(fmu.archive(name))) == []
+
+
+# Each file changes some attributes of what the one further in says; in c[1] and d[1] the outermost changes none.
+LAYERS = {
+    "cell.xml": """<system name="Cell">
+  <constant name="N" value="1"/>
+  <parameter name="m" start="2" unit="kg" min="0" max="5"/>
+  <parameter name="k" value="8*N" unit="N/m"/>
+  <parameter name="s" start="1" unit="1" min="0.5"/>
+  <input name="F" unit="N" start="0.1" min="-1" max="1"/>
+  <coordinate name="x" velocity="v" unit="m" start="0.5" velocityStart="0.9"/>
+  <particle mass="m" x="x"/>
+  <force coordinate="x">s*F - k*x</force>
+</system>""",
+    "mid.xml": """<system name="Mid">
+  <parameter name="p" start="3" unit="1"/>
+  <for index="i" from="1" to="2">
+    <include file="cell.xml" as="c[i]">
+      <constant name="N" value="7"/>
+      <parameter name="m" start="1.5" min="1" max="4"/>
+      <parameter name="s" value="p"/>
+      <input name="F" max="2" start="0.2"/>
+      <coordinate name="x" start="0.7" velocityStart="-0.4*i"/>
+    </include>
+  </for>
+</system>""",
+    "two.xml": """<system name="Two">
+  <for index="i" from="1" to="2">
+    <include file="mid.xml" as="d[i]">
+      <parameter name="c[2].m" start="3"/>
+      <parameter name="c[2].s" start="i"/>
+      <parameter name="c[2].k" start="9"/>
+      <input name="c[2].F" min="-3"/>
+      <coordinate name="c[2].x" start="0.8*i"/>
+    </include>
+  </for>
+</system>""",
+    "system.xml": """<system name="Three">
+  <include file="two.xml" as="e">
+    <constant name="d[1].c[1].N" value="4"/>
+    <parameter name="d[2].c[2].m" max="3.5"/>
+    <input name="d[2].c[2].F" start="0.4"/>
+    <coordinate name="d[2].c[2].x" velocityStart="-2"/>
+  </include>
+</system>""",
+}  # fmt: skip
+
+
+def test_the_outer_include_wins_attribute_by_attribute(tmp_path):
+    result = compile_all(tmp_path, LAYERS)
+    assert result.returncode == 0 and result.stderr == "", result.stderr
+    variables = {v.name: v for v in read_model_description(tmp_path / "out").modelVariables}
+    number = lambda text: None if text is None else float(text)
+    said = lambda name: tuple(number(getattr(variables[f"e.d{name}"], what)) for what in ("start", "min", "max"))
+    for cell, x, v, m, k, s, F in [
+        ("[1].c[1]", 0.7, -0.4, (1.5, 1, 4), None, None, (0.2, -1, 2)),
+        ("[1].c[2]", 0.8, -0.8, (3, 1, 4), 9, 1, (0.2, -3, 2)),
+        ("[2].c[1]", 0.7, -0.4, (1.5, 1, 4), None, None, (0.2, -1, 2)),
+        ("[2].c[2]", 1.6, -2, (3, 1, 3.5), 9, 2, (0.4, -3, 2)),
+    ]:
+        assert (said(f"{cell}.x")[0], said(f"{cell}.v")[0]) == (x, v)
+        assert said(f"{cell}.m") == m and said(f"{cell}.F") == F
+        assert said(f"{cell}.k") == (k, None, None) and said(f"{cell}.s") == (s, 0.5 if s else None, None)
+        assert (variables[f"e.d{cell}.s"].causality == "parameter") == (s is not None)
+    system = (tmp_path / "out" / "system.c").read_text()
+    assert "32.0" in system and "56.0" in system  # k = 8 N of the cells with N = 4 and N = 7
+
+
+def test_a_range_of_what_an_inner_include_calculates(tmp_path):
+    middle = '<system name="M"><parameter name="p" start="1"/><include file="part.xml" as="part"><parameter name="a" value="p"/></include></system>'
+    texts = {
+        "system.xml": '<system name="Around">\n<include file="middle.xml" as="middle">\n<parameter name="part.a" max="2"/></include></system>',
+        "middle.xml": middle,
+        "part.xml": '<system name="P"><parameter name="a" start="1"/></system>',
+    }
+    result = compile_all(tmp_path, texts)
+    assert result.returncode == 1 and "system.xml:3: a <parameter> with a value and a max; expected value" in result.stderr, result.stderr
 
 
 def test_a_part_that_changes_is_built_anew(tmp_path):

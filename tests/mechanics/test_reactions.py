@@ -71,7 +71,7 @@ def test_motion_does_not_know_of_displacements(name, tmp_path):
 
 def test_variables():
     by_name = {variable.name: variable for variable in fmu.description("DisplacedBearing").modelVariables}
-    for name, unit in [("stretch.force", "kg.m/s2"), ("turn.force", "kg.m2/(s2.rad)")]:
+    for name, unit in [("stretch.force", "N"), ("turn.force", "N.m")]:
         assert (by_name[name].causality, by_name[name].unit) == ("local", unit)
     assert not {"stretch", "px", "der(stretch)"} & set(by_name)
     assert {v.name: v.unit for v in fmu.description("DisplacedWire").modelVariables}["d.force"] is None
@@ -140,3 +140,49 @@ def test_page_shows_the_force(tmp_path):
     assert check(page) == page.count("<code>")
     section = page[page.index("Forces of reaction") :]
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
+
+
+# Power is force times velocity, and energy force times displacement: N, N.m and V.
+FORCES = {
+    "dx.force": "N", "dp.force": "N.m", "a.force": "N", "b.force": "N.m", "node.force": "kg.m2/(s3.A)", "blade.force": "N", "line.force": "N",
+    "rub.force": "N.m", "grip.force": "N", "y.max.force": "N", "wall.force": "N", "phi.max.force": "N.m", "loose.force": "N",
+}  # fmt: skip
+UNITS = """<system name="Units">
+  {output}
+  <parameter name="m" start="5" unit="kg"/><parameter name="l" start="1" unit="m"/><parameter name="L" start="2" unit="V.s/A"/>
+  <coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/><coordinate name="z" velocity="vz" unit="m"/>
+  <coordinate name="phi" velocity="om" unit="rad"/><coordinate name="a" velocity="va" unit="m" acceleration="0"/>
+  <coordinate name="b" velocity="vb" unit="rad" acceleration="0"/><coordinate name="q" velocity="i" unit="A.s"/><coordinate name="Q" velocity="I" unit="A.s"/>
+  <kinetic>L*(i^2 + I^2)/2</kinetic>
+  <displacement name="dx" unit="m"/><displacement name="dp" unit="rad"/>
+  <body name="skater" mass="m" x="x + dx" y="y" inertia="2*m*l^2" angle="phi + dp"/>
+  <particle mass="m" x="a" z="z"/><particle mass="m" x="sin(b)*l" y="cos(b)*l"/><particle name="ring" mass="m" x="4*l + z"/>
+  <constraint name="node" unit="A">i - I</constraint>
+  <constraint name="blade" unit="m/s">vx*sin(phi) - vy*cos(phi)</constraint>
+  <constraint name="line" unit="m">z - l/2</constraint>
+  <friction name="rub" coordinate="phi" force="0.2"/><friction name="grip" velocity="vx + vy" force="3"/>
+  <stop coordinate="y" max="5"/><stop coordinate="phi" max="50"/><contact name="wall" gap="6*l - x" unit="m"/>
+  <spring name="loose" from="base" to="ring" stiffness="3"/>
+  {output}
+</system>"""
+
+
+def test_units_of_forces(tmp_path):
+    (tmp_path / "system.xml").write_text(UNITS.format(output=""))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    text = (tmp_path / "out" / "modelDescription.xml").read_text()
+    units = {name: re.search(rf'name="{re.escape(name)}"[^>]*>\s*<Real [^>]*unit="([^"]*)"', text)[1] for name in FORCES}
+    assert units == FORCES
+
+
+@pytest.mark.parametrize("name", FORCES)
+def test_units_of_forces_in_expressions(tmp_path, name):
+    """Before and after the element; another unit is refused, after it in any case."""
+    unit = FORCES[name]
+    for before, after in ((f'<output name="o" unit="{unit}">{name}</output>', ""), ("", f'<output name="o" unit="{unit}">{name}</output>')):
+        (tmp_path / "system.xml").write_text(UNITS.replace("{output}", before, 1).format(output=after))
+        result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+        assert result.returncode == 0, result.stderr
+    (tmp_path / "system.xml").write_text(UNITS.replace("{output}", "", 1).format(output=f'<output name="o" unit="kg.m/s">{name}</output>'))
+    assert "unit mismatch: the output 'o'" in lagc("system.xml", "-o", "out", cwd=tmp_path).stderr

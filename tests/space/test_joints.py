@@ -21,6 +21,7 @@ TYPES = {
     "prismatic": "x y aboutX aboutY aboutZ",
     "planar": "z aboutX aboutY",
     "fixed": "x y z aboutX aboutY aboutZ",
+    "screw": "x y z aboutX aboutY",
 }  # fmt: skip
 MASS, GRAVITY, INERTIA = 2.0, np.array([0.3, -0.5, -9.81]), np.array([0.2, 0.3, 0.12])
 WALL, WALL_TURNED = np.array([0.1, -0.2, 0.4]), Rotation.from_euler("YX", [1.2, 0.4])
@@ -38,19 +39,32 @@ SYSTEM = """<system name="Hangs_{type}">
 </system>"""
 
 
-def start_of(kind):
+# Turns about x, y and z after which the joint fits too: axes that are held together point against each other.
+FLIPS = {
+    "universal": [(2.5, 0, 0)],
+    "revolute": [(np.pi, 0, 0)],
+    "cylindrical": [(np.pi, 0, 0)],
+    "prismatic": [(np.pi, 0, 0), (0, np.pi, 0), (0, 0, np.pi)],
+    "planar": [(np.pi, 0, 0)],
+    "fixed": [(np.pi, 0, 0), (0, np.pi, 0), (0, 0, np.pi)],
+    "screw": [(np.pi, 0, 0), (0, 0, np.pi)],
+}
+FLIPPED = [(kind, number) for kind, flips in FLIPS.items() for number in range(len(flips))]
+
+
+def start_of(kind, flip=(0, 0, 0)):
     """A state in which the joint fits, with a velocity that it allows: turned by angles and moved along what is free."""
     turns = {"spherical": (0.3, 0.5, -0.4), "universal": (0.4, 0.6, 0), "revolute": (0, 0, 0.8), "cylindrical": (0, 0, 0.8), "planar": (0, 0, 0.8)}
     moves = {"cylindrical": (0, 0, 0.3), "prismatic": (0, 0, 0.3), "planar": (0.2, -0.1, 0)}
-    relative = Rotation.from_euler("XYZ", turns.get(kind, (0, 0, 0)))
+    relative = Rotation.from_euler("XYZ", flip) * Rotation.from_euler("XYZ", turns.get(kind, (0, 0, 0)))
     body = WALL_TURNED * relative * GRIP_TURNED.inv()
     place = WALL + WALL_TURNED.apply(moves.get(kind, (0, 0, 0))) - body.apply(GRIP)
     d = body.as_quat()
     return dict(zip("xyzabcd", map(float, [*place, d[3], *d[:3]])))
 
 
-def text_of(kind):
-    start = start_of(kind)
+def text_of(kind, flip=(0, 0, 0)):
+    start = start_of(kind, flip)
     lines = [f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{start[q]!r}"/>' for q in "xyzabcd"]
     return SYSTEM.format(type=kind, coordinates="\n".join(lines))
 
@@ -60,19 +74,23 @@ def joints():
     about_x = {f"Turned_{kind}": text_about_x(kind) for kind in THREAD}
     screw = {"Hangs_screw": text_of("screw").replace('to="grip"', 'to="grip" pitch="0.5"')}
     idle = {f"Idle_{kind}": IDLE.format(type=kind, axis=axis).replace('"Idle"', f'"Idle_{kind}"') for kind, axis in {"pin": ' axis="y"', "revolute": ' axis="y"', "spherical": ""}.items()}
-    build_systems("joints", about_x | screw | idle | {f"Hangs_{kind}": text_of(kind) for kind in TYPES} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS, "Bushed": BUSHED} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
+    flipped = {f"Flipped_{kind}_{i}": text_of(kind, FLIPS[kind][i]).replace('name="Hangs', 'name="Flipped').replace(f'_{kind}"', f'_{kind}_{i}"', 1) for kind, i in FLIPPED}
+    flipped |= {name: text.replace('to="grip"', 'to="grip" pitch="0.5"') for name, text in flipped.items() if "screw" in name}
+    build_systems("joints", flipped | about_x | screw | idle | {f"Hangs_{kind}": text_of(kind) for kind in TYPES if kind != "screw"} | {"Pinned": PINNED, "Sprung": SPRUNG, "Screwed": SCREWED, "Upright": UPRIGHT, "Vectors": VECTORS, "Bushed": BUSHED} | {f"Rolls_{shape}": ROLLS.format(shape=shape, coordinates=ROLLING_COORDINATES) for shape in ("wheel", "sphere")})
 
 
 def simulate(name, outputs, **words):
     return fmpy.simulate_fmu(archive(name), output=outputs, output_interval=0.05, relative_tolerance=1e-10, **words)
 
 
-@pytest.mark.parametrize("kind", TYPES)
-def test_joint_obeys_newton_and_euler(joints, kind):
+@pytest.mark.parametrize("name", [*(f"Hangs_{kind}" for kind in TYPES), *(f"Flipped_{kind}_{number}" for kind, number in FLIPPED)])
+def test_joint_obeys_newton_and_euler(joints, name):
+    """The torque of a universal joint and of a screw's force is known by its part about or along one axis, and the geometry."""
+    system, kind = name, name.split("_")[1]
     held = TYPES[kind].split()
     forces = [f"hinge.{'torque' + name[-1] if 'about' in name else 'force' + name.upper()}" for name in held]
     names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
-    result = simulate(f"Hangs_{kind}", [*names, *forces, "totalEnergy"])
+    result = simulate(system, [*names, *forces, "totalEnergy"])
     assert np.ptp(result["totalEnergy"]) < 1e-8
     moved = 0.0
     for row in result:
@@ -80,13 +98,16 @@ def test_joint_obeys_newton_and_euler(joints, kind):
         place, grip = np.array([row[q] for q in "xyz"]), body.apply(GRIP)
         between, relative = WALL_TURNED.inv().apply(place + grip - WALL), (WALL_TURNED.inv() * body * GRIP_TURNED).as_matrix()
         misfit = dict(zip("xyz", between)) | {"aboutX": relative[1, 2], "aboutY": relative[0, 2], "aboutZ": relative[1, 0] if kind != "universal" else relative[0, 1]}
-        assert max(abs(misfit[name]) for name in held) < 1e-9
+        assert max(abs(misfit[name]) for name in held if (kind, name) != ("screw", "z")) < 1e-9
         force, torque = np.zeros(3), np.zeros(3)
         for name, of in zip(held, forces):
             along = -row[of] * WALL_TURNED.as_matrix()[:, "XYZ".index(name[-1].upper())]
             if kind == "universal" and name == "aboutZ":
                 # It turns about what stands across the x axis of the wall and the y axis of the grip.
-                along = -row[of] * np.cross(WALL_TURNED.as_matrix()[:, 0], (body * GRIP_TURNED).as_matrix()[:, 1])
+                across = np.cross(WALL_TURNED.as_matrix()[:, 0], (body * GRIP_TURNED).as_matrix()[:, 1])
+                along = -row[of] * across / (across @ WALL_TURNED.as_matrix()[:, 2])
+            if kind == "screw" and name == "z":
+                torque -= 0.5 / (2 * np.pi) * along
             if "about" in name:
                 torque += along
             else:

@@ -100,11 +100,20 @@ static void append_places(struct Interface *interface, const struct Model *model
   }
 }
 
+/* As a force or torque is written; other generalized forces in base units. */
+static const char *unit_of_force(struct Dimension dimension) {
+  static const char *const names[] = {"N", "N.m"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (dimension.known && dimension_agrees(dimension, unit_of(names[i]))) return names[i];
+  return unit_of_dimension(dimension);
+}
+
 static void append_reactions(struct Interface *interface, const struct Model *model,
                              const struct Equations *equations) {
   for (size_t i = 0; i < model->reactions.count; i++) {
     const struct Variable *source = &model->reactions.items[i];
-    append_result(interface, source->name, variable_unit(source), equations->reactions[i], source->description);
+    append_result(interface, source->name, unit_of_force(source->dimension), equations->reactions[i],
+                  source->description);
   }
 }
 
@@ -116,7 +125,7 @@ static Node whole_force(const struct Model *model, size_t constraint, Node force
   return force;
 }
 
-/* In the constraint's own unit, energy is force times it. */
+/* In the constraint's own unit, force times it is an energy, or a power where it is of velocities. */
 static void append_constraint_forces(struct Interface *interface, const struct Model *model,
                                      const struct Equations *equations) {
   for (size_t i = 0; i < model->constraints.count; i++) {
@@ -125,8 +134,8 @@ static void append_constraint_forces(struct Interface *interface, const struct M
     bool is_of_joint = constraint->force_name != NULL; /* whose description is that of the force */
     char *text = is_of_joint ? copy_text(description) : format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
-    const char *unit = is_of_joint ? (strcmp(constraint->unit, "1") == 0 ? "N.m" : "N")
-                                   : unit_of_dimension(constraint_force_dimension(constraint));
+    if (constraint->force_share != ZERO) force = multiply(model->graph, constraint->force_share, force);
+    const char *unit = unit_of_force(constraint_force_dimension(constraint));
     append_result(interface, constraint_force_name(constraint), unit, whole_force(model, i, force), text);
   }
 }

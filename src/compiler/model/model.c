@@ -69,8 +69,7 @@ char *constraint_force_name(const struct Variable *constraint) {
 }
 
 struct Dimension constraint_force_dimension(const struct Variable *constraint) {
-  bool is_slip = constraint->force_name != NULL && strcmp(constraint->unit, "m/s") == 0;
-  return dimension_multiply(unit_of("J"), is_slip ? unit_of("m") : constraint->dimension, -1.0);
+  return dimension_multiply(unit_of(constraint->is_of_velocities ? "W" : "J"), constraint->dimension, -1.0);
 }
 
 char *variable_unit(const struct Variable *variable) {

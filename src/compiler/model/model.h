@@ -19,6 +19,8 @@ struct Variable {
   Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
   char *force_name;                        /* of a constraint, where its force is not NAME.force; else NULL */
+  bool is_of_velocities;                   /* of a constraint, whose force times it is a power then, else an energy */
+  Node force_share;                        /* of a joint's constraint: what of its force has this name; ZERO for all */
   bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
   long line;
 };

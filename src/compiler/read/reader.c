@@ -55,16 +55,24 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   }
 }
 
+/* Before it is read, a constraint in a unit such as m/s or A may be one of velocities or not. */
+static struct Dimension early_force_dimension(const struct Variable *constraint) {
+  const double *exponent = constraint->dimension.exponent;
+  bool is_open = exponent[SECOND] < 0 || exponent[AMPERE] != 0;
+  return is_open && !constraint->is_of_velocities ? dimension_unknown : constraint_force_dimension(constraint);
+}
+
 /* Symbols for the forces of the constraints, which are numbered after the accelerations. */
 static void declare_constraint_forces(struct Model *model, struct Scope *scope) {
   model->unknowns.forces = allocate(model->constraints.count, sizeof *model->unknowns.forces);
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     char *name = constraint_force_name(constraint);
-    struct Dimension dimension = constraint_force_dimension(constraint);
+    struct Dimension dimension = early_force_dimension(constraint);
     int index = (int)(model->coordinates.count + i);
     Node node = model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
-    scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
+    if (constraint->force_share == ZERO)
+      scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
   }
 }
 

@@ -134,21 +134,30 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
   return known->document;
 }
 
-/* Notes what the <include> gives; what one further out gives to the same name comes before it. */
+/* Adds what an <include> gives to a name, behind what those further out give to it. */
+static void add_given(struct Reader *reader, const char *full_name, struct Given given) {
+  struct Given *added = allocate(1, sizeof *added), *last = names_find(reader->includes->given, full_name);
+  *added = given;
+  while (last != NULL && last->inner != NULL) last = last->inner;
+  if (last != NULL) last->inner = added;
+  else names_set(reader->includes->given, full_name, added);
+}
+
+static bool is_given_in(const struct Given *given, const struct Source *source) {
+  while (given != NULL && given->source != source) given = given->inner;
+  return given != NULL;
+}
+
 static void note_given(struct Reader *reader, const struct Source *source) {
   for (xmlNodePtr node = source->include->children; node != NULL; node = node->next) {
     char *text = node->type == XML_ELEMENT_NODE ? attribute(node, "name") : NULL;
     if (text == NULL) continue;
     char *name = parse_name(reader->scope, text, place_at(node, "name", 0), true);
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
-    const struct Given *other = names_find(reader->includes->given, full_name);
-    if (other != NULL && other->source == source->outer)
+    if (is_given_in(names_find(reader->includes->given, full_name), source->outer))
       report_at(reader, node, "'%s' is given twice; expected it once", name);
-    if (other == NULL && name != NULL) {
-      struct Given *given = allocate(1, sizeof *given);
-      *given = (struct Given){.node = node, .source = source->outer, .target = source};
-      names_set(reader->includes->given, full_name, given);
-    }
+    else if (name != NULL)
+      add_given(reader, full_name, (struct Given){.node = node, .source = source->outer, .target = source});
   }
 }
 
@@ -195,46 +204,68 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   return source != NULL && source->root != NULL ? source : NULL;
 }
 
-const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name) {
-  struct Given *given = name != NULL ? names_find(reader->includes->given, name) : NULL;
-  if (given == NULL) return NULL;
-  const char *element = (const char *)node->name, *as = (const char *)given->node->name;
-  if (!given->is_used && strcmp(element, as) != 0) {
+/* Whether what is given to this name is for the kind of element that it is; reports where it is not, once. */
+static bool check_kind(struct Reader *reader, struct Given *given, const char *element, const char *name) {
+  const char *as = (const char *)given->node->name;
+  bool is_right = strcmp(element, as) == 0;
+  if (!given->is_used && !is_right) {
     struct Source *present = source_enter(reader, given->source);
     report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
                  name + strlen(given->target->prefix), as, given->target->file, element);
     source_enter(reader, present);
   }
   given->is_used = true;
-  return strcmp(element, as) == 0 ? given : NULL;
+  return is_right;
 }
 
-bool is_given(const struct Given *given, const char *attribute) {
-  return given != NULL && has_attribute(given->node, attribute);
+const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Given *outermost = name != NULL ? names_find(reader->includes->given, name) : NULL;
+  bool is_right = true;
+  for (struct Given *given = outermost; given != NULL; given = given->inner)
+    is_right &= check_kind(reader, given, (const char *)node->name, name);
+  return is_right ? outermost : NULL;
+}
+
+const struct Given *giver_of(const struct Given *given, const char *attribute) {
+  while (given != NULL && !has_attribute(given->node, attribute)) given = given->inner;
+  return given;
+}
+
+const struct Given *giver_of_value(const struct Given *given) {
+  while (given != NULL && !has_attribute(given->node, "value") && !has_attribute(given->node, "start"))
+    given = given->inner;
+  return given != NULL && has_attribute(given->node, "value") ? given : NULL;
+}
+
+struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node) {
+  if (giver != NULL) *node = giver->node;
+  return source_enter(reader, giver != NULL ? giver->source : reader->source);
 }
 
 bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
                             double *value) {
-  if (!is_given(given, name)) return number_attribute(reader, node, name, value);
-  struct Source *present = source_enter(reader, given->source);
-  bool right = number_attribute(reader, given->node, name, value);
+  struct Source *present = enter_giver(reader, giver_of(given, name), &node);
+  bool right = number_attribute(reader, node, name, value);
   source_enter(reader, present);
   return right;
+}
+
+static void report_unused(struct Reader *reader, const struct Given *given, const char *full_name) {
+  struct Source *present = source_enter(reader, given->source);
+  const char *name = full_name + strlen(given->target->prefix);
+  reader->scope->prefix = given->target->prefix;
+  const char *similar = scope_similar_name(reader->scope, name);
+  report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
+               (const char *)given->node->name, name, similar != NULL ? "did you mean '" : "expected one of its names",
+               similar != NULL ? similar : "", similar != NULL ? "'?" : "");
+  source_enter(reader, present);
 }
 
 void check_given(struct Reader *reader) {
   const struct Names *names = reader->includes->given;
   for (size_t i = 0; i < names->capacity; i++) {
     const struct Given *given = names->places[i].text != NULL ? names->places[i].meaning : NULL;
-    if (given == NULL || given->is_used) continue;
-    struct Source *present = source_enter(reader, given->source);
-    const char *name = names->places[i].text + strlen(given->target->prefix);
-    reader->scope->prefix = given->target->prefix;
-    const char *similar = scope_similar_name(reader->scope, name);
-    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
-                 (const char *)given->node->name, name,
-                 similar != NULL ? "did you mean '" : "expected one of its names", similar != NULL ? similar : "",
-                 similar != NULL ? "'?" : "");
-    source_enter(reader, present);
+    for (; given != NULL; given = given->inner)
+      if (!given->is_used) report_unused(reader, given, names->places[i].text);
   }
 }

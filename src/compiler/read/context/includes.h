@@ -19,11 +19,12 @@ struct Source {
   size_t body_count;    /* of those that were declared */
 };
 
-/* What an <include> gives to something that the file declares. */
+/* What the <include>s around a declaration give to it: a list that begins with the outermost one. */
 struct Given {
   xmlNodePtr node;             /* the element in the <include> */
   struct Source *source;       /* in which it stands */
   const struct Source *target; /* the file that it gives to */
+  struct Given *inner;         /* of the next <include> further in that gives something; NULL for none */
   bool is_used;
 };
 
@@ -43,10 +44,16 @@ char *path_beside(const struct Reader *reader, const char *file);
 /* What is given to the element of this full name; NULL for nothing. Reports where another kind of element is given. */
 const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Whether something is given in this attribute. */
-bool is_given(const struct Given *given, const char *attribute);
+/* The outermost that gives this attribute; NULL for none. */
+const struct Given *giver_of(const struct Given *given, const char *attribute);
 
-/* As number_attribute(), of what is given or else of the node itself. */
+/* The outermost that gives a value, if none further out gives a start; NULL for none. */
+const struct Given *giver_of_value(const struct Given *given);
+
+/* Enters the file of a giver and sets the node to its element; stays where there is no giver. Returns the file before. */
+struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node);
+
+/* As number_attribute(), of the outermost that gives it or else of the node itself. */
 bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
                             double *value);
 

@@ -18,6 +18,8 @@ void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Variable *constraint = &model->constraints.items[reader->present->number];
   struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
   constraint->node = value.node;
+  constraint->is_of_velocities = graph_depends_on(model->graph, value.node, VELOCITY);
+  scope_set_dimension(reader->scope, constraint_force_name(constraint), constraint_force_dimension(constraint));
   if (constraint->unit != NULL) require_unit(reader, constraint->line, "the constraint", value, constraint->dimension);
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }

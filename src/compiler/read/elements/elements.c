@@ -25,8 +25,7 @@
 /* The value, which an <include> may give, with the unit that it has by itself. */
 static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given,
                                 struct Quantity *value) {
-  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
-  if (is_given(given, "value")) node = given->node;
+  struct Source *present = enter_giver(reader, giver_of(given, "value"), &node);
   char *text = attribute(node, "value");
   bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place_at(node, "value", 0), value);
   source_enter(reader, present);
@@ -215,7 +214,7 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
 static void read_input(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = common_attributes(reader, node);
   const struct Given *given = given_for(reader, node, variable.name);
-  if (is_given(given, "value")) { /* an expression like a definition */
+  if (giver_of_value(given) != NULL) { /* an expression like a definition */
     check_calculated(reader, given, node);
     return;
   }
@@ -282,7 +281,7 @@ static const struct Element elements[] = {
     {"friction", declare_friction, NULL, NULL, read_friction, false},
     {"gravity", NULL, NULL, NULL, read_gravity, false},
     {"input", read_input, collect_value, NULL, NULL, false},
-    {"joint", declare_joint, NULL, NULL, read_joint, false},
+    {"joint", declare_joint, collect_joint, NULL, read_joint, false},
     {"kinetic", NULL, NULL, NULL, read_kinetic, false},
     {"mode", declare_mode, NULL, NULL, NULL, false},
     {"output", NULL, NULL, NULL, read_output, false},

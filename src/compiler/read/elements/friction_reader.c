@@ -86,7 +86,9 @@ static void set_velocity(struct Reader *reader, xmlNodePtr node, struct Friction
 static void hold_velocity(struct Reader *reader, const struct Friction *friction, struct Dimension unit) {
   struct Graph *graph = reader->model->graph;
   struct Variable *constraint = &reader->model->constraints.items[friction->constraint];
-  constraint->dimension = dimension_multiply(unit_of("J"), unit, -1.0);
+  constraint->is_of_velocities = true;
+  constraint->dimension = dimension_multiply(unit_of("W"), unit, -1.0);
+  scope_set_dimension(reader->scope, constraint_force_name(constraint), unit);
   constraint->node = function(graph, GATE, friction_sticks(graph, friction), friction->velocity);
   if (friction->velocity != ZERO) check_constraint(reader, constraint);
 }

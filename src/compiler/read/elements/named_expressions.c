@@ -7,11 +7,12 @@
 #include "read/names/definitions.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
+#include "read/space/joints.h"
 #include "read/space/springs.h"
 
 bool has_value(xmlNodePtr node, const struct Given *given) {
   if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
-  return is_given(given, "value") || (!is_given(given, "start") && has_attribute(node, "value"));
+  return giver_of_value(given) != NULL || (giver_of(given, "start") == NULL && has_attribute(node, "value"));
 }
 
 /* The value of a definition, parameter or input, in its unit where it gives one. */
@@ -49,6 +50,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
     value = read_spatial(reader, node, name, expression->attribute);
   else if (is_element(node, "spring")) value = read_spring_value(reader, node, expression->attribute);
+  else if (is_element(node, "joint")) value = read_joint_force(reader, node, name);
   else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
   else if (is_parameter || is_input)
     expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
@@ -94,8 +96,7 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
   const struct Given *given = is_definition ? NULL : given_for(reader, node, name);
   if (!is_definition && !has_value(node, given)) return;
   if (scope_find(reader->scope, name) == NULL) {
-    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source,
-                                         is_given(given, "value") ? given : NULL};
+    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source, giver_of_value(given)};
     definitions_add(reader->definitions, name, &expression);
     return;
   }

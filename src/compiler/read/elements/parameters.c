@@ -19,18 +19,26 @@ static enum VariableType type_of(xmlNodePtr node) {
   return type;
 }
 
-/* A given value goes before the file's start, min and max. */
-void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
+/* Reports what an element with a value, or one that gives a range to it from further out, says of what is set. */
+static void check_value_alone(struct Reader *reader, xmlNodePtr node) {
   static const char *const others[] = {"start", "min", "max", "type"};
-  struct Source *present = source_enter(reader, is_given(given, "value") ? given->source : reader->source);
-  if (is_given(given, "value")) node = given->node;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (has_attribute(node, others[i]))
       report_at(reader, node,
                 "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
                 "others, or start=\"...\" for one that is set",
                 (const char *)node->name, others[i]);
-  source_enter(reader, present);
+}
+
+/* A given value goes before the start, min and max of the file and of <include>s further in. */
+void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
+  const struct Given *giver = giver_of_value(given), *inner = giver != NULL ? giver->inner : NULL;
+  for (; given != inner; given = given->inner) {
+    struct Source *present = source_enter(reader, given->source);
+    check_value_alone(reader, given->node);
+    source_enter(reader, present);
+  }
+  if (giver == NULL) check_value_alone(reader, node);
 }
 
 static bool is_whole(double number) {
@@ -71,8 +79,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
 
 /* The start value in an attribute, that an <include> may give. */
 static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable *variable) {
-  struct Source *present = source_enter(reader, is_given(given, "start") ? given->source : reader->source);
-  if (is_given(given, "start")) node = given->node;
+  struct Source *present = enter_giver(reader, giver_of(given, "start"), &node);
   char *text = attribute(node, "start");
   if (text != NULL) read_value(reader, node, "start", text, variable);
   source_enter(reader, present);
@@ -105,7 +112,7 @@ static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, cons
   struct Variable variable = variable_of(reader, node);
   variable.name = name;
   const struct Given *given = given_for(reader, node, name);
-  if (is_given(given, "value"))
+  if (giver_of_value(given) != NULL)
     report_at(reader, node,
               "'%s' is one of a list of values, to which an <include> can give a start; expected start in place of "
               "value",
@@ -148,7 +155,7 @@ void read_parameter(struct Reader *reader, xmlNodePtr node) {
   variable.start = 0.0;
   read_start(reader, node, given, &variable);
   declare(reader, node, given, variable);
-  if (!has_attribute(node, "start") && !is_given(given, "start"))
+  if (!has_attribute(node, "start") && giver_of(given, "start") == NULL)
     report_at(reader, node,
               "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
               "follows from others, or values=\"...\" for name[1], name[2], ...");

@@ -7,8 +7,7 @@
 static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *attribute,
                        struct Variable *variable) {
   struct Quantity value = {.node = ZERO, .literal = true};
-  struct Source *present = source_enter(reader, is_given(given, attribute) ? given->source : reader->source);
-  if (is_given(given, attribute)) node = given->node;
+  struct Source *present = enter_giver(reader, giver_of(given, attribute), &node);
   expression_attribute(reader, node, attribute, IN_MASS, &value);
   require_unit(reader, xmlGetLineNo(node), "the start value", value, variable->dimension);
   variable->start_expression = value.node;

@@ -244,7 +244,9 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     const struct Variable *coordinate = &reader->model->coordinates.items[symbol->index];
     if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
     struct Switches *switches = &reader->model->switches;
-    reader->model->constraints.items[switches->contacts[number].constraint].dimension = coordinate->dimension;
+    struct Variable *constraint = &reader->model->constraints.items[switches->contacts[number].constraint];
+    constraint->dimension = coordinate->dimension;
+    scope_set_dimension(reader->scope, constraint_force_name(constraint), constraint_force_dimension(constraint));
     room = end == 0 ? negate(graph, limit.node) : add(graph, room, limit.node);
     Node way = subtract(graph, symbol->node, limit.node);
     set_contact(reader, node, number++, end == 0 ? way : negate(graph, way));

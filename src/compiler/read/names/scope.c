@@ -50,6 +50,10 @@ bool scope_define(struct Scope *scope, const char *name, struct Quantity quantit
   return true;
 }
 
+void scope_set_dimension(struct Scope *scope, const char *name, struct Dimension dimension) {
+  find_entry(scope, name)->quantity.dimension = dimension;
+}
+
 void scope_set_number(struct Scope *scope, const char *name, double value) {
   struct Quantity number = {.node = graph_constant(scope->graph, value), .dimension = dimension_one, .literal = true};
   add_entry(scope, name, number, 0);

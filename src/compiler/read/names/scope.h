@@ -34,6 +34,9 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
 /* Makes a name known. Where it is taken already, reports this and returns false. */
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line);
 
+/* Gives a known name the unit that it turns out to have. */
+void scope_set_dimension(struct Scope *scope, const char *name, struct Dimension dimension);
+
 /* A compile-time number; a second definition replaces the first. */
 void scope_set_number(struct Scope *scope, const char *name, double value);
 

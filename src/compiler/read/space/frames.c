@@ -256,6 +256,11 @@ bool find_spatial_point(const struct Reader *reader, const char *name, struct Sp
   return known != NULL || frame != NULL;
 }
 
+bool waits_for_place(struct Reader *reader, const char *name) {
+  char *frame = whole_name(true, name), *point = whole_name(false, name);
+  return definitions_wait_for(reader->definitions, frame) || definitions_wait_for(reader->definitions, point);
+}
+
 static struct Vector acceleration_of(struct Scope *scope, const struct Pose *pose, struct Vector velocity) {
   struct Graph *graph = scope->graph;
   struct Vector turning = vector_cross(graph, pose->angular_velocity, velocity);

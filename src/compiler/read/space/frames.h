@@ -40,6 +40,9 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name);
 /* What was read under the name: a point, body or particle in a frame, or the origin of a frame; false for none. */
 bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point);
 
+/* Whether the present definition waits for the frame, point or body in a frame of this name, which is not read yet. */
+bool waits_for_place(struct Reader *reader, const char *name);
+
 /* The frame of this name, also that of a planar body, or of one that is placed in a frame; NULL where there is none. */
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name);
 

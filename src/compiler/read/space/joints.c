@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
+#include "read/names/definitions.h"
 #include "read/space/rolling.h"
 #include "read/space/sides.h"
 #include "read/space/vanishing.h"
@@ -52,6 +53,13 @@ static bool is_of_force(enum Held held) {
   return words[held].force[0] == 'f';
 }
 
+/* Whether the constraint's force is along or about an axis of `from` up to a factor alone, see share_of(). */
+static bool has_share(enum Held held) {
+  return !is_of_force(held) || held == THREAD;
+}
+
+static const char *const sides[] = {"from", "to"};
+
 /* By how many places the axes are exchanged in a circle, so that z, of which the types tell, is the one that the joint names. */
 static int shift_of(xmlNodePtr node) {
   char *axis = attribute(node, "axis");
@@ -68,6 +76,10 @@ static char *name_of(xmlNodePtr node, enum Held held) {
   int axis = axis_of(node, held);
   if (held == THREAD) return copy_text(name);
   return *name == '\0' ? copy_text(axes[axis]) : format_text("%s%c", name, "XYZ"[axis]);
+}
+
+static char *force_name_of(const char *joint, xmlNodePtr node, enum Held held) {
+  return format_text("%s.%s%c", joint, words[held].force, "XYZ"[axis_of(node, held)]);
 }
 
 /* The side with its axes exchanged. */
@@ -93,7 +105,6 @@ static char *description_of(xmlNodePtr node, const char *joint, enum Held held) 
   const char *from = attribute(node, "from");
   char *what =
       format_text("%s of %s on %s at %s", is_of_force(held) ? "force" : "torque", attribute(node, "to"), from, joint);
-  if (held == CROSS) return format_text("%s, about the axis across both of its own", what);
   return format_text("%s, %s the %s axis of %s", what, is_of_force(held) ? "along" : "about", axes[axis_of(node, held)],
                      from);
 }
@@ -134,7 +145,9 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
     struct Variable constraint =
         variable_create(format_text("%s.%s", joint.name, name_of(node, *held)), description_of(node, joint.name, *held),
                         scope_line(reader->scope, joint.line));
-    constraint.force_name = format_text("%s.%s%c", joint.name, words[*held].force, "XYZ"[axis_of(node, *held)]);
+    constraint.force_name = force_name_of(joint.name, node, *held);
+    constraint.is_of_velocities = *held == SLIP_X || *held == SLIP_Y;
+    if (has_share(*held)) constraint.force_share = ONE; /* until it is read */
     constraint.unit = copy_text(words[*held].unit);
     constraint.dimension = unit_of(constraint.unit);
     append_variable(&reader->model->constraints, constraint);
@@ -161,6 +174,55 @@ static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held
   default: break;
   }
   return place_along(graph, from, to, (int)held);
+}
+
+/*
+ * How much of the constraint's force is along or about the axis of `from`. Axes that are held together may point against
+ * each other, which turns the sign; a universal joint's torque is about what is across both of its own axes.
+ */
+static Node share_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
+                     const struct Side *to) {
+  enum { X, Y, Z };
+  struct Graph *graph = reader->model->graph;
+  switch (held) {
+  case THREAD: return slope_of_thread(reader, node, from, to);
+  case ABOUT_Z: return product_of_axes(graph, from, X, to, X);
+  case CROSS: return product_of_axes(graph, from, Y, to, Y);
+  default: return product_of_axes(graph, from, Z, to, Z);
+  }
+}
+
+void collect_joint(struct Reader *reader, xmlNodePtr node) {
+  const struct JointType *type = type_of(node);
+  char *name = name_attribute(reader, node, "name");
+  if (type == NULL || name == NULL) return;
+  for (const enum Held *held = type->held; *held != NOTHING; held++)
+    if (has_share(*held))
+      definitions_add(reader->definitions, force_name_of(name, node, *held),
+                      &(struct NamedExpression){node, "force", reader->source, NULL});
+}
+
+/* What the type holds by the force of this name. */
+static enum Held held_by(xmlNodePtr node, const char *force_name) {
+  char *joint = format_text("%.*s", (int)(strrchr(force_name, '.') - force_name), force_name);
+  const enum Held *held = type_of(node)->held;
+  while (strcmp(force_name_of(joint, node, *held), force_name) != 0) held++;
+  return *held;
+}
+
+struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Model *model = reader->model;
+  struct Side side[2];
+  size_t i = 0;
+  bool is_right = true;
+  for (int end = 0; end < 2; end++) is_right &= read_side_early(reader, node, sides[end], &side[end]);
+  if (!is_right) return (struct Quantity){.node = ZERO};
+  for (int end = 0; end < 2; end++) exchange_axes(&side[end], shift_of(node));
+  while (strcmp(constraint_force_name(&model->constraints.items[i]), name) != 0) i++;
+  struct Variable *constraint = &model->constraints.items[i];
+  constraint->force_share = share_of(reader, node, held_by(node, name), &side[0], &side[1]);
+  return (struct Quantity){.node = multiply(model->graph, constraint->force_share, model->unknowns.forces[i]),
+                           .dimension = constraint_force_dimension(constraint)};
 }
 
 /* Whether nothing moves what a constraint of the joint holds, and it is held where it is. */
@@ -205,8 +267,8 @@ void read_joint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   const struct JointType *type = type_of(node);
   struct Side from, to;
-  bool is_right = read_side(reader, node, "from", &from);
-  is_right &= read_side(reader, node, "to", &to);
+  bool is_right = read_side(reader, node, sides[0], &from);
+  is_right &= read_side(reader, node, sides[1], &to);
   if (is_right && attribute_is(node, "type", "rolling")) is_right = can_roll(reader, node, &to);
   if (type == NULL || !is_right) return;
   exchange_axes(&from, shift_of(node));

@@ -9,5 +9,11 @@
 /* Declares the constraints of the joint: their forces are NAME.forceX, ..., NAME.torqueX, .... */
 void declare_joint(struct Reader *reader, xmlNodePtr node);
 
+/* Collects the forces and torques that are a share of a constraint's force, which the axes of both sides tell. */
+void collect_joint(struct Reader *reader, xmlNodePtr node);
+
+/* One of these by its name. */
+struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const char *name);
+
 /* Gives them their expressions, when all frames are known. */
 void read_joint(struct Reader *reader, xmlNodePtr node);

@@ -16,19 +16,33 @@ static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name
   return length.node == ZERO ? ONE : length.node;
 }
 
-/*
- * pitch/(2 pi) sin(2 pi z/pitch - angle) with the cosine and the sine of the angle from the axes: it needs no angle, which
- * jumps after a turn, and its slope along z is 1.
- */
-Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+/* The lead, and the sine and cosine of 2 pi z/pitch - angle; those of the angle are products of axes. */
+struct Thread {
+  Node lead, sine, cosine;
+};
+
+static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const struct Side *from,
+                                 const struct Side *to) {
   struct Graph *graph = reader->model->graph;
   Node lead = scale(graph, 0.5 / M_PI, read_length(reader, node, "pitch"));
-  Node moved = place_along(graph, from, to, Z);
-  Node fitting = divide(graph, moved, lead);
-  Node cosine = product_of_axes(graph, from, X, to, X), sine = product_of_axes(graph, from, Y, to, X);
-  Node forth = multiply(graph, function(graph, SINE, fitting, ZERO), cosine);
-  Node back = multiply(graph, function(graph, COSINE, fitting, ZERO), sine);
-  return multiply(graph, lead, subtract(graph, forth, back));
+  Node fitting = divide(graph, place_along(graph, from, to, Z), lead);
+  Node sine = function(graph, SINE, fitting, ZERO), cosine = function(graph, COSINE, fitting, ZERO);
+  Node along = product_of_axes(graph, from, X, to, X), across = product_of_axes(graph, from, Y, to, X);
+  return (struct Thread){
+      .lead = lead,
+      .sine = subtract(graph, multiply(graph, sine, along), multiply(graph, cosine, across)),
+      .cosine = add(graph, multiply(graph, cosine, along), multiply(graph, sine, across)),
+  };
+}
+
+/* pitch/(2 pi) sin(2 pi z/pitch - angle): it needs no angle, which jumps after a turn. */
+Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+  struct Thread thread = read_thread(reader, node, from, to);
+  return multiply(reader->model->graph, thread.lead, thread.sine);
+}
+
+Node slope_of_thread(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+  return read_thread(reader, node, from, to).cosine;
 }
 
 bool can_roll(struct Reader *reader, xmlNodePtr node, const struct Side *to) {

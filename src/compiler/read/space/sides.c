@@ -17,10 +17,14 @@ static const char *meant_side(const struct Reader *reader, const char *name) {
                               : "expected a <frame>, <body>, <point> or <particle>, or base";
 }
 
+/* The full name of what the attribute names; NULL after reporting that it is none. */
+static char *side_name(struct Reader *reader, xmlNodePtr node, const char *name) {
+  return attribute_is(node, name, "base") ? copy_text("base") : reference_attribute(reader, node, name);
+}
+
 bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
-  char *full_name = reference_attribute(reader, node, name);
+  char *full_name = side_name(reader, node, name);
   if (full_name == NULL) return false;
-  if (attribute_is(node, name, "base")) full_name = copy_text("base");
   struct SpatialPoint point;
   const struct Body *body = find_body(reader, full_name);
   const struct ReferenceFrame *frame = &reader->model->mechanism.frames[0];
@@ -46,6 +50,15 @@ bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct 
   if (!read_displaced_side(reader, node, name, side)) return false;
   side->position = vector_without_displacements(reader, line, what, side->position);
   side->rotation = matrix_without_displacements(reader, line, what, side->rotation);
+  return true;
+}
+
+bool read_side_early(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
+  char *full_name = side_name(reader, node, name);
+  struct SpatialPoint point;
+  if (full_name != NULL && waits_for_place(reader, full_name)) return false;
+  if (full_name != NULL && find_spatial_point(reader, full_name, &point)) return read_side(reader, node, name, side);
+  *side = (struct Side){.rotation = reader->model->mechanism.frames[0].pose.rotation};
   return true;
 }
 

@@ -16,6 +16,9 @@ bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *nam
 /* The same where nothing is displaced. */
 bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
+/* The same while definitions are read, of what is in a frame; else the base's axes. False while its place is waited for. */
+bool read_side_early(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
+
 /* Its angular velocity along the base's axes. */
 struct Vector angular_velocity_of_side(struct Reader *reader, xmlNodePtr node, const struct Side *side);
 
