@@ -5,6 +5,7 @@
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
 #include "events/indicators.h"
+#include "instance/held.h"
 
 enum { FLIP_LIMIT = 8 };
 
@@ -37,6 +38,14 @@ static bool passes(const struct Settlement *settlement, size_t branch) {
   return is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
 }
 
+/* Whether a friction has come to stick in this settlement: an indicator at 0 without a rate then rests there, as a velocity does. */
+static bool has_stuck(const struct Settlement *settlement) {
+  bool has = false;
+  for (size_t i = 0; i < settlement->switches->friction_count; i++)
+    has |= settlement->began[i] != 0.0 && friction_holds(settlement->instance, i);
+  return has;
+}
+
 /* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
 static double branch_mode(const struct Settlement *settlement, size_t branch) {
   size_t rate = branch_rate_place(settlement->switches, branch);
@@ -50,8 +59,9 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   if (sign != 0.0) return sign;
   if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
   /* What was set to rest at 0 is there, wherever it comes from. */
+  bool rests = !settlement->switches->branches[branch].is_side && has_stuck(settlement);
   bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
-  return was_set ? 0.0 : mode;
+  return was_set || rests ? 0.0 : mode;
 }
 
 /* Where neither side of a zero leads away from it. */

@@ -1,6 +1,7 @@
 /* <friction>: along a velocity, or in the plane of two. */
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
+#include "model/held_velocities.h"
 #include "read/context/constraint_checks.h"
 #include "read/elements/switching_reader.h"
 #include "read/space/forces.h"
@@ -126,7 +127,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node) {
 void complete_friction_forces(struct Reader *reader) {
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
-  struct Switches *switches = &model->switches;
+  const struct Switches *switches = &model->switches;
   if (switches->friction_count == 0) return;
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -134,12 +135,5 @@ void complete_friction_forces(struct Reader *reader) {
     Node force = model->unknowns.forces[friction->constraint];
     replacements[graph->vertices[force].left] = friction_force(graph, friction, force);
   }
-  for (size_t i = 0; i < switches->branch_count; i++)
-    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
-  for (size_t i = 0; i < switches->event_count; i++)
-    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
-      substitute(graph, &switches->events[i].assignments[j].value, 1, replacements,
-                 &switches->events[i].assignments[j].value);
-  for (size_t i = 0; i < model->outputs.count; i++)
-    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  substitute_in_observers(model, replacements);
 }

@@ -1,0 +1,147 @@
+#include "model/held_velocities.h"
+
+#include <stdbool.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/polynomials/rational.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+
+enum { OF_VELOCITIES = 1u << VELOCITY };
+
+void substitute_in_observers(struct Model *model, const Node *replacements) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
+      Node *value = &switches->events[i].assignments[j].value;
+      substitute(graph, value, 1, replacements, value);
+    }
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+}
+
+/* Positive unless friction holds its velocity at 0. */
+static Node is_free(struct Graph *graph, const struct Friction *friction) {
+  return power_number(graph, friction->told, 2.0);
+}
+
+/* The same of another velocity, which follows from that one unless its coefficient is 0. */
+static Node is_free_beside(struct Graph *graph, Node is_free, Node coefficient) {
+  Node sign = function(graph, SIGN, coefficient, ZERO);
+  return add(graph, is_free, subtract(graph, ONE, power_number(graph, sign, 2.0)));
+}
+
+/* --- Velocities of coordinates --- */
+
+/* The velocity v of a friction along c v, with its coefficient. Its index, or the number of coordinates where there is none. */
+static size_t coordinate_of(const struct Model *model, const struct Friction *friction, Node *coefficient) {
+  struct Graph *graph = model->graph;
+  const struct Gradient gradient = gradient_by_kinds(graph, friction->velocity, OF_VELOCITIES);
+  if (gradient.count != 1) return model->coordinates.count;
+  *coefficient = gradient.values[0];
+  Node rest = subtract(graph, friction->velocity, multiply(graph, *coefficient, gradient.symbols[0]));
+  bool is_alone = simplify_fraction(graph, rest) == ZERO;
+  return is_alone ? (size_t)graph_symbol_of(graph, gradient.symbols[0])->index : model->coordinates.count;
+}
+
+/* A constraint a x + b y = constant between two coordinates, or a x + b y = 0 between their velocities, with fixed a and b. */
+struct Gear {
+  size_t coordinate[2];
+  Node coefficient[2];
+};
+
+static bool read_gear(const struct Model *model, Node constraint, struct Gear *gear) {
+  struct Graph *graph = model->graph;
+  const unsigned others = 1u << TIME | 1u << INPUT | 1u << MODE;
+  if ((graph->vertices[constraint].kinds & others) != 0) return false;
+  bool is_of_velocities = graph_depends_on(graph, constraint, VELOCITY);
+  if (is_of_velocities && graph_depends_on(graph, constraint, COORDINATE)) return false;
+  const struct Gradient gradient = gradient_by_kinds(graph, constraint, OF_VELOCITIES | 1u << COORDINATE);
+  if (gradient.count != 2) return false;
+  Node rest = constraint;
+  for (int i = 0; i < 2; i++) {
+    gear->coordinate[i] = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
+    gear->coefficient[i] = gradient.values[i];
+    if (!graph_is_constant_in_time(graph, gradient.values[i])) return false;
+    rest = subtract(graph, rest, multiply(graph, gradient.values[i], gradient.symbols[i]));
+  }
+  return !is_of_velocities || simplify_fraction(graph, rest) == ZERO;
+}
+
+/* The gears of the model; their number is that of the list. */
+static struct Gear *read_gears(const struct Model *model, size_t *count) {
+  struct Gear *gears = allocate(model->constraints.count, sizeof *gears);
+  *count = 0;
+  for (size_t i = 0; i < model->constraints.count; i++)
+    if (read_gear(model, model->constraints.items[i].node, &gears[*count])) (*count)++;
+  return gears;
+}
+
+/* Puts 0 for a velocity while friction holds it, and for those to which gears pass that on. is_held: of each coordinate. */
+static void hold_coordinate(const struct Model *model, const struct Gear *gears, size_t gear_count, size_t coordinate,
+                            Node is_free, bool *is_held, Node *replacements) {
+  struct Graph *graph = model->graph;
+  Node *shown = &replacements[graph->vertices[model->velocities.items[coordinate].node].left];
+  *shown = function(graph, GATE, is_free, *shown);
+  is_held[coordinate] = true;
+  for (size_t i = 0; i < gear_count; i++)
+    for (int side = 0; side < 2; side++) {
+      size_t other = gears[i].coordinate[1 - side];
+      if (gears[i].coordinate[side] != coordinate || is_held[other]) continue;
+      Node is_other_free = is_free_beside(graph, is_free, gears[i].coefficient[1 - side]);
+      hold_coordinate(model, gears, gear_count, other, is_other_free, is_held, replacements);
+    }
+}
+
+static void hold_coordinates(struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  size_t gear_count, n = model->coordinates.count;
+  const struct Gear *gears = read_gears(model, &gear_count);
+  Node *replacements = own_symbols(model->graph), coefficient = ZERO;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t coordinate = coordinate_of(model, &switches->frictions[i], &coefficient);
+    if (coordinate == n) continue;
+    Node is_unheld = is_free_beside(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
+    bool *is_held = allocate(n, sizeof *is_held);
+    hold_coordinate(model, gears, gear_count, coordinate, is_unheld, is_held, replacements);
+  }
+  substitute_in_observers(model, replacements);
+}
+
+/* --- Other velocities, such as v - vBelt --- */
+
+/* What a value is where f = 0, if it is c f and something without velocities; else false. */
+static bool is_along(struct Graph *graph, Node value, Node f, Node *held) {
+  const struct Gradient by = gradient_by_kinds(graph, f, OF_VELOCITIES),
+                        of = gradient_by_kinds(graph, value, OF_VELOCITIES);
+  bool are_same = of.count == by.count && of.count > 0;
+  for (size_t i = 0; i < of.count && are_same; i++) are_same = of.symbols[i] == by.symbols[i];
+  if (!are_same) return false;
+  Node ratio = divide(graph, of.values[0], by.values[0]);
+  *held = simplify_fraction(graph, subtract(graph, value, multiply(graph, ratio, f)));
+  return !graph_depends_on(graph, *held, VELOCITY);
+}
+
+static void hold_indicators(struct Model *model) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    Node coefficient = ZERO;
+    bool is_of_coordinate = coordinate_of(model, friction, &coefficient) < model->coordinates.count;
+    for (size_t j = 0; j < switches->branch_count && !is_of_coordinate; j++) {
+      Node *indicator = &switches->branches[j].indicator, held;
+      if (is_along(graph, *indicator, friction->velocity, &held))
+        *indicator = choose_node(graph, is_free(graph, friction), *indicator, held);
+    }
+  }
+}
+
+void hold_velocities(struct Model *model) {
+  if (model->switches.friction_count == 0) return;
+  hold_indicators(model);
+  hold_coordinates(model);
+}
