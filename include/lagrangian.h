@@ -228,11 +228,19 @@ struct SwitchTable {
 /*
  * value[] of struct SwitchTable: the indicators of the branches, then their time derivatives; of each contact the gap, its first
  * and second time derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the
- * force while it slides; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta;
+ * force while it slides, and both against negative velocities; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta;
  * of frictions in a plane the scale of the speed.
  */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
-enum { FRICTION_VELOCITY, FRICTION_RATE, FRICTION_STICTION, FRICTION_FORCE, FRICTION_VALUES };
+enum {
+  FRICTION_VELOCITY,
+  FRICTION_RATE,
+  FRICTION_STICTION,
+  FRICTION_FORCE,
+  FRICTION_STICTION_BACK,
+  FRICTION_FORCE_BACK,
+  FRICTION_VALUES
+};
 
 static inline size_t branch_rate_place(const struct SwitchTable *switches, size_t branch) {
   return switches->branch_count + branch;

@@ -18,6 +18,12 @@ EXAMPLES = {
 }
 
 
+def band_brake(t):
+    forth, back = 2 * np.expm1(0.9), -2 * np.expm1(-0.9)
+    stop = min(t, 0.1 * 10 / forth)
+    return {"phi": 10 * stop - forth / 0.1 * stop**2 / 2 - (2 - back) / 0.1 * max(0, t - 0.5) ** 2 / 2}
+
+
 def wall(t):
     """Free to x = 0 at 0.5 s, half a period on the spring, and back."""
     rate, contact = 10.0, np.pi / 10
@@ -211,6 +217,7 @@ MOTIONS = {
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "SlidingBlock": (block, 1e-12),
+    "BandBrake": (band_brake, 1e-12),
     "CueBall": (cue_ball, 1e-9),
     "DroppedBall": (dropped_ball, 1e-12),
     "Thermostat": (thermostat, 1e-9),

@@ -23,6 +23,7 @@ static struct NodeList roots_of(const struct Model *model, const struct Equation
   for (size_t i = 0; i < switches->friction_count; i++) {
     append_node(&roots, switches->frictions[i].velocity);
     append_node(&roots, switches->frictions[i].stiction);
+    append_node(&roots, switches->frictions[i].stiction_back);
   }
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct Event *event = &switches->events[i];
@@ -88,11 +89,20 @@ static Node indicator_of_contact(const struct Model *model, const struct Contact
   return choose_node(model->graph, contact->mode, model->unknowns.forces[contact->constraint], contact->gap);
 }
 
+/* Positive while the force is between the limits of both directions. */
+static Node left_of_stiction(struct Graph *graph, const struct Friction *friction, Node force) {
+  if (friction->stiction != friction->stiction_back) {
+    Node forth = subtract(graph, friction->stiction, force), back = add(graph, friction->stiction_back, force);
+    return multiply(graph, forth, back);
+  }
+  Node limit = power_number(graph, friction->stiction, 2.0);
+  return subtract(graph, limit, power_number(graph, force, 2.0));
+}
+
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
   Node force = model->unknowns.forces[friction->constraint];
-  Node limit = power_number(graph, friction->stiction, 2.0);
-  Node left = subtract(graph, limit, power_number(graph, force, 2.0));
+  Node left = left_of_stiction(graph, friction, force);
   Node along = multiply(graph, friction->mode, friction->velocity);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }
@@ -162,6 +172,7 @@ static void append_watched(const struct Model *model, const struct SwitchingExpr
   for (size_t i = 0; i < switches->friction_count; i++) {
     append_node(list, switches->frictions[i].velocity);
     append_node(list, switches->frictions[i].stiction);
+    append_node(list, switches->frictions[i].stiction_back);
   }
 }
 
@@ -239,6 +250,8 @@ static void fill_frictions(const struct Model *model, const struct SwitchTable *
     values[friction_place(counts, i, FRICTION_RATE)] = rate_of(model, friction->velocity, seeds);
     values[friction_place(counts, i, FRICTION_STICTION)] = friction->stiction;
     values[friction_place(counts, i, FRICTION_FORCE)] = friction->sliding;
+    values[friction_place(counts, i, FRICTION_STICTION_BACK)] = friction->stiction_back;
+    values[friction_place(counts, i, FRICTION_FORCE_BACK)] = friction->sliding_back;
   }
 }
 
@@ -300,7 +313,8 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
     switching->has_sides |= switching->branches[i]->is_side;
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
-    switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding);
+    switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding) ||
+                                  !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding_back);
     for (size_t j = 0; j < switches->contact_count; j++)
       any |= rests[i * switches->contact_count + j] = rests_on(model, &switches->frictions[i], &switches->contacts[j]);
   }

@@ -31,8 +31,14 @@ static Node direction_in_plane(struct Graph *graph, const struct Friction *frict
   return divide(graph, component, power_number(graph, square, 0.5));
 }
 
+/* What a friction along a velocity pushes with in the direction in which it slides. */
+static Node sliding_by_direction(struct Graph *graph, const struct Friction *friction) {
+  if (friction->sliding == friction->sliding_back) return friction->sliding;
+  return choose_node(graph, friction->mode, friction->sliding, friction->sliding_back);
+}
+
 Node sliding_push(struct Graph *graph, const struct Friction *friction) {
-  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, friction->sliding);
+  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, sliding_by_direction(graph, friction));
   return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
 }
 

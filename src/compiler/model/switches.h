@@ -41,11 +41,12 @@ struct PlaneSide {
 /*
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, 0 while it sticks: then a constraint
  * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
- * where others hold the velocity at 0: the told mode is 0 then.
+ * where others hold the velocity at 0: the told mode is 0 then. Against a negative velocity it pushes with sliding_back, up to
+ * stiction_back.
  */
 struct Friction {
   size_t constraint; /* among the model's */
-  Node mode, told, velocity, sliding, stiction;
+  Node mode, told, velocity, sliding, stiction, sliding_back, stiction_back;
   struct PlaneSide plane;
 };
 

@@ -38,7 +38,9 @@ static void check_work_of_frictions(const struct Reader *reader) {
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->switches.friction_count && model->forces.works.count > 0; i++) {
     const struct Friction *friction = &model->switches.frictions[i];
-    if (!graph_depends_on(model->graph, friction->sliding, ACCELERATION)) continue;
+    bool follows = graph_depends_on(model->graph, friction->sliding, ACCELERATION) ||
+                   graph_depends_on(model->graph, friction->sliding_back, ACCELERATION);
+    if (!follows) continue;
     report_error(reader->diagnostics, model->forces.works.items[0].line,
                  "<work/> beside the friction '%s', which follows from the force of a contact or constraint; expected "
                  "no <work/>: totalEnergy tells what the friction takes",

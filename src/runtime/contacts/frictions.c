@@ -28,15 +28,32 @@ static const char neither[] = "a friction switches back and forth there without 
 
 /* What decides on the mode of a friction. */
 struct FrictionState {
-  double mode, began, velocity, rate, force, stiction; /* force: of its constraint, where it sticks */
-  double noise, noise_of_rate, noise_of_force;         /* what rounding may make of them */
-  double largest_rate;                                 /* since the start of the event */
-  bool is_hit;                                         /* its zero was found, or its limit reached */
-  bool is_first;                                       /* it has not switched in this settlement */
-  bool may_jump;                                       /* velocities have jumped, or the simulation starts */
-  bool is_moving;                                      /* by more than rounding */
-  bool has_no_force;                                   /* as of mu = 0: on which side it would stick is rounding */
+  double mode, began, velocity, rate;
+  double force;                                /* of its constraint, where it sticks: towards the nearer limit */
+  double direction;                            /* -1 or 1: in which it slides, or would slide beyond that limit */
+  double stiction;                             /* in this direction */
+  double noise, noise_of_rate, noise_of_force; /* what rounding may make of them */
+  double largest_rate;                         /* since the start of the event */
+  bool is_hit;                                 /* its zero was found, or its limit reached */
+  bool is_first;                               /* it has not switched in this settlement */
+  bool may_jump;                               /* velocities have jumped, or the simulation starts */
+  bool is_moving;                              /* by more than rounding */
+  bool has_no_force;                           /* as of mu = 0: on which side it would stick is rounding */
 };
+
+static void take_direction(const struct Settlement *settlement, size_t friction, struct FrictionState *state) {
+  size_t place = friction_place(settlement->switches, friction, 0);
+  const double *value = &settlement->value[place], *noise = &settlement->noise[place];
+  double force =
+      settlement->acceleration[lagrangian.coordinate_count + settlement->switches->frictions[friction].constraint];
+  double middle = 0.5 * (value[FRICTION_STICTION] - value[FRICTION_STICTION_BACK]);
+  state->direction = state->mode != 0.0 ? state->mode : force > middle ? 1.0 : -1.0;
+  size_t stiction = state->direction < 0.0 ? FRICTION_STICTION_BACK : FRICTION_STICTION;
+  state->stiction = value[stiction];
+  if (state->mode != 0.0) return;
+  state->force = state->direction * force;
+  state->noise_of_force = settlement->force_noise[friction] + noise[stiction];
+}
 
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
@@ -47,20 +64,17 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
                                 .began = settlement->began[friction],
                                 .velocity = value[FRICTION_VELOCITY],
                                 .rate = value[FRICTION_RATE],
-                                .stiction = value[FRICTION_STICTION],
                                 .noise = noise[FRICTION_VELOCITY],
                                 .noise_of_rate = noise[FRICTION_RATE],
                                 .largest_rate = settlement->largest[place + FRICTION_RATE],
                                 .is_hit = is_hit(settlement, indicator),
                                 .is_first = settlement->flips[indicator] == 0.0,
                                 .may_jump = settlement->jumped || settlement->occasion == AT_START};
-  if (state.mode == 0.0) {
-    state.force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-    state.noise_of_force = settlement->force_noise[friction] + noise[FRICTION_STICTION];
-  }
+  take_direction(settlement, friction, &state);
   /* Of what passes through 0 the next moment has a force. */
   bool may_stay = settlement->switches->rests_on != NULL || !settlement->switches->friction_varies;
-  state.has_no_force = may_stay && state.stiction == 0.0 && value[FRICTION_FORCE] == 0.0;
+  state.has_no_force = may_stay && value[FRICTION_STICTION] == 0.0 && value[FRICTION_FORCE] == 0.0 &&
+                       value[FRICTION_STICTION_BACK] == 0.0 && value[FRICTION_FORCE_BACK] == 0.0;
   /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
   double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
   /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
@@ -86,7 +100,7 @@ static double mode_without_hold(const struct FrictionState *state) {
   bool goes_on = fabs(state->rate) > friction_held_share * state->largest_rate,
        is_told = fabs(state->rate) > state->noise_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->noise_of_force;
-  double most = goes_on ? state->noise_of_force : fabs(state->force);
+  double most = goes_on ? state->noise_of_force : state->force;
   if (state->is_first || state->began == 0.0) return 0.0;
   if (goes_on && is_told) return state->rate > 0.0 ? 1.0 : -1.0;
   return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
@@ -98,8 +112,8 @@ static double mode_from_rest(const struct Settlement *settlement, const struct F
   if (passing != 0.0) return passing;
   /* An importer comes past the limit: at the limit itself it sticks; so does what has just come to rest at it by rounding. */
   double limit = state->stiction + (state->is_hit && !state->is_first ? state->noise_of_force : 0.0);
-  bool slips = fabs(state->force) > limit || (state->is_hit && state->is_first && !settlement->jumped);
-  return slips ? (state->force > 0.0 ? 1.0 : -1.0) : 0.0;
+  bool slips = state->force > limit || (state->is_hit && state->is_first && !settlement->jumped);
+  return slips ? state->direction : 0.0;
 }
 
 /* Of one that slides, at a velocity that has not jumped. */
@@ -122,7 +136,7 @@ static double friction_mode(const struct Settlement *settlement, const struct Fr
 /* By how many times rounding it leaves its mode. */
 static double certainty_of(const struct FrictionState *state) {
   if (state->is_moving) return INFINITY;
-  double excess = fabs(state->force) - state->stiction;
+  double excess = state->force - state->stiction;
   return state->mode == 0.0 ? excess / state->noise_of_force : fabs(state->rate) / state->noise_of_rate;
 }
 
@@ -137,7 +151,8 @@ static bool would_go_back(const struct Settlement *settlement, size_t friction, 
 
 const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
   const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
-  bool is_weaker = value[FRICTION_STICTION] < value[FRICTION_FORCE];
+  bool is_weaker =
+      value[FRICTION_STICTION] < value[FRICTION_FORCE] || value[FRICTION_STICTION_BACK] < value[FRICTION_FORCE_BACK];
   log_message(settlement->instance, STATUS_DISCARD,
               "time %g: the friction '%s' neither sticks nor slides; expected %sless friction, or another position",
               settlement->time, settlement->switches->frictions[friction].name,
@@ -252,11 +267,19 @@ static double rounding_left_of_forces(const struct Settlement *settlement) {
   return negligible_force * largest;
 }
 
+/* The part of value[] with the force in the direction in which it slides; at rest the smaller of both. */
+static size_t weaker_force(const struct Settlement *settlement, size_t friction) {
+  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
+  double mode = mode_of(settlement, settlement->switches->frictions[friction].mode);
+  bool is_back = mode == 0.0 ? value[FRICTION_FORCE_BACK] < value[FRICTION_FORCE] : mode < 0.0;
+  return is_back ? FRICTION_FORCE_BACK : FRICTION_FORCE;
+}
+
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
 const char *frictions_check(const struct Settlement *settlement) {
   double rounding = rounding_left_of_forces(settlement);
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
-    size_t place = friction_place(settlement->switches, i, FRICTION_FORCE);
+    size_t place = friction_place(settlement->switches, i, weaker_force(settlement, i));
     double force = settlement->value[place];
     if (!(force < -settlement->noise[place] - rounding)) continue;
     log_message(

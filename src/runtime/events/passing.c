@@ -303,7 +303,8 @@ const char *events_check(struct Instance *instance, double time) {
   if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
   bool pushes = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
-    pushes |= settlement.value[friction_place(settlement.switches, i, FRICTION_FORCE)] < 0.0;
+    for (size_t part = FRICTION_FORCE; part <= FRICTION_FORCE_BACK; part += FRICTION_FORCE_BACK - FRICTION_FORCE)
+      pushes |= settlement.value[friction_place(settlement.switches, i, part)] < 0.0;
   return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
 }
 

@@ -63,15 +63,49 @@ static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension
   return true;
 }
 
+/* Whether a force follows from that of a contact. */
+static bool follows_contact(const struct Model *model, Node force) {
+  const struct Gradient gradient = gradient_by_kinds(model->graph, force, KIND(ACCELERATION));
+  const struct Switches *switches = &model->switches;
+  bool follows = false;
+  for (size_t i = 0; i < gradient.count; i++)
+    for (size_t j = 0; j < switches->contact_count; j++)
+      follows |= gradient.symbols[i] == model->unknowns.forces[switches->contacts[j].constraint];
+  return follows;
+}
+
+/* Reads what friction pushes with against negative velocities, which is the same where the attributes are not given. */
+static void read_forces_back(struct Reader *reader, xmlNodePtr node, struct Dimension unit, struct Friction *friction) {
+  bool has_force = has_attribute(node, "forceBack"), has_stiction = has_attribute(node, "stictionBack");
+  friction->sliding_back = friction->sliding;
+  friction->stiction_back = friction->stiction;
+  if (!has_force && !has_stiction) return;
+  if (friction->plane.axis != NO_PLANE)
+    report_at(reader, node, "a <friction> with across and %s; expected one force in all directions of the plane",
+              has_force ? "forceBack" : "stictionBack");
+  if (has_force)
+    friction->sliding_back = friction->stiction_back = read_friction_force(reader, node, "forceBack", unit).node;
+  if (has_stiction) friction->stiction_back = read_friction_force(reader, node, "stictionBack", unit).node;
+  const struct Model *model = reader->model;
+  bool differs = friction->sliding_back != friction->sliding;
+  if (differs && (follows_contact(model, friction->sliding) || follows_contact(model, friction->sliding_back)))
+    report_at(reader, node,
+              "a <friction> with forceBack that follows from the force of a contact; expected the force of a "
+              "constraint, or one force in both directions");
+}
+
 /* Reads what friction pushes with; false after reporting an error. */
 static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
                                  struct Friction *friction) {
   long line = reader->model->constraints.items[friction->constraint].line;
   friction->sliding = friction->stiction = read_friction_force(reader, node, "force", unit).node;
   if (has_attribute(node, "stiction")) friction->stiction = read_friction_force(reader, node, "stiction", unit).node;
+  read_forces_back(reader, node, unit, friction);
   if (reader->diagnostics->errors > 0) return false;
   check_linear(reader, line, "force", friction->sliding);
   check_linear(reader, line, "stiction", friction->stiction);
+  if (has_attribute(node, "forceBack")) check_linear(reader, line, "forceBack", friction->sliding_back);
+  if (has_attribute(node, "stictionBack")) check_linear(reader, line, "stictionBack", friction->stiction_back);
   return true;
 }
 
@@ -107,6 +141,8 @@ void complete_friction(struct Reader *reader, struct Friction *friction, struct 
   for (size_t i = 0; i < parts; i++) {
     friction[i].sliding = friction->sliding;
     friction[i].stiction = friction->stiction;
+    friction[i].sliding_back = friction->sliding_back;
+    friction[i].stiction_back = friction->stiction_back;
     hold_velocity(reader, &friction[i], unit);
   }
   for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);

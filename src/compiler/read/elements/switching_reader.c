@@ -195,8 +195,8 @@ static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, cons
               attribute(node, "between"), attribute(node, "and"));
   friction[0].velocity = slip->along;
   friction[1].velocity = slip->across;
-  friction->sliding = multiply(reader->model->graph, grip->friction, pressing);
-  friction->stiction = multiply(reader->model->graph, grip->stiction, pressing);
+  friction->sliding = friction->sliding_back = multiply(reader->model->graph, grip->friction, pressing);
+  friction->stiction = friction->stiction_back = multiply(reader->model->graph, grip->stiction, pressing);
   complete_friction(reader, friction, unit_of("N"));
 }
 
