@@ -49,7 +49,7 @@ static void take_direction(const struct Settlement *settlement, size_t friction,
   double middle = 0.5 * (value[FRICTION_STICTION] - value[FRICTION_STICTION_BACK]);
   state->direction = state->mode != 0.0 ? state->mode : force > middle ? 1.0 : -1.0;
   size_t stiction = state->direction < 0.0 ? FRICTION_STICTION_BACK : FRICTION_STICTION;
-  state->stiction = value[stiction];
+  state->stiction = fmax(value[stiction], 0.0); /* where mu |N| passes through 0 it may be less by rounding */
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
   state->noise_of_force = settlement->force_noise[friction] + noise[stiction];
@@ -275,13 +275,36 @@ static size_t weaker_force(const struct Settlement *settlement, size_t friction)
   return is_back ? FRICTION_FORCE_BACK : FRICTION_FORCE;
 }
 
+/* Moves all of the state by the tolerance, in one of two patterns. */
+static void err_by_tolerance(const struct Settlement *settlement, bool otherwise, double *state) {
+  double share = settlement->instance->situation->tolerance;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double change = share * fmax(fabs(settlement->state[i]), lagrangian.steps.nominal[i]);
+    state[i] = settlement->state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
+  }
+}
+
+/*
+ * Whether a value differs from 0 by no more than an error of the tolerance in the state makes of it, as mu |N| does where N
+ * passes through 0: its piece ends there up to such an error.
+ */
+static bool is_within_error(struct Settlement *settlement, size_t place) {
+  double most = 0.0, *value = settlement->other_noise;
+  for (int otherwise = 0; otherwise < 2; otherwise++) {
+    err_by_tolerance(settlement, otherwise != 0, settlement->rounded);
+    if (settlement_values(settlement, settlement->rounded, value))
+      most = fmax(most, fabs(value[place] - settlement->value[place]));
+  }
+  return fabs(settlement->value[place]) <= least_certainty * most;
+}
+
 /* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
-const char *frictions_check(const struct Settlement *settlement) {
+const char *frictions_check(struct Settlement *settlement) {
   double rounding = rounding_left_of_forces(settlement);
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
     size_t place = friction_place(settlement->switches, i, weaker_force(settlement, i));
     double force = settlement->value[place];
-    if (!(force < -settlement->noise[place] - rounding)) continue;
+    if (!(force < -settlement->noise[place] - rounding) || is_within_error(settlement, place)) continue;
     log_message(
         settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
         "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...) of what it depends on",

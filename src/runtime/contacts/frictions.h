@@ -6,7 +6,7 @@
 
 const char *frictions_act(struct Settlement *settlement, bool *again);
 bool frictions_tell(struct Settlement *settlement, bool *again);
-const char *frictions_check(const struct Settlement *settlement);
+const char *frictions_check(struct Settlement *settlement);
 
 /*
  * Whether a friction that counts as sliding has a velocity, or two in a plane, that others hold: *held. False where that cannot

@@ -93,7 +93,7 @@ static const char *push(struct Settlement *settlement) {
 }
 
 /* What must hold of contacts and frictions behind an event. */
-static const char *check_laws(const struct Settlement *settlement) {
+static const char *check_laws(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   const char *problem = NULL;
   if (switches->contact_laws != NULL && (settlement->moved || may_turn_gaps(settlement)))

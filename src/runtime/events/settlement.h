@@ -75,7 +75,7 @@ struct FrictionLaws {
   /* Logs that something, as accelerations, is not found for the frictions, of which there are some. */
   void (*blame)(const struct Settlement *settlement, const char *missing);
   /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
-  const char *(*check)(const struct Settlement *settlement);
+  const char *(*check)(struct Settlement *settlement);
   /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */
   void (*guess)(struct Instance *instance);
   /* Lets the friction in a plane slide, or stick; NULL without any. */
