@@ -146,9 +146,10 @@ def test_nothing_moves(tmp_path):
 
 def test_right_one(tmp_path):
     result = compile_robot(RIGHT, tmp_path)
-    assert (result.returncode, result.stderr) == (0, "")
+    assert (result.returncode, result.stderr) == (0, NO_STOPS)
 
 
+NO_STOPS = "robot.urdf:9: warning: motion is not stopped at the limits of the joint 'shoulder'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>\n"
 NO_BODY = "at the start values: a principal moment is negative, or larger than the other two together; expected others"
 
 
@@ -160,14 +161,14 @@ def test_tensor_of_no_body(tensor, tmp_path):
     lines = RIGHT.splitlines()
     lines[3] = inertial(tensor=tensor)
     result = compile_robot("\n".join(lines), tmp_path)
-    assert (result.returncode, result.stderr) == (0, f"robot.urdf:3: warning: no body can have the moments of inertia of 'upper_body' {NO_BODY}\n")
+    assert (result.returncode, result.stderr) == (0, f"{NO_STOPS}robot.urdf:3: warning: no body can have the moments of inertia of 'upper_body' {NO_BODY}\n")
 
 
 @pytest.mark.parametrize("tensor", [("0.1", "0", "0.2", "0.302"), ("0", "0", "0", "0"), ("0.1", "0.05", "0.1", "0.1")])
 def test_tensor_of_a_body(tensor, tmp_path):
     lines = RIGHT.splitlines()
     lines[3] = inertial(tensor=tensor)
-    assert compile_robot("\n".join(lines), tmp_path).stderr == ""
+    assert compile_robot("\n".join(lines), tmp_path).stderr == NO_STOPS
 
 
 def test_left_out(tmp_path):
@@ -176,7 +177,9 @@ def test_left_out(tmp_path):
     result = compile_robot(text, tmp_path)
     assert result.returncode == 0
     assert result.stderr == (
-        "robot.urdf: warning: left out, since the motion does not depend on them: collision, visual, effort of limit, velocity of limit, gazebo\n"
+        "robot.urdf: warning: left out, since the motion does not depend on them: collision, visual, velocity of limit, gazebo\n"
+        f"{NO_STOPS}"
+        "robot.urdf:9: warning: motors may push with more than the effort of the joint 'shoulder'; expected effort=\"limited\", or \"unlimited\" if this is meant, in an <include>\n"
     )
 
 

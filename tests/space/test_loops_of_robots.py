@@ -333,3 +333,26 @@ def test_stewart_by_inverse_kinematics(open_fmu):
     turned = np.array([[instance.get(f"r.plate.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
     for leg in LEGS:
         assert instance.get(f"r.piston{leg}") == pytest.approx(np.linalg.norm(plate + turned @ CEILING[leg] - FLOOR[leg]), abs=1e-9)
+
+
+WELD = """<mujoco><option gravity="0 0 0"/><worldbody><body name="a"><freejoint/><geom type="box" size="0.1 0.2 0.3"/></body></worldbody>
+<equality><weld name="w" body1="a" relpose="0 0 0 {}"/></equality></mujoco>"""
+START = '<system name="W"><include file="a.xml" as="r">{}</include></system>'
+
+
+@pytest.mark.parametrize("axis", "xyz")
+def test_a_weld_has_one_pose(axis, tmp_path):
+    """A half turn fulfils its constraints too: it is the pose only where relpose says so."""
+    quaternion = [float(name == f"q{axis}") for name in ("qw", "qx", "qy", "qz")]
+
+    def compiled(pose, angle):
+        """With the body turned by an angle from where the file places it."""
+        parts = zip(("qw", f"q{axis}"), (np.cos(angle / 2), np.sin(angle / 2)))
+        (tmp_path / "a.xml").write_text(WELD.format(" ".join(map(str, pose))))
+        (tmp_path / "system.xml").write_text(START.format("".join(f'<coordinate name="a_{name}" start="{value!r}"/>' for name, value in ((n, float(v)) for n, v in parts))))
+        return fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
+
+    message = f"the joint 'w_loop' starts nearer to a half turn about {axis} than to its pose"
+    for pose, angle, is_right in (([1, 0, 0, 0], np.pi, False), ([1, 0, 0, 0], 2.0, False), ([1, 0, 0, 0], 1.5, True), (quaternion, 0.0, False), (quaternion, 1.0, False), (quaternion, np.pi, True), (quaternion, 2.0, True)):
+        result = compiled(pose, angle)
+        assert (result.returncode == 0) == is_right and (message in result.stderr) != is_right, (pose, angle, result.stderr)

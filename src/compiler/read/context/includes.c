@@ -124,6 +124,9 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
                                    .sticks = attribute_is(source->include, "friction", "sticks"),
                                    .is_effort_limited = attribute_is(source->include, "effort", "limited"),
                                    .has_ground = ground != NULL && strcmp(ground, "false") != 0,
+                                   .says_ground = ground != NULL,
+                                   .says_limits = has_attribute(source->include, "limits"),
+                                   .says_effort = has_attribute(source->include, "effort"),
                                    .standing = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
                                    .keyframe = attribute(source->include, "keyframe"),
                                    .tool = attribute(source->include, "tool")};

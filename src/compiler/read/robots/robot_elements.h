@@ -10,6 +10,7 @@ struct Writer {
   xmlNodePtr system;
   long line; /* of the link or joint in the file of which the elements tell */
   const struct RobotOptions *options;
+  bool has_own_frictions; /* shapes differ in their friction on the ground */
 };
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);

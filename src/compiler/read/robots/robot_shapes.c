@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "model/kinematics.h"
 #include "read/robots/description/robot_file.h"
+#include "read/robots/robot_tree.h"
 
 static const char ground[] = "ground";
 
@@ -21,6 +22,42 @@ static void place_element(xmlNodePtr shape, const struct Placement *place) {
   }
 }
 
+/* The coefficient of friction of a shape with the ground. */
+static double friction_of(const struct Collision *shape) {
+  return isnan(shape->friction) ? usual_friction : shape->friction;
+}
+
+/* True if the shape touches the ground where its link moves. */
+static bool meets_ground(const struct RobotOptions *options, const struct Link *link, const struct Collision *shape) {
+  return !shape->is_clear && link_touches_ground(options, link->name);
+}
+
+/* The coefficient that all shapes on the ground have; NAN where they differ. */
+static double common_friction(const struct Robot *robot, const struct RobotOptions *options) {
+  double common = usual_friction;
+  bool is_first = true;
+  for (size_t i = 0; i < robot->link_count; i++) {
+    const struct Link *link = robot->links[i];
+    for (size_t j = 0; j < link->collision_count; j++) {
+      if (!carrier_moves(link, options->floats) || !meets_ground(options, link, &link->collisions[j])) continue;
+      double friction = friction_of(&link->collisions[j]);
+      if (!is_first && friction != common) return NAN;
+      common = friction;
+      is_first = false;
+    }
+  }
+  return common;
+}
+
+static void write_friction(struct Writer *writer, const struct Robot *robot) {
+  double common = common_friction(robot, writer->options);
+  writer->has_own_frictions = isnan(common);
+  write_parameter(writer, copy_text("ground_friction"), writer->has_own_frictions ? -1 : common, "1",
+                  copy_text(writer->has_own_frictions
+                                ? "coefficient of friction of all shapes; below 0, each has that of the file"
+                                : "coefficient of friction"));
+}
+
 void write_ground(struct Writer *writer, const struct Robot *robot) {
   double mass = 0.0;
   for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
@@ -30,21 +67,25 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
                   copy_text("force by depth at each point that touches"));
   write_parameter(writer, copy_text("ground_damping"), usual_damping, "s/m",
                   copy_text("by which the force grows with the speed"));
-  write_parameter(writer, copy_text("ground_friction"), usual_friction, "1", copy_text("coefficient of friction"));
+  write_friction(writer, robot);
   xmlNodePtr plane = write_element(writer, "shape");
   set_attribute(plane, "name", copy_text(ground));
   set_attribute(plane, "type", copy_text("plane"));
-  if (robot->ground != NULL) place_element(plane, robot->ground);
+  if (robot->ground != NULL) place_element(plane, &robot->ground->place);
 }
 
-static void write_contact(const struct Writer *writer, const struct Link *link, const char *shape, size_t number) {
+static void write_contact(const struct Writer *writer, const struct Link *link, const struct Collision *collision,
+                          const char *shape, size_t index) {
   xmlNodePtr contact = write_element(writer, "contact");
-  set_attribute(contact, "name", format_text("%s_%s%zu", link->symbol, ground, number));
+  set_attribute(contact, "name", format_text("%s_%s%zu", link->symbol, ground, index));
   set_attribute(contact, "between", copy_text(shape));
   set_attribute(contact, "and", copy_text(ground));
   set_attribute(contact, "stiffness", copy_text("ground_stiffness"));
   set_attribute(contact, "damping", copy_text("ground_damping"));
-  set_attribute(contact, "friction", copy_text("ground_friction"));
+  set_attribute(contact, "friction",
+                writer->has_own_frictions
+                    ? format_text("if(ground_friction < 0, %s, ground_friction)", number(friction_of(collision)))
+                    : copy_text("ground_friction"));
 }
 
 static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, const struct Collision *collision,
@@ -73,7 +114,8 @@ void write_shapes(struct Writer *writer, const struct Link *link, bool moves) {
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
     if (link->visual_count > 0) set_attribute(shape, "drawn", copy_text("false"));
-    if (moves && link_touches_ground(writer->options, link->name)) write_contact(writer, link, name, i + 1);
+    if (moves && meets_ground(writer->options, link, &link->collisions[i]))
+      write_contact(writer, link, &link->collisions[i], name, i + 1);
   }
   for (size_t i = 0; i < link->visual_count; i++)
     write_shape(writer, link, &link->visuals[i], format_text("%s_visual%zu", link->symbol, i + 1));

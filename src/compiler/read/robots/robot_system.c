@@ -51,11 +51,6 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
 }
 
-/* Whether what the link is fixed to moves. */
-static bool has_moving_carrier(const struct Link *link, bool floats) {
-  return floats || link->carrier->joint != NULL;
-}
-
 /* The frame of a link, in that of the link to which the joint's other side is fixed. */
 static void write_link(struct Writer *writer, const struct Link *link) {
   bool floats = writer->options->floats;
@@ -77,7 +72,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
     write_motion(writer, frame, joint);
   } else if (floats) write_free_motion(writer, frame, base);
   if (moves || (joint == NULL && floats)) write_body(writer, link);
-  write_shapes(writer, link, has_moving_carrier(link, floats));
+  write_shapes(writer, link, carrier_moves(link, floats));
 }
 
 /* The link without children, where there is one alone. */
@@ -185,6 +180,65 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
 
+/* What several joints or tendons have in common, by the first of them. */
+struct Common {
+  const char *kind, *name;
+  long line;
+  size_t count;
+};
+
+static void count_one(struct Common *common, const char *kind, const char *name, long line) {
+  if (common->count++ == 0) *common = (struct Common){.kind = kind, .name = name, .line = line, .count = 1};
+}
+
+/* Warns of limits that the file has, and the attribute of the <include> neither asks for nor declines. */
+static void warn_of_limits(const struct Diagnostics *diagnostics, const struct Common *common, bool is_said,
+                           const char *what, const char *attribute) {
+  if (is_said || common->count == 0) return;
+  size_t others = common->count - 1;
+  const char *and = others > 0 ? format_text(" and of %zu other%s", others, others > 1 ? "s" : "") : "";
+  report_warning(diagnostics, common->line, "%s of the %s '%s'%s; expected %s in an <include>", what, common->kind,
+                 common->name, and, attribute);
+}
+
+static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
+                         const struct Diagnostics *diagnostics) {
+  struct Common ranges = {.count = 0}, efforts = {.count = 0};
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    const struct Joint *joint = robot->joints[i];
+    if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
+    if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
+      count_one(&efforts, "joint", joint->name, joint->line);
+  }
+  for (size_t i = 0; i < robot->tendon_count; i++)
+    if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
+  warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
+                 "limits=\"stops\", or \"outputs\" if this is meant,");
+  warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may push with more than the effort",
+                 "effort=\"limited\", or \"unlimited\" if this is meant,");
+}
+
+/* Warns of cylinders that touch the ground, which have points on their rims. */
+static void check_rims(const struct Robot *robot, const struct RobotOptions *options,
+                       const struct Diagnostics *diagnostics) {
+  for (size_t i = 0; i < robot->link_count; i++) {
+    const struct Link *link = robot->links[i];
+    for (size_t j = 0; j < link->collision_count; j++) {
+      const struct Collision *shape = &link->collisions[j];
+      if (strcmp(shape->type, "cylinder") != 0 || shape->is_clear || !link_touches_ground(options, link->name) ||
+          !carrier_moves(link, options->floats))
+        continue;
+      report_warning(
+          diagnostics, shape->line,
+          "the cylinder of the link '%s' touches the ground at 8 points of each rim, as an octagon would roll; "
+          "for a wheel, expected a sphere or capsule in its place, or a <joint type=\"rolling\"> in a <system> "
+          "that includes the robot",
+          link->name);
+      return;
+    }
+  }
+}
+
 /* Reports links that are to stand and are none, or have no shape. */
 static void check_standing(const struct Robot *robot, const struct RobotOptions *options,
                            struct Diagnostics *diagnostics) {
@@ -192,10 +246,13 @@ static void check_standing(const struct Robot *robot, const struct RobotOptions 
   if (!options->has_ground || rest == NULL) return;
   for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
     const struct Link *link = robot_link(robot, name, "the ground", diagnostics);
-    if (link != NULL && link->collision_count == 0)
-      report_error(diagnostics, link->line,
-                   "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it",
-                   name);
+    size_t clear = 0;
+    for (size_t i = 0; link != NULL && i < link->collision_count; i++) clear += link->collisions[i].is_clear;
+    if (link != NULL && link->collision_count == clear)
+      report_error(
+          diagnostics, link->line,
+          "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it%s", name,
+          clear > 0 ? ", which its contype, conaffinity or <exclude> let touch the plane" : "");
   }
 }
 
@@ -209,6 +266,10 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
     check_motion(robot, options->floats, diagnostics);
     check_standing(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
+  }
+  if (diagnostics->errors == errors) {
+    check_limits(robot, options, diagnostics);
+    check_rims(robot, options, diagnostics);
   }
   xmlFreeDoc(document);
   document = NULL;

@@ -35,6 +35,10 @@ bool joint_is_single(const struct Joint *joint) {
   return joint->type == REVOLUTE || joint->type == CONTINUOUS || joint->type == PRISMATIC;
 }
 
+bool carrier_moves(const struct Link *link, bool floats) {
+  return floats || link->carrier->joint != NULL;
+}
+
 static struct Register register_create(const char *kind) {
   return (struct Register){.kind = kind, .names = names_create(), .symbols = names_create()};
 }

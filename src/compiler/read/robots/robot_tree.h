@@ -20,3 +20,6 @@ bool joint_moves(const struct Joint *joint);
 
 /* Whether its position is one number: revolute, continuous or prismatic. */
 bool joint_is_single(const struct Joint *joint);
+
+/* True if the link that this one is fixed to moves. */
+bool carrier_moves(const struct Link *link, bool floats);

@@ -16,6 +16,9 @@
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
                                               "floating", "planar",   "ball"};
 
+/* What joints of several coordinates have no place for. */
+static const char in_system[] = "a <force> in a <system> that includes the robot";
+
 static struct Placement read_origin(struct RobotFile *urdf, xmlNodePtr parent) {
   double translation[3] = {0}, angles[3] = {0};
   xmlNodePtr origin = child_of(urdf, parent, "origin");
@@ -132,7 +135,7 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
 
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
-  struct Collision collision = {.place = read_origin(urdf, node), .line = xmlGetLineNo(node)};
+  struct Collision collision = {.place = read_origin(urdf, node), .friction = NAN, .line = xmlGetLineNo(node)};
   char *problem = NULL;
   bool touches = link_touches_ground(urdf->options, link->name);
   if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
@@ -271,19 +274,29 @@ static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joi
   for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] /= length;
 }
 
+/* A limit of 0 stands for an unknown one, as in MuJoCo: exporters write it where they know none. */
 static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->effort = NAN;
   if (limit == NULL || !has_attribute(limit, "effort") || joint->type == FIXED) return;
-  if (!urdf->options->is_effort_limited) leave_out(urdf, "effort of limit");
-  else if (joint->type == FLOATING || joint->type == PLANAR) leave_out(urdf, "effort of floating and planar joints");
-  else joint->effort = number_not_negative(urdf, limit, "effort");
+  double effort = number_not_negative(urdf, limit, "effort");
+  bool is_limited = urdf->options->is_effort_limited;
+  if (is_limited && effort == 0)
+    warn_unread(urdf, xmlGetLineNo(limit), "effort=\"0\" of <limit>, which stands for no limit,",
+                "the largest force or torque of the motor");
+  if (is_limited && effort > 0 && (joint->type == FLOATING || joint->type == PLANAR))
+    warn_unread(urdf, xmlGetLineNo(limit), "effort of a floating or planar joint", in_system);
+  if (effort > 0) joint->effort = effort;
 }
 
 /* A missing one of the two is 0, as in the format's definition; a file that gives neither has no limits. */
 static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->lower = joint->upper = NAN;
+  if (limit != NULL && (joint->type == FLOATING || joint->type == PLANAR) &&
+      (has_attribute(limit, "lower") || has_attribute(limit, "upper")))
+    warn_unread(urdf, xmlGetLineNo(limit), "<limit lower upper> of a floating or planar joint",
+                "a <stop> at each of its coordinates in a <system> that includes the robot");
   if (limit == NULL || (joint->type != REVOLUTE && joint->type != PRISMATIC)) return;
   double lower = 0, upper = 0;
   bool is_given = read_numbers(urdf, limit, "lower", 1, &lower);
@@ -306,12 +319,16 @@ static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct Joint 
   if (dynamics == NULL || joint->type == FIXED) return;
   double damping = number_not_negative(urdf, dynamics, "damping");
   double friction = number_not_negative(urdf, dynamics, "friction");
+  double stiffness = number_not_negative(urdf, dynamics, "spring_stiffness");
   if (joint->type == FLOATING || joint->type == PLANAR) {
-    leave_out(urdf, "dynamics of floating and planar joints");
+    if (damping > 0 || friction > 0 || stiffness > 0)
+      warn_unread(urdf, xmlGetLineNo(dynamics), "<dynamics> of a floating or planar joint", in_system);
     return;
   }
   joint->damping = damping;
   joint->friction = friction;
+  joint->stiffness = stiffness;
+  read_numbers(urdf, dynamics, "spring_reference", 1, &joint->rest);
 }
 
 static void read_mimic(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
@@ -345,6 +362,51 @@ static void read_joint(struct RobotFile *urdf, xmlNodePtr node) {
   read_mimic(urdf, node, joint);
   leave_out_others(urdf, node, known);
   add_joint(urdf, joint);
+}
+
+static const struct Attributes attributes[] = {
+    {"origin", "xyz rpy", NULL, ALWAYS_ACTS},
+    {"axis", "xyz", NULL, ALWAYS_ACTS},
+    {"limit", "lower upper effort velocity", NULL, ALWAYS_ACTS},
+    {"dynamics", "damping friction spring_stiffness spring_reference", NULL, ALWAYS_ACTS},
+    {"mimic", "joint multiplier offset", NULL, ALWAYS_ACTS},
+    {"mass", "value", NULL, ALWAYS_ACTS},
+    {"inertia", "ixx iyy izz ixy ixz iyz", NULL, ALWAYS_ACTS},
+    {0},
+};
+
+/* Elements of simulators that change the motion, and what says the same here. */
+static const struct {
+  const char *name;
+  enum Condition condition;
+  const char *remedy;
+} of_simulators[] = {
+    {"springStiffness", ALWAYS_ACTS, "spring_stiffness of <dynamics>"},
+    {"springReference", ALWAYS_ACTS, "spring_reference of <dynamics>"},
+    {"dampingFactor", ALWAYS_ACTS, "a <dissipation> in a <system> that includes the robot"},
+    {"turnGravityOff", ALWAYS_ACTS, in_system},
+    {"static", ALWAYS_ACTS, "a joint of type fixed"},
+    {"rotor_inertia", ALWAYS_ACTS, "a <kinetic> of the joint's velocity in a <system> that includes the robot"},
+    {"mu", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"mu1", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"mu2", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"mu_static", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"mu_dynamic", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"lateral_friction", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"contact_coefficients", ACTS_ON_GROUND, "ground_friction of the robot"},
+    {"selfCollide", ACTS_ON_GROUND, "a <contact between=\"...\" and=\"...\"> in a <system> that includes the robot"},
+};
+
+static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {
+  for (size_t i = 0; i < sizeof of_simulators / sizeof *of_simulators; i++) {
+    if (!is_element(node, of_simulators[i].name) || !condition_holds(urdf->options, of_simulators[i].condition))
+      continue;
+    const xmlChar *text = node->children != NULL ? node->children->content : NULL;
+    if (text == NULL || !says_nothing((const char *)text))
+      warn_unread(urdf, xmlGetLineNo(node), format_text("<%s>", (const char *)node->name), of_simulators[i].remedy);
+  }
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) check_simulators(urdf, child);
 }
 
 /* A macro or an expression of xacro, which other programs expand; NULL for none. */
@@ -384,6 +446,10 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
     else if (is_element(node, "joint")) read_joint(&urdf, node);
   }
   leave_out_others(&urdf, root, known);
+  if (xacro == NULL) {
+    check_attributes(&urdf, root, attributes);
+    check_simulators(&urdf, root);
+  }
   tell_left_out(&urdf);
   return urdf.robot;
 }

@@ -5,6 +5,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/context/attributes.h"
 #include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
 #include "read/names/definitions.h"
@@ -263,6 +264,22 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
               attribute(node, "from"), attribute(node, "to"));
 }
 
+/*
+ * A half turn about an axis fulfils what a fixed joint holds, too. Reports a start that is nearer to that than to the pose,
+ * where the axes agree: there the real part of the quaternion between the two is smaller than another one.
+ */
+static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+  struct Graph *graph = reader->model->graph;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    Node cosines = add(graph, product_of_axes(graph, from, j, to, j), product_of_axes(graph, from, k, to, k));
+    char *what = format_text("the joint '%s' starts nearer to a half turn about %s than to its pose, which start "
+                             "values near that pose avoid: the sum of the cosines between its axes %s, and %s,",
+                             attribute(node, "name"), axes[i], axes[j], axes[k]);
+    expect_not_negative(reader, node, what, cosines, true);
+  }
+}
+
 void read_joint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   const struct JointType *type = type_of(node);
@@ -277,6 +294,7 @@ void read_joint(struct Reader *reader, xmlNodePtr node) {
   size_t count = 0;
   for (const enum Held *held = type->held; *held != NOTHING; held++)
     if (is_held(node, *held)) first[count++].node = expression_of(reader, node, *held, &from, &to);
+  if (attribute_is(node, "type", "fixed")) expect_pose(reader, node, &from, &to);
   if (reader->diagnostics->errors == 0) leave_out_idle(reader, node, first, count, &from, &to);
   for (size_t i = 0; i < count && reader->diagnostics->errors == 0; i++)
     if (first[i].node != ZERO) check_constraint(reader, &first[i]);

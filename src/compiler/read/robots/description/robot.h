@@ -16,6 +16,8 @@ struct Collision {
   char *file;                     /* of a mesh, relative to the robot's; NULL of other types */
   double scale[3];                /* of a mesh: m for each unit of the file */
   char *color;                    /* such as "#ff8000ff"; NULL where the file gives none */
+  double friction;                /* coefficient of its contact with the ground; NAN where the file gives none */
+  bool is_clear;                  /* never touches the ground */
   long line;
 };
 
@@ -126,13 +128,14 @@ struct RobotLoop {
 
 /* What an <include> says of a robot beyond its file. */
 struct RobotOptions {
-  bool floats;            /* the root link moves freely; else it stands in the inertial frame */
-  bool has_stops;         /* limits stop the joints; else outputs tell how far these are beyond them */
-  bool sticks;            /* the joints' friction is dry; else it lets them creep */
-  bool has_ground;        /* the links' shapes stand on a plane */
-  const char *standing;   /* names of the links that do, between blanks; NULL for all that move */
-  bool is_effort_limited; /* motors push and turn with no more than their effort */
-  const char *keyframe;   /* of MJCF, where the robot starts; NULL for its usual start */
+  bool floats;     /* the root link moves freely; else it stands in the inertial frame */
+  bool has_stops;  /* limits stop the joints; else outputs tell how far these are beyond them */
+  bool sticks;     /* the joints' friction is dry; else it lets them creep */
+  bool has_ground; /* the links' shapes stand on a plane */
+  bool says_ground, says_limits, says_effort; /* the <include> has these attributes, whatever they say */
+  const char *standing;                       /* names of the links that do, between blanks; NULL for all that move */
+  bool is_effort_limited;                     /* motors push and turn with no more than their effort */
+  const char *keyframe;                       /* of MJCF, where the robot starts; NULL for its usual start */
   const char *
       tool; /* the link whose position and velocity are outputs; NULL: the only one without children, if there is one */
 };
@@ -148,6 +151,6 @@ struct Robot {
   struct TendonLink *tendon_links;
   size_t link_count, joint_count, tendon_count, actuator_count, loop_count, tendon_link_count;
   double gravity[3];        /* m/s2 */
-  struct Placement *ground; /* of the plane on which it stands, which points along its z; NULL: z = 0 */
+  struct Collision *ground; /* the plane on which it stands, which points along its z; NULL: z = 0 */
   struct Link *root;
 };

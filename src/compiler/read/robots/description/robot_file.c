@@ -15,10 +15,22 @@ char *next_name(const char **rest) {
   return length > 0 ? format_text("%.*s", (int)length, name) : NULL;
 }
 
+/* True if the text is new in the list and there is room for it. */
+static bool note_once(char **list, size_t *count, size_t limit, const char *text) {
+  for (size_t i = 0; i < *count; i++)
+    if (strcmp(list[i], text) == 0) return false;
+  if (*count == limit) return false;
+  list[(*count)++] = copy_text(text);
+  return true;
+}
+
 void leave_out(struct RobotFile *file, const char *what) {
-  for (size_t i = 0; i < file->left_out_count; i++)
-    if (strcmp(file->left_out[i], what) == 0) return;
-  if (file->left_out_count < LEFT_OUT_LIMIT) file->left_out[file->left_out_count++] = copy_text(what);
+  note_once(file->left_out, &file->left_out_count, LEFT_OUT_LIMIT, what);
+}
+
+void warn_unread(struct RobotFile *file, long line, const char *what, const char *remedy) {
+  if (note_once(file->unread, &file->unread_count, UNREAD_LIMIT, what))
+    report_warning(file->diagnostics, line, "%s is not read, and may change the motion; expected %s", what, remedy);
 }
 
 void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names) {
@@ -100,6 +112,50 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
     report_error(file->diagnostics, xmlGetLineNo(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
                  value, (const char *)node->name);
   return value;
+}
+
+bool says_nothing(const char *text) {
+  static const char *const nothing[] = {"false", "none", "auto", "disable"};
+  double values[NUMBERS_LIMIT];
+  for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
+    if (strcmp(text, nothing[i]) == 0) return true;
+  size_t count = parse_numbers(text, NUMBERS_LIMIT, values), i = 0;
+  while (i < count && values[i] == 0) i++;
+  return count > 0 && i == count;
+}
+
+static bool is_among(const char *names, const char *name) {
+  for (char *next = next_name(&names); next != NULL; next = next_name(&names))
+    if (strcmp(next, name) == 0) return true;
+  return false;
+}
+
+bool condition_holds(const struct RobotOptions *options, enum Condition condition) {
+  return condition == ALWAYS_ACTS || (condition == ACTS_ON_GROUND && options->has_ground) ||
+         (condition == ACTS_AT_STOPS && options->has_stops);
+}
+
+static void check_attribute(struct RobotFile *file, xmlNodePtr node, const char *name, const struct Attributes *table) {
+  const char *element = (const char *)node->name, *remedy = NULL;
+  bool is_known_element = false;
+  for (const struct Attributes *row = table; row->elements != NULL; row++) {
+    if (!is_among(row->elements, element)) continue;
+    is_known_element = true;
+    if (!is_among(row->names, name)) continue;
+    remedy = row->remedy;
+    if (remedy == NULL || !condition_holds(file->options, row->condition) || says_nothing(attribute(node, name)))
+      return;
+  }
+  if (is_known_element)
+    warn_unread(file, xmlGetLineNo(node), format_text("%s of <%s>", name, element),
+                remedy != NULL ? remedy : "one of the attributes that the reference names");
+}
+
+void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attributes *table) {
+  for (const xmlAttr *given = node->properties; given != NULL; given = given->next)
+    check_attribute(file, node, (const char *)given->name, table);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) check_attributes(file, child, table);
 }
 
 void note_mesh_problem(struct RobotFile *file, char *problem) {

@@ -9,7 +9,7 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
-enum { LEFT_OUT_LIMIT = 20 };
+enum { LEFT_OUT_LIMIT = 20, UNREAD_LIMIT = 100, NUMBERS_LIMIT = 64 };
 
 struct RobotFile {
   struct Robot *robot;
@@ -17,6 +17,8 @@ struct RobotFile {
   struct Diagnostics *diagnostics;
   char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
   size_t left_out_count;
+  char *unread[UNREAD_LIMIT]; /* what warn_unread() has reported */
+  size_t unread_count;
   char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
   size_t mesh_problems; /* how many there are */
 };
@@ -28,6 +30,29 @@ void leave_out(struct RobotFile *file, const char *what);
 
 /* Notes the elements inside that are none of these names, of which the last is NULL. */
 void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names);
+
+/* Warns once of something that is not read and may change the motion, with the remedy. */
+void warn_unread(struct RobotFile *file, long line, const char *what, const char *remedy);
+
+/* True of a text that asks for nothing: "false", "none", "auto", "disable", or numbers that are all 0. */
+bool says_nothing(const char *text);
+
+/* When an attribute acts: with any <include>, or one that asks for a ground, or for stops. */
+enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS };
+
+bool condition_holds(const struct RobotOptions *options, enum Condition condition);
+
+/* Attributes of elements, names with blanks between them: read or without influence where there is no remedy, else not read. */
+struct Attributes {
+  const char *elements, *names, *remedy;
+  enum Condition condition;
+};
+
+/*
+ * Warns of attributes in the element, and all that is in it, that are not read and may change the motion: those with a remedy, and
+ * any others of an element in the table. The last row has no elements.
+ */
+void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attributes *table);
 
 /* Notes why a mesh cannot be drawn; NULL for nothing. */
 void note_mesh_problem(struct RobotFile *file, char *problem);

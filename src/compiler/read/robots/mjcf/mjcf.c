@@ -5,6 +5,8 @@
 
 #include "base/memory.h"
 #include "read/robots/mjcf/mjcf_actuators.h"
+#include "read/robots/mjcf/mjcf_attributes.h"
+#include "read/robots/mjcf/mjcf_contacts.h"
 #include "read/robots/mjcf/mjcf_equality.h"
 #include "read/robots/mjcf/mjcf_geoms.h"
 #include "read/robots/mjcf/mjcf_includes.h"
@@ -32,13 +34,13 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
 
 static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
-  static const char *const refused[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia",
-                                        "inertiagrouprange"};
+  static const char *const refused[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia"};
   if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
   if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
   if (has_attribute(node, "inertiafromgeom"))
     mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "coordinate=\"%s\" of <compiler>; expected local",
                  attribute(node, "coordinate"));
@@ -53,13 +55,19 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
 }
 
 static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const flags[] = {"passive",   "spring", "damper",   "actuation",
-                                      "clampctrl", "limit",  "equality", "frictionloss"};
+  static const char *const flags[] = {"passive", "spring",   "damper",       "actuation", "clampctrl",
+                                      "limit",   "equality", "frictionloss", "constraint"};
+  double groups[ACTUATOR_GROUPS];
   mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
   mjcf_refuse(mjcf, node, "density");
   mjcf_refuse(mjcf, node, "viscosity");
+  size_t count = mjcf_numbers(mjcf, node, "actuatorgroupdisable", 1, ACTUATOR_GROUPS, groups);
+  for (size_t i = 0; i < count; i++)
+    if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;
   xmlNodePtr flag = child_of(&mjcf->file, node, "flag");
   if (flag == NULL) return;
+  mjcf->has_no_contacts |= attribute_is(flag, "contact", "disable");
+  mjcf->touches_parents |= attribute_is(flag, "filterparent", "disable");
   if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (attribute_is(flag, flags[i], "disable"))
@@ -226,8 +234,11 @@ static void for_each(struct Mjcf *mjcf, const char *section, bool inside, Read *
   }
 }
 
-static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
+static void read_geoms_of_world(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_read_body(mjcf, node, mjcf->file.robot->links[0]);
+}
+
+static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
   read_children(mjcf, node, mjcf->file.robot->links[0]->name, &no_displacement);
 }
 
@@ -239,8 +250,8 @@ static void check_world(struct Mjcf *mjcf) {
 }
 
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
-  static const char *const known[] = {"compiler", "option",   "default", "worldbody", "actuator",
-                                      "equality", "keyframe", "asset",   "tendon",    NULL};
+  static const char *const known[] = {"compiler", "option", "default", "worldbody", "actuator", "equality",
+                                      "keyframe", "asset",  "tendon",  "contact",   NULL};
   struct Robot *robot = allocate(1, sizeof *robot);
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
@@ -248,6 +259,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
                       .places = names_create(),
                       .angle = M_PI / 180,
                       .euler_sequence = "xyz",
+                      .inertia_groups = {0, 5},
                       .has_automatic_limits = true};
   int errors = diagnostics->errors;
   robot->name = attribute(root, "model");
@@ -266,11 +278,16 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "option", false, read_option);
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
+  for_each(&mjcf, "worldbody", false, read_geoms_of_world);
   for_each(&mjcf, "worldbody", false, read_world);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
   for_each(&mjcf, "actuator", true, mjcf_read_actuator);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
+  if (diagnostics->errors == errors) {
+    mjcf_check_contacts(&mjcf);
+    mjcf_check_attributes(&mjcf);
+  }
   leave_out_others(&mjcf.file, root, known);
   tell_left_out(&mjcf.file);
   return robot;

@@ -113,6 +113,12 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   else mjcf_refuse(mjcf, node, "inheritrange");
   mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
   check_limited_joints(mjcf, node, &actuator);
+  double group = mjcf_number(mjcf, node, "group", 0);
+  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) {
+    actuator.gain = 0;
+    memset(actuator.bias, 0, sizeof actuator.bias);
+    actuator.force[0] = actuator.force[1] = NAN;
+  }
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
   robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
   robot->actuators[robot->actuator_count++] = actuator;

@@ -90,6 +90,9 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
   name = name != NULL ? format_text("%s_loop", name) : format_text("loop%zu", robot->loop_count + 1);
   if (!read_ends(mjcf, node, &ends)) return;
   bool is_fixed = is_element(node, "weld");
+  if (is_fixed && mjcf_number(mjcf, node, "torquescale", 1) == 0)
+    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+                 "torquescale=\"0\" of <weld> holds no rotation; expected a <connect>");
   if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
   else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
   robot->loops = make_room(robot->loops, robot->loop_count, sizeof *robot->loops);

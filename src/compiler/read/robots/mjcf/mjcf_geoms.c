@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/robots/mjcf/mjcf_contacts.h"
 #include "read/robots/mjcf/mjcf_meshes.h"
 #include "read/xml/nodes.h"
 
@@ -148,16 +149,17 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
   return shape;
 }
 
-/* The first plane of the world is the ground; others touch nothing, which is told where there is a ground. */
-static void add_plane(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, const struct Link *link) {
+/* The first plane of the world is the ground; others touch nothing. */
+static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
+                      const struct Link *link) {
   struct Robot *robot = mjcf->file.robot;
   bool is_of_world = link == robot->links[0];
-  if (!mjcf->file.options->has_ground) return;
   if (is_of_world && robot->ground == NULL) {
     robot->ground = allocate(1, sizeof *robot->ground);
-    *robot->ground = geom->place;
-  } else
-    report_warning(mjcf->file.diagnostics, xmlGetLineNo(node),
+    robot->ground->place = geom->place;
+    mjcf->ground = *contact;
+  } else if (mjcf->file.options->has_ground)
+    report_warning(mjcf->file.diagnostics, xmlGetLineNo(contact->node),
                    "a <geom> of type plane of the body '%s' touches nothing: expected %s", link->name,
                    is_of_world ? "one plane, which is the ground"
                                : "it in the <worldbody>, of which one is the ground");
@@ -165,11 +167,12 @@ static void add_plane(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
 
 /* What can touch is a shape that does, and what cannot one that is drawn in place of the body's others. */
 static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct Link *link) {
-  bool touches = mjcf_number(mjcf, node, "contype", 1) != 0 || mjcf_number(mjcf, node, "conaffinity", 1) != 0;
+  struct MjcfContact contact = mjcf_contact(mjcf, node);
+  bool touches = mjcf_touches(mjcf, &contact);
   bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
   const char *problem = problem_of(geom, meets_ground);
   if (geom->type == PLANE) {
-    if (touches) add_plane(mjcf, node, geom, link);
+    if (touches) add_plane(mjcf, &contact, geom, link);
     return;
   }
   if (problem != NULL && meets_ground)
@@ -183,6 +186,7 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   if (problem != NULL) return;
   struct Collision shape = shape_of(geom, xmlGetLineNo(node));
   shape.color = read_color(mjcf, node);
+  if (touches) mjcf_set_contact(mjcf, &contact, &shape);
   struct Collision **shapes = touches ? &link->collisions : &link->visuals;
   size_t *count = touches ? &link->collision_count : &link->visual_count;
   *shapes = make_room(*shapes, *count, sizeof **shapes);
@@ -216,7 +220,8 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
     if (!is_element(child, "geom")) continue;
     struct Geom geom = read_geom(mjcf, child);
     geom.place = placement_within(outer, &geom.place);
-    if (weighs) {
+    double group = mjcf_number(mjcf, child, "group", 0);
+    if (weighs && group >= mjcf->inertia_groups[0] && group <= mjcf->inertia_groups[1]) {
       struct RigidBody part = weigh(mjcf, child, &geom);
       link->body = body_joined(&link->body, &part);
     }

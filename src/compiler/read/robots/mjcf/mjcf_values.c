@@ -7,8 +7,6 @@
 #include "base/memory.h"
 #include "read/xml/nodes.h"
 
-enum { NUMBERS_LIMIT = 64 };
-
 /* A <default> of this class, at any depth; NULL where there is none. */
 static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
@@ -301,15 +299,8 @@ void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy)
 }
 
 void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  static const char *const nothing[] = {"false", "none", "auto", "disable"};
   const char *text = mjcf_text(mjcf, node, name);
-  double values[NUMBERS_LIMIT];
-  if (text == NULL) return;
-  for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
-    if (strcmp(text, nothing[i]) == 0) return;
-  size_t count = parse_numbers(text, NUMBERS_LIMIT, values), i = 0;
-  while (i < count && values[i] == 0) i++;
-  if (count > 0 && i == count) return;
+  if (text == NULL || says_nothing(text)) return;
   report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
                "%s=\"%.60s\" of <%s> is not read, and would change the motion; expected a file without it", name, text,
                (const char *)node->name);

@@ -7,7 +7,18 @@
 #include "read/names/names.h"
 #include "read/robots/description/robot_file.h"
 
+enum { ACTUATOR_GROUPS = 31 };
+
 enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
+
+/* How a geom touches others. */
+struct MjcfContact {
+  xmlNodePtr node;   /* of the geom; NULL for none */
+  double friction;   /* coefficient of sliding friction */
+  double dimensions; /* of the force: 1 without friction, 3 with it, 4 and 6 with that of spinning, and rolling */
+  double priority;
+  unsigned type, affinity; /* masks: two touch where one's type and the other's affinity have a bit in common */
+};
 
 struct Mjcf {
   struct RobotFile file;
@@ -16,9 +27,14 @@ struct Mjcf {
   const char *euler_sequence;
   bool has_automatic_limits;
   enum InertiaFromGeoms inertia_from_geoms;
-  size_t unnamed_count; /* bodies without a name so far */
-  char *mesh_folder;    /* of the meshes' files, relative to the robot's; NULL for that itself */
-  struct Names *meshes; /* that geoms have -> struct MjcfMesh */
+  double inertia_groups[2];             /* geoms of groups between these have a mass */
+  size_t unnamed_count;                 /* bodies without a name so far */
+  char *mesh_folder;                    /* of the meshes' files, relative to the robot's; NULL for that itself */
+  struct Names *meshes;                 /* that geoms have -> struct MjcfMesh */
+  struct MjcfContact ground, *contacts; /* of the plane that is the ground, and of all other geoms that touch */
+  size_t contact_count;
+  bool has_no_contacts, touches_parents; /* by <flag> */
+  bool is_off[ACTUATOR_GROUPS];          /* groups of actuators without force */
   struct Names *places; /* of bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 

@@ -1,0 +1,120 @@
+"""What MJCF says of contacts: friction, masks, priorities, pairs; and what touches in MuJoCo alone."""
+
+import math
+import re
+
+import pytest
+
+from building import build_systems
+from fmu import lagc
+
+ANGLE, DURATION, G = 0.3, 2.0, 9.81
+BOX = '<body name="{0}" pos="0 {1} 0.1"><freejoint/><geom name="g{0}" type="box" size="0.2 0.2 0.1" {2}/></body>'
+# What a box says, what it is beside, and the coefficient with which it slides; None: it falls.
+BOXES = {
+    "rough": ('friction="0.2"', 0.2),
+    "smooth": ('friction="0.02"', 0.05),
+    "prior": ('friction="0.02" priority="1"', 0.02),
+    "frictionless": ('friction="0.3" condim="1" priority="2"', 0.0),
+    "spinning": ('friction="0.15 0.1 0.1" condim="6"', 0.15),
+    "apart": ('contype="2" conaffinity="4"', None),
+    "near": ('friction="0.1" contype="2" conaffinity="1"', 0.1),
+    "paired": ('contype="0" conaffinity="0"', 0.12),
+    "excluded": ('friction="0.1"', None),
+}
+SLOPE = f"""<mujoco model="slope"><option gravity="{G * math.sin(ANGLE)} 0 {-G * math.cos(ANGLE)}"/><worldbody>
+{"".join(BOX.format(name, 3 * i, what) for i, (name, (what, _)) in enumerate(BOXES.items()))}
+<geom name="floor" type="plane" size="1 1 1" friction="0.05"/></worldbody>
+<contact><pair geom1="gpaired" geom2="floor" friction="0.12 0.12"/><exclude body1="excluded" body2="world"/></contact></mujoco>"""
+ROUGH = SLOPE.replace('friction="0.05"', "").replace('<contact>', '<contact><exclude body1="rough" body2="smooth"/>')
+SYSTEM = '<system name="{}"><include file="slope.xml" as="r" ground="true"{}</system>'
+SET = '><parameter name="ground_friction" start="0.25"/></include>'
+SYSTEMS = {"Slope": SYSTEM.format("Slope", "/>"), "Rough": SYSTEM.format("Rough", "/>"), "Same": SYSTEM.format("Same", SET)}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE}
+    build_systems("contacts_of_mjcf", SYSTEMS, files=files)
+
+
+def slides(instance, coefficients):
+    """From rest each box slides as Coulomb's law says, or falls freely; the ground gives way by less than a millimetre."""
+    for name, friction in coefficients.items():
+        x, z = instance.get(f"r.{name}_x"), instance.get(f"r.{name}_z")
+        expected = DURATION**2 / 2 * G * max(0, math.sin(ANGLE) - (friction or 0) * math.cos(ANGLE))
+        assert x == pytest.approx(expected, abs=0.01), name
+        assert z == pytest.approx(0.1 if friction is not None else 0.1 - DURATION**2 / 2 * G * math.cos(ANGLE), abs=1e-3), name
+
+
+@pytest.mark.parametrize(
+    "system, coefficients",
+    [
+        ("Slope", {name: friction for name, (_, friction) in BOXES.items()}),
+        # A plane that says nothing has MuJoCo's coefficient of 1, so that nothing slides but by priority or a pair.
+        ("Rough", {name: friction if name in ("prior", "frictionless", "paired") or friction is None else 1 for name, (_, friction) in BOXES.items()}),
+        ("Same", {name: friction if friction is None else 0.25 for name, (_, friction) in BOXES.items()}),
+    ],
+)
+def test_friction_and_masks(system, coefficients, open_fmu):
+    instance = open_fmu(system).initialize(tolerance=1e-8)
+    instance.run(DURATION, 0.1)
+    slides(instance, coefficients)
+
+
+WORLD = """<mujoco><worldbody>
+<geom name="floor" type="plane" size="1 1 1"/>
+<geom name="wall" type="box" size="1 1 1" pos="3 0 0"/>
+<body name="a"><freejoint/><geom name="ga" size="0.1"/>
+<body name="b" pos="0 0 1"><joint name="hinge"/><geom size="0.1" condim="4"/>
+<body name="c" pos="0 0 1"><joint/><geom size="0.1" contype="0"/></body></body></body></worldbody>
+</mujoco>"""
+STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <include>, or ground=\"false\" if this is meant"
+STATIC = "the geom 'wall' of the world does not touch the geom 'ga' of the body 'a', and 2 other such pairs, unlike in MuJoCo"
+BODIES = "the geom 'ga' of the body 'a' does not touch the geom on line 6 of the body 'c', unlike in MuJoCo"
+SPINS = "the torsional friction of condim=\"4\" is not read, and may change the motion; expected condim=\"3\""
+DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; expected a file without it"
+
+
+@pytest.mark.parametrize(
+    "ground, replaced, new, lines",
+    [
+        ("", "", "", {(2, STANDS), (3, STATIC), (4, BODIES)}),
+        ('ground="true"', "", "", {(3, STATIC), (4, BODIES), (5, SPINS)}),
+        ('ground="false"', "", "", set()),
+        ("", "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', set()),
+        ('ground="true"', "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', {(1, DISABLED)}),
+        ("", "</worldbody>", '</worldbody><contact><exclude body1="c" body2="a"/></contact>', {(2, STANDS), (3, STATIC)}),
+        ("", 'contype="0"', 'contype="0" conaffinity="2"', {(2, STANDS), (3, STATIC.replace("2 other such pairs", "1 other such pair"))}),
+    ],
+)
+def test_what_touches_in_mujoco_alone(ground, replaced, new, lines, tmp_path):
+    (tmp_path / "world.xml").write_text(WORLD.replace(replaced, new) if replaced else WORLD)
+    (tmp_path / "system.xml").write_text(f'<system name="S"><include file="world.xml" as="r" {ground}/></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    told = re.findall(r"^world\.xml:(\d+): warning: (.*)", result.stderr, re.MULTILINE)
+    assert len(told) == len(lines) and all(any(line == int(number) and text.startswith(words) for number, text in told) for line, words in lines), result.stderr
+
+
+@pytest.mark.parametrize(
+    "geom, message",
+    [
+        ('condim="2"', 'condim="2" of <geom>; expected 1, 3, 4 or 6'),
+        ('friction="-1"', 'friction="-1" of <geom> is negative; expected 0 or more'),
+        ('friction="1 2 3 4"', 'friction="1 2 3 4" of <geom>; expected 1 to 3 numbers'),
+    ],
+)
+def test_bad_contacts(geom, message, tmp_path):
+    (tmp_path / "world.xml").write_text(WORLD.replace('condim="4"', geom))
+    result = lagc("world.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and f"world.xml:5: {message}" in result.stderr, result.stderr
+
+
+def test_a_link_that_is_to_stand_and_does_not_meet_the_plane(tmp_path):
+    (tmp_path / "world.xml").write_text(WORLD)
+    (tmp_path / "system.xml").write_text('<system name="S"><include file="world.xml" as="r" ground="d"/></system>')
+    (tmp_path / "world.xml").write_text(WORLD.replace('name="c"', 'name="d"').replace('contype="0"', 'contype="2" conaffinity="2"'))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1
+    assert "the link 'd' has no shape that could stand on the ground; expected a <collision> or <geom> in it, which its contype" in result.stderr

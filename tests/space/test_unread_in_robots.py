@@ -1,0 +1,118 @@
+"""What files of robots say beyond geometry and inertia: each attribute that changes the motion is read, or warned of with a remedy."""
+
+import math
+import re
+
+import pytest
+
+from building import build_systems
+from fmu import lagc
+
+ROTOR = """<robot name="rotor">
+<link name="stand">{0}</link>
+<link name="rotor">{0}</link>
+<joint name="hinge" type="revolute"><parent link="stand"/><child link="rotor"/><axis xyz="0 0 1"/>
+<limit lower="-9" upper="9" effort="0" velocity="0"/>
+<dynamics damping="0" spring_stiffness="2" spring_reference="0.3"/></joint>
+</robot>""".format('<inertial><mass value="1"/><inertia ixx="0.5" iyy="0.5" izz="0.5" ixy="0" ixz="0" iyz="0"/></inertial>')
+WHEEL = """<mujoco model="wheel">
+<compiler inertiagrouprange="0 1"/><option gravity="0 0 0" actuatorgroupdisable="2 7"/><default><motor group="7"/></default>
+<worldbody><body name="wheel"><joint name="hinge" axis="0 1 0"/>
+<geom type="box" size="0.1 0.2 0.3" mass="3" group="1"/><geom size="0.5" pos="0.5 0 0" mass="9" group="2"/></body></worldbody>
+<actuator><motor name="one" joint="hinge" group="1"/><motor name="two" joint="hinge" group="2"/><position name="three" joint="hinge" group="2" kp="5"/><motor name="four" joint="hinge"/></actuator>
+</mujoco>"""
+SYSTEMS = {
+    "Sprung": '<system name="Sprung"><include file="rotor.urdf" as="r" limits="outputs" effort="limited"/></system>',
+    "Wheel": '<system name="Wheel"><include file="wheel.xml" as="r"/></system>',
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("unread_in_robots", SYSTEMS, files={"Sprung/rotor.urdf": ROTOR, "Wheel/wheel.xml": WHEEL})
+
+
+@pytest.mark.parametrize("torque", [0.0, 3.0])
+def test_a_spring_and_an_effort_that_is_not_known(torque, open_fmu):
+    """The spring of <dynamics> turns the rotor about its reference; a limit of 0 limits nothing."""
+    instance = open_fmu("Sprung").initialize({"r.hinge_torque": torque}, tolerance=1e-10)
+    instance.run(1.0, 0.1)
+    middle = 0.3 + torque / 2
+    assert instance.get("r.hinge") == pytest.approx(middle * (1 - math.cos(2)), rel=1e-8)
+
+
+def test_groups_of_actuators_and_geoms(open_fmu):
+    """Actuators of disabled groups do nothing; geoms of other groups weigh nothing. The box has m (a^2 + c^2)/3 = 0.1 kg.m2."""
+    controls = {f"r.{name}_control": value for name, value in (("one", 0.1), ("two", 5.0), ("three", 4.0), ("four", 3.0))}
+    instance = open_fmu("Wheel").initialize(controls, tolerance=1e-10)
+    instance.run(1.0, 0.1)
+    assert instance.get("r.hinge") == pytest.approx(0.1 / 0.1 / 2, rel=1e-9)
+
+
+def warnings_of(name, text, attributes, folder):
+    (folder / name).write_text(text)
+    (folder / "system.xml").write_text(f'<system name="S"><include file="{name}" as="r" {attributes}/></system>')
+    result = lagc("system.xml", "-o", "out", cwd=folder)
+    assert result.returncode == 0, result.stderr
+    return re.findall(rf"^{name}:(\d+): warning: (.*?)(?: \(included|$)", result.stderr, re.MULTILINE)
+
+
+UNREAD = "is not read, and may change the motion; expected"
+QUIET = 'base="floating" ground="false" limits="outputs" effort="unlimited"'
+IN_SYSTEM = "a <force> in a <system> that includes the robot"
+URDF_CASES = {
+    "unknown effort": ("", "", 'limits="stops" effort="limited"', 5, f'effort="0" of <limit>, which stands for no limit, {UNREAD} the largest force or torque of the motor'),
+    "limits": ("", "", "", 4, "motion is not stopped at the limits of the joint 'hinge'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>"),
+    "effort": ('effort="0"', 'effort="3"', 'limits="stops"', 4, "motors may push with more than the effort of the joint 'hinge'; expected effort=\"limited\""),
+    "limits of a plane": ('"revolute"', '"planar"', QUIET, 5, f"<limit lower upper> of a floating or planar joint {UNREAD} a <stop> at each of its coordinates"),
+    "spring in a plane": ('"revolute"', '"planar"', QUIET, 6, f"<dynamics> of a floating or planar joint {UNREAD} {IN_SYSTEM}"),
+    "effort in a plane": ('"revolute"><parent', '"planar"><limit effort="4"/><parent', 'effort="limited"', 4, f"effort of a floating or planar joint {UNREAD}"),
+    "another attribute": ("damping=", 'armature="1" damping=', QUIET, 6, f"armature of <dynamics> {UNREAD}"),
+    "spring of Gazebo": ("</robot>", '<gazebo reference="hinge"><springStiffness>3</springStiffness></gazebo></robot>', QUIET, 7, f"<springStiffness> {UNREAD} spring_stiffness of <dynamics>"),
+    "gravity off": ("</robot>", '<gazebo reference="rotor"><turnGravityOff>true</turnGravityOff></gazebo></robot>', QUIET, 7, f"<turnGravityOff> {UNREAD} {IN_SYSTEM}"),
+    "friction of Gazebo": ("</robot>", '<gazebo reference="rotor"><mu1>0.3</mu1></gazebo></robot>', 'ground="true" limits="stops"', 7, f"<mu1> {UNREAD} ground_friction of the robot"),
+    "wheel": ('<link name="stand">', '<link name="stand"><collision><geometry><cylinder radius="0.1" length="0.1"/></geometry></collision>', 'base="floating" ground="true" limits="stops"', 2, "the cylinder of the link 'stand' touches the ground at 8 points of each rim"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("replaced, new, attributes, line, message", URDF_CASES.values(), ids=URDF_CASES)
+def test_warnings_of_urdf(replaced, new, attributes, line, message, tmp_path):
+    text = ROTOR.replace(replaced, new) if replaced else ROTOR
+    if "<limit" in new:
+        text = text.replace('<limit lower="-9" upper="9" effort="0" velocity="0"/>', "")
+    told = warnings_of("rotor.urdf", text, attributes, tmp_path)
+    assert [(number, words) for number, words in told if words.startswith(message)] == [(str(line), words) for _, words in told if words.startswith(message)] != []
+
+
+@pytest.mark.parametrize("text", ["<mu1>0.3</mu1>", "<selfCollide>true</selfCollide>", "<springStiffness>0</springStiffness>", "<turnGravityOff>false</turnGravityOff>", "<material>Grey</material>"])
+def test_elements_of_simulators_that_do_nothing(text, tmp_path):
+    assert warnings_of("rotor.urdf", ROTOR.replace("</robot>", f"<gazebo>{text}</gazebo></robot>"), QUIET, tmp_path) == []
+
+
+# An attribute of an element, what the <include> says, the remedy.
+MJCF_CASES = [
+    ("geom", 'margin="0.1"', 'ground="true"', "shapes that are larger"),
+    ("geom", 'solref="0.01 1"', 'ground="true"', "ground_stiffness and ground_damping of the robot"),
+    ("geom", 'adhesion="1"', 'ground="true"', "a <force> that holds the shape to the ground"),
+    ("geom", 'surfacevel="1 0 0 0 0 0"', 'ground="true"', "a <contact> with a shape that moves"),
+    ("joint", 'margin="0.1"', 'limits="stops"', "a range that is smaller by it"),
+    ("joint", 'solreflimit="0.01 1"', 'limits="stops"', "a limit, friction or constraint that is exact"),
+    ("joint", 'springyield="1"', "", "a <force> in a <system>"),
+    ("joint", 'unheard="1"', "", "one of the attributes that the reference names"),
+    ("motor", 'velrange="-1 1"', "", "an actuator at a joint or tendon, without it"),
+]
+
+
+@pytest.mark.parametrize("element, attribute, asked, remedy", MJCF_CASES, ids=[f"{case[0]}-{case[1].split('=')[0]}" for case in MJCF_CASES])
+def test_warnings_of_mjcf(element, attribute, asked, remedy, tmp_path):
+    """Once, in the element or its <default>; not where the <include> asks for nothing that it would change, or it is 0."""
+    name = attribute.split("=")[0]
+    message = f"{name} of <{element}> {UNREAD} {remedy}"
+    for pattern in (rf"<{element} (?!group=\"7)", "<default>"):
+        new = f"<{element} {attribute} " if pattern != "<default>" else f"<default><{element} {attribute}/>"
+        text = re.sub(pattern, new, WHEEL).replace(f'<motor {attribute}/><motor group="7"/>', f'<motor {attribute} group="7"/>')
+        assert len([words for _, words in warnings_of("wheel.xml", text, asked, tmp_path) if words.startswith(message)]) == 1
+        if asked:
+            assert not any(name in words for _, words in warnings_of("wheel.xml", text, "", tmp_path))
+        nothing = text.replace(attribute, f'{name}="0"')
+        assert name == "unheard" or not any(name in words for _, words in warnings_of("wheel.xml", nothing, asked, tmp_path))
