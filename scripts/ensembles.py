@@ -3,19 +3,25 @@ Many runs of an FMU at once: its equations, which stand in its sources, compiled
 once more for one run, for its events and constraints. Those of systems with Taylor series can be. Also a module of the wheel.
 """
 
+import sys
 import zipfile
 from ctypes import CDLL, Structure, byref, c_bool, c_double, c_size_t, c_void_p
 
 import numpy as np
 
 MARK = "#ifdef LANES"  # of sources that can be compiled over lanes
-# Of src/runtime what goes with them, by patterns.
-RUNTIME_PARTS = ["instance/*.c", "evaluation/*.c", "stepping/start.c", "events/*.c", "contacts/*.c", "planes/*.c", "methods/projection.c", "fmi/check.c", "fmi/reverse_sweep.c",
-                 *(f"support/{name}.c" for name in ("series_limit", "instructions", "ldlt", "saddle", "oblique"))]  # fmt: skip
+NOT_IN_LANES = ("fmi2", "fmi3", "methods", "sundials")  # rooms of src/runtime: what calls an FMU, and solvers, which src/ensemble replaces
+COMPLETE = ["-Wl,-z,defs"] if sys.platform == "linux" else []  # a missing function fails when the library is made, not when it is loaded
 LANES_HEAD = '#include "generated.h"\n'
 ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone
 SYSTEM, NO_SYSTEM = '#include "system.c"\n', "const struct Lagrangian lagrangian = {0};\n"
 ONE_HEAD = '#undef LANES\n#define LANES 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
+
+
+def runtime_sources(root):
+    """Returns all that a system in lanes may refer to."""
+    files = sorted((root / "src" / "runtime").rglob("*.c"))
+    return [file for file in files if file.parent.name not in NOT_IN_LANES or file.name == "projection.c"]
 
 
 def lanes_here(runner):
@@ -40,7 +46,7 @@ def words(root, lanes, source, folder, library):
     texts = {"system": source, "lanes": f"{LANES_HEAD}{SYSTEM}", "one": f"{ONE_HEAD}{SYSTEM if needs_one else NO_SYSTEM}"}
     for name, text in texts.items():
         (folder / f"{name}.c").write_text(text, encoding="utf-8")
-    return [f"@{ensemble / 'lanes.flags'}", f"@{ensemble / f'lanes{lanes}.flags'}", "-fPIC", "-shared", *includes(root),
+    return [f"@{ensemble / 'lanes.flags'}", f"@{ensemble / f'lanes{lanes}.flags'}", "-fPIC", "-shared", *COMPLETE, *includes(root),
             *(folder / f"{name}.c" for name in ("lanes", "one")), "-o", library]  # fmt: skip
 
 

@@ -92,7 +92,8 @@ def python_pendulum(folder, count):
             before = time.perf_counter()
             instance.doStep(i * STEP, STEP)
             run[i] = time.perf_counter() - before
-        instance.freeInstance()
+        instance.fmi2FreeInstance(instance.component)  # freeInstance() of FMPy unloads the library as well
+    instance.freeLibrary()
     return row_of("pendulum by PythonFMU", taken)
 
 

@@ -1,6 +1,8 @@
 """The times of single communication steps."""
 
+import os
 import subprocess
+import sys
 
 from fmpy import read_model_description
 
@@ -30,3 +32,13 @@ def test_peers():
     for solver in ("Euler", "CVode"):
         row = realtime.imported_pendulum(solver, 200)
         assert row["steps"] == 200 and 0 < float(row["median"]) <= float(row["longest"]) <= float(row["longest as seen"])
+
+
+def test_a_peer_in_python(tmp_path):
+    """By PythonFMU, which is there after scripts/test; in a process of its own, since a mistake with its library would end this one."""
+    code = "import sys, realtime; print([realtime.python_pendulum(folder, 300)['steps'] for folder in sys.argv[1:]])"
+    folders = [tmp_path / name for name in ("first", "second", "third")]
+    for folder in folders:
+        folder.mkdir()
+    result = subprocess.run([sys.executable, "-c", code, *folders], capture_output=True, text=True, env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)})
+    assert result.returncode == 0 and result.stdout == "[300, 300, 300]\n", result.stderr

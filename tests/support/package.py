@@ -31,9 +31,12 @@ def assemble(folder):
     return folder
 
 
+def environment(folder):
+    return os.environ | {"PYTHONPATH": str(folder)}
+
+
 def python(folder, *words, cwd):
-    environment = os.environ | {"PYTHONPATH": str(folder)}
-    return subprocess.run([sys.executable, *map(str, words)], env=environment, cwd=cwd, capture_output=True, text=True)
+    return subprocess.run([sys.executable, *map(str, words)], env=environment(folder), cwd=cwd, capture_output=True, text=True)
 
 
 def run(folder, *words, cwd):

@@ -11,7 +11,9 @@ from ..runtime.scripts.cross import zig
 from ..sweep_words import sweep_words
 from .words_of_systems import SYSTEM_OR_FMU
 
-RUNTIME = Path(__file__).parent.parent / "runtime"
+PACKAGE = Path(__file__).parent.parent
+RUNTIME = PACKAGE / "runtime"
+HOW = (PACKAGE / "ensembles.py", Path(__file__))  # what tells how the libraries are compiled
 
 
 def arguments(parser):
@@ -27,7 +29,7 @@ def compiled(place, name, key, what, words_for):
         library.parent.mkdir()
         zig("cc", *words_for(library), cache=place / "cache")
 
-    take_or_compile(caching.key_of(runtime_key(), *key), library.parent, what, compile_library)
+    take_or_compile(caching.key_of(runtime_key(), *(file.read_bytes() for file in HOW), *key), library.parent, what, compile_library)
     return library
 
 
@@ -39,11 +41,10 @@ def runner(place):
 
 def ensemble_runtime(place):
     """What runs in lanes have of the runtime of FMUs, as an object: all in one piece, once for all systems."""
-    from ..ensembles import RUNTIME_PARTS, includes
+    from ..ensembles import includes, runtime_sources
 
     source, runtime = place / "ensemble_runtime.c", RUNTIME / "src" / "runtime"
-    files = [file for part in RUNTIME_PARTS for file in sorted(runtime.glob(part))]
-    source.write_text("".join(f'#include "{file.relative_to(runtime).as_posix()}"\n' for file in files), encoding="utf-8")
+    source.write_text("".join(f'#include "{file.relative_to(runtime).as_posix()}"\n' for file in runtime_sources(RUNTIME)), encoding="utf-8")
     words = ["-std=c11", "-O2", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-c", *includes(RUNTIME), source]
     what = "the runtime of many runs at once cannot be compiled"
     return compiled(place, "ensemble_runtime.o", ["ensemble_runtime"], what, lambda library: [*words, "-o", library])
