@@ -32,7 +32,7 @@ def main():
         parser.error("--edit needs --system")
     origin = origin_in(arguments.build, arguments.system) if arguments.system else None
     try:
-        page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}.html"
+        page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}{'-edit' if arguments.edit else ''}.html"
         path = write_editor(arguments.system, LABORATORY, page) if arguments.edit else write_page(arguments.fmu, page, origin)
     except Problem as problem:
         sys.exit(f"scripts/live: {problem}")

@@ -1,6 +1,8 @@
 """Simulating an FMU with FMPy; a CSV, a plot and an animation of its motion. Also a module of the wheel."""
 
 import argparse
+import inspect
+import math
 import re
 import sys
 import textwrap
@@ -16,13 +18,20 @@ from fmpy.fmi1 import FMICallException
 from fmpy.model_description import ModelDescription
 from numpy.lib.recfunctions import repack_fields
 
+from .co_simulation import EVENTS, OPTIONS, Interrupted, co_simulate
+from .exchange import exchange
 from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem
-from .variables import settable, start_values, why_not
+from .signals import signals_of
+from .variables import check_start, elements, instead, known, names_of, start_values
 
 
-EVENTS = "events"  # the FMU's variable that counts them
+WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver", "step", "tolerance")  # with which users ask for a simulation
+TYPES = ("CoSimulation", "ModelExchange")
+TAKEN = ("filename", "fmi_type", "fmu_instance", "start_values", "input", "output", "set_input_derivatives")  # which have other names here
+FMPY = tuple(name for name in inspect.signature(simulate_fmu).parameters if name not in TAKEN)  # the other options
+ROWS = 500  # of a simulation for which neither the FMU nor the user has a step
 ENERGIES = ("kineticEnergy", "potentialEnergy", "totalEnergy")
 FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at most
 LEVEL = 1e-6  # of its size: what changes by less is drawn as if it did not
@@ -68,36 +77,22 @@ def described(fmu):
         raise Problem(f"{fmu} is not an FMU, which is a zip archive with a modelDescription.xml; expected one that a tool has exported, or a system to build") from None
 
 
-def known(names, among, description, what="is not a variable"):
-    """The names, all of which are among those."""
-    for name in names:
-        if name not in among:
-            raise Problem(f"'{name}' {what} of {description.modelName}{why_not(name, description)}; these are: {', '.join(among)}")
-    return list(names)
+def experiment_of(description, start_time=None, stop_time=None, output_interval=None):
+    """When a simulation begins and ends, and its step, all in s: where these are not given, as the FMU's experiment says."""
+    experiment = description.defaultExperiment
+    start, stop, step = (
+        float(next((value for value in (given, getattr(experiment, name, None), default) if value is not None), math.nan))
+        for given, name, default in ((start_time, "startTime", 0.0), (stop_time, "stopTime", None), (output_interval, "stepSize", None))
+    )
+    stop = start + 1.0 if math.isnan(stop) else stop
+    step = (stop - start) / ROWS if math.isnan(step) else step
+    if not (math.isfinite(start) and start < stop < math.inf and 0 < step < math.inf):
+        raise Problem(f"the simulation is from {start:g} s to {stop:g} s by {step:g} s; expected a later end, and a step above 0")
+    return start, stop, step
 
 
-def check_start(start, description):
-    names, free = [variable.name for variable in description.modelVariables], settable(description)
-    for name in start:
-        if name not in free:
-            what = f"'{name}' of {description.modelName} cannot be set" if name in names else f"'{name}' is not a variable of {description.modelName}"
-            raise Problem(f"{what}{why_not(name, description)}; these can be: {', '.join(free)}")
-
-
-def simulate(fmu, start, output=None, input=None, **options):
-    """
-    The Motion of an FMU from start values by name, over its experiment. `output` has the names of the variables to record, in place of all
-    outputs; `input` is a structured array of time and inputs; options are those of simulate_fmu of FMPy.
-    """
-    description = described(fmu)
-    check_start(start, description)
-    names = [variable.name for variable in description.modelVariables]
-    outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
-    outputs = outputs if output is None else [name for name in known(output, ["time", *names], description) if name != "time"]
-    if input is not None:
-        known(input.dtype.names[1:], [v.name for v in description.modelVariables if v.causality == "input"], description, "is not an input")
-    tree = read_tree(fmu)
-    problems = []
+def _log_into(problems):
+    """A logger that prints problems, and collects what ends a simulation."""
 
     def log(*words):
         print_problem(*words)
@@ -105,13 +100,47 @@ def simulate(fmu, start, output=None, input=None, **options):
         if status > 1:
             problems.append(message.decode().replace("%%", "%"))
 
-    settings = {"fmi_type": "CoSimulation", "logger": log, "debug_logging": True} | options
+    return log
+
+
+def _check_options(options, allowed):
+    for name in options:
+        if name not in allowed:
+            raise Problem(f"'{name}' is not an option of this simulation; {instead(name, [*WORDS, *allowed], 'expected one of these')}")
+
+
+def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSimulation", **options):
+    """
+    The Motion of an FMU from start values by name, over its experiment. `output` has the names of the variables to record, in place of all
+    outputs; `input` is what signals_of takes, held between its rows or in each step if `hold`; options are those of co_simulate, or in model exchange of simulate_fmu of FMPy.
+    """
+    if fmi_type not in TYPES:
+        raise Problem(f"the type '{fmi_type}' is not known; {instead(fmi_type, TYPES, 'expected one of these')}")
+    description = described(fmu)
+    if description.fmiVersion[0] not in "23":
+        raise Problem(f"{fmu} is of FMI {description.fmiVersion}; expected an FMU of FMI 2.0 or 3.0")
+    is_own = fmi_type == "CoSimulation"
+    _check_options(options, OPTIONS if is_own else FMPY)
+    check_start(start, description)
+    names = [variable.name for variable in description.modelVariables]
+    outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
+    outputs = outputs if output is None else [name for name in known(names_of(output, "output"), ["time", *names], description) if name != "time"]
+    begin, stop, step = experiment_of(description, *(options.pop(name, None) for name in ("start_time", "stop_time", "output_interval")))
+    signals = None if input is None else signals_of(input, description, begin, hold)
+    tree = read_tree(fmu)
+    recorded = list(dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)]))
+    problems = []
+    options = {"logger": _log_into(problems), "debug_logging": True} | options
     try:
-        recorded = dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)])
-        values = simulate_fmu(fmu, start_values=start, input=input, output=list(recorded), **settings)
-    except FMICallException as problem:
+        if is_own:
+            tolerance = options.pop("relative_tolerance", None) or getattr(description.defaultExperiment, "tolerance", None)
+            values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance and float(tolerance), **options)
+        else:
+            values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
+    except (FMICallException, Interrupted) as problem:
         raise Problem("; ".join([f"{fmu}: {problem}", *problems])) from None
-    return Motion(fmu, description, tree, start_values(description) | start, repack_fields(values[["time", *outputs]]), values)
+    starts = start_values(description) | {name: value for name, value in start.items() if np.ndim(value) == 0}
+    return Motion(fmu, description, tree, starts, scalars(repack_fields(values[["time", *outputs]])), scalars(values))
 
 
 def crowds_of(names):
@@ -122,7 +151,16 @@ def crowds_of(names):
 
 
 def units_of(description):
-    return {variable.name: variable.unit or "1" for variable in description.modelVariables}
+    return {name: v.unit or "1" for v in description.modelVariables for name in (v.name, *elements(v.name, v.shape))}
+
+
+def scalars(values):
+    """A structured array in which the elements of arrays have columns of their own."""
+    shapes = {name: values.dtype[name].shape for name in values.dtype.names}
+    if not any(shapes.values()):
+        return values
+    columns = {element: column for name in shapes for element, column in zip(elements(name, shapes[name]), values[name].reshape(len(values), -1).T)}
+    return np.rec.fromarrays(list(columns.values()), names=list(columns)).view(np.ndarray)
 
 
 def sizes_of(unit_of, result):
@@ -154,7 +192,7 @@ def panels_of(description, result):
 
 
 def event_times(values):
-    """Between which results an event was: the later one's time."""
+    """The times of the results behind which there were more events than before."""
     if EVENTS not in values.dtype.names:
         return []
     return values["time"][1:][np.diff(values[EVENTS]) > 0]
@@ -180,10 +218,10 @@ def draw(axis, result, names, size):
 
 def figure_of(description, result, events=()):
     """A panel for outputs of one unit and size, their names beside it; dotted lines are events."""
-    from matplotlib.figure import Figure
+    from .picture import Picture
 
     panels, sizes = panels_of(description, result), sizes_of(units_of(description), result)
-    figure = Figure(figsize=(9, 1.2 + 1.9 * len(panels)), layout="constrained")
+    figure = Picture(figsize=(9, 1.2 + 1.9 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
     for (unit, names), axis in zip(panels, axes):
         for time in events if len(events) <= MOST_EVENTS else []:
@@ -205,7 +243,7 @@ def write_results(motion, folder):
     """Writes them into the folder; the path of each kind, the FMU's too, or why there is none."""
     folder.mkdir(parents=True, exist_ok=True)
     name, result = motion.description.modelName, motion.outputs
-    csv, plot, animation = ((folder / f"{name}.{kind}").resolve() for kind in ("csv", "png", "html"))
+    csv, plot, animation = ((folder / f"{name}{end}").resolve() for end in (".csv", ".png", "-motion.html"))
     np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
     written = {"FMU": Path(motion.fmu).resolve(), "CSV": csv, "plot": plot, "animation": animation}
     try:

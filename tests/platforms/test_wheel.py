@@ -95,7 +95,7 @@ def test_from_nothing_to_a_motion(tmp_path):
     assert succeed("build", "Swing.xml", "-o", "built", cwd=tmp_path) == "built/Swing.fmu\n"
     assert validate_fmu(tmp_path / "built" / "Swing.fmu") == []
     output = succeed("run", "Swing.xml", "theta=2", "b=0", cwd=tmp_path)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["Swing.csv", "Swing.fmu", "Swing.html", "Swing.xml", "built"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["Swing-motion.html", "Swing.csv", "Swing.fmu", "Swing.xml", "built"]
     assert f"CSV        {tmp_path}/Swing.csv\n" in output and "plot       none, since matplotlib is not installed" in output
     rows = np.genfromtxt(tmp_path / "Swing.csv", delimiter=",", names=True)
     assert rows["theta"][0] == 2 and rows["time"][-1] == 10
@@ -124,8 +124,8 @@ def test_a_live_page(tmp_path):
 def test_a_page_to_write_in(tmp_path):
     """Without a compiler: lagc and the runtime are in it."""
     succeed("new", "Mine", cwd=tmp_path)
-    assert succeed("live", "Mine.xml", "--edit", cwd=tmp_path) == f"{tmp_path}/Mine.html\n"
-    page = (tmp_path / "Mine.html").read_text()
+    assert succeed("live", "Mine.xml", "--edit", cwd=tmp_path) == f"{tmp_path}/Mine-edit.html\n"
+    page = (tmp_path / "Mine-edit.html").read_text()
     assert '"laboratory":"' in page and '<system name=\\"Mine\\"' in page.replace("\\u003c", "<") and len(page) < 900_000
     result = wheel.run("live", "Mine.fmu", "--edit", cwd=tmp_path)
     assert result.returncode != 0 and "Mine.fmu is an FMU; with --edit expected the system.xml that it was made of" in result.stderr

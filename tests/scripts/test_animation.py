@@ -69,8 +69,8 @@ def test_a_pendulum(browser, tmp_path):
     """By scripts/simulate.py: the bob and its rod at any time of the bar, whatever was recorded. It plays from the start, and fetches nothing."""
     words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("SimplePendulum"), "theta=2", "l=0.5"]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout
-    assert re.search(r"^animation +/.*/build/results/SimplePendulum\.html$", printed, re.M)
-    file = tmp_path / "build" / "results" / "SimplePendulum.html"
+    assert re.search(r"^animation +/.*/build/results/SimplePendulum-motion\.html$", printed, re.M)
+    file = tmp_path / "build" / "results" / "SimplePendulum-motion.html"
     assert len(file.read_text()) < 900_000
     fetched = []
     browser.on("page", lambda page: page.on("request", lambda request: fetched.append(request.url)))

@@ -119,7 +119,7 @@ def test_what_is_no_equilibrium(command, tmp_path):
 
 
 def test_signals_and_what_is_recorded(command, tmp_path):
-    """A force on a cart without a pendulum, which is t where each communication step begins, and held over it; whichever the version of FMI."""
+    """A force on a cart without a pendulum, which is t: x = t^3/6; whichever the version of FMI."""
     (tmp_path / "F.csv").write_text("time,F\n0,0\n1,1\n")
     for archive in (fmu.archive("InvertedPendulumCart"), fmi3.archive("InvertedPendulumCart")):
         words = ["m=1e-9", "theta=0", "--input", "F.csv", "--stop-time", "1", "--step", "0.25", "--tolerance", "1e-9", "--output", "cart.x", "der(v)"]
@@ -127,8 +127,7 @@ def test_signals_and_what_is_recorded(command, tmp_path):
         rows = np.genfromtxt(tmp_path / "InvertedPendulumCart.csv", delimiter=",", skip_header=1)
         assert (tmp_path / "InvertedPendulumCart.csv").read_text().startswith("time,cart.x,der(v)\n")
         np.testing.assert_allclose(rows[:, 0], [0, 0.25, 0.5, 0.75, 1])
-        starts = np.array([0, 0.25, 0.5, 0.75])
-        np.testing.assert_allclose(rows[-1, 1], np.sum(starts * (0.25 * (1 - starts) - 0.25**2 / 2)), rtol=1e-6)
+        np.testing.assert_allclose(rows[:, 1], rows[:, 0] ** 3 / 6, atol=1e-7)
         (tmp_path / "InvertedPendulumCart.csv").unlink()
 
 

@@ -10,7 +10,7 @@ What goes wrong is a Problem, whose text names the thing and the remedy; what is
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from .building import build, check, new
 from .problem import Problem
+from .variables import names_of, numbers_by_name
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,8 +37,10 @@ def simulate(
     system: str | PathLike[str],
     start_values: Mapping[str, float] | None = None,
     *,
-    output: Sequence[str] | None = None,
-    input: str | PathLike[str] | np.ndarray | None = None,
+    output: str | Sequence[str] | None = None,
+    input: str | PathLike[str] | np.ndarray | Mapping[str, Any] | Callable[[float], Any] | Any = None,
+    hold: bool = False,
+    record_events: bool = True,
     fmi_type: str = "CoSimulation",
     fmi: int | None = None,
     solver: str | None = None,
@@ -47,23 +50,25 @@ def simulate(
     **options: Any,
 ) -> Result:
     """
-    The motion of an FMU, or of a system, which is built first: a structured NumPy array with a row for each communication point, which
-    has time, in s, and all outputs, in SI units, by name. It has plot(), animate() and to_pandas().
+    The motion of an FMU, or of a system, which is built first: a structured NumPy array with a row for each communication point and two for each event, which
+    have time, in s, and all outputs, in SI units, by name. It has plot(), animate() and to_pandas().
 
     start_values: of coordinates, velocities, inputs and parameters by name, in SI units
     output: the names of the variables to record in place of all outputs; local ones, such as "totalEnergy", can be had so
-    input: a CSV with time and the names of inputs in its first line, or a structured array of these; linear between its rows
+    input: a CSV with time and the names of inputs in its first line, or a structured array, a dict of arrays or a DataFrame of these; linear between its rows, and two rows
+        of one time are a jump. Or a function of time that returns a dict of numbers by name, or a number for each input; or a dict of such functions and numbers
+    hold: the values of the input are held from row to row, or those of a function over each step
+    record_events: rows just before and just behind each event, of the same time
     fmi_type: "CoSimulation", by the FMU's own solver, or "ModelExchange", by CVode of FMPy
     fmi, solver: the version of FMI, 2 or 3, and the method in place of the system's own, where the FMU is not built yet
     stop_time, step: in s; tolerance: relative. Else as the FMU's experiment says
-    options: others of fmpy.simulate_fmu
+    options: start_time, in s, debug_logging, visible, fmi_call_logger; in model exchange others of fmpy.simulate_fmu
     """
     from .results import Result
     from .running import motion_of
 
-    given = {"fmi_type": fmi_type, "stop_time": stop_time, "output_interval": step, "relative_tolerance": tolerance}
-    options |= {name: value for name, value in given.items() if value is not None}
-    return Result.of(motion_of(system, dict(start_values or {}), input, method=solver, fmi=fmi, output=output, **options))
+    words = {"output": output, "input": input, "hold": hold, "fmi_type": fmi_type, "fmi": fmi, "solver": solver, "step": step, "tolerance": tolerance}
+    return Result.of(motion_of(system, start_values, None, stop_time=stop_time, record_events=record_events, **words, **options))
 
 
 def linearize(
@@ -76,7 +81,7 @@ def linearize(
     """
     from .linearization import linearize
 
-    return linearize(system, dict(at or {}) | dict(parameters or {}))
+    return linearize(system, numbers_by_name(at, "at") | numbers_by_name(parameters, "parameters"))
 
 
 def sensitivities(
@@ -95,7 +100,7 @@ def sensitivities(
     """
     from .variational import sensitivities
 
-    return sensitivities(system, list(of), list(by), times, dict(start_values or {}), tolerance)
+    return sensitivities(system, names_of(of, "of"), names_of(by, "by"), times, numbers_by_name(start_values), tolerance)
 
 
 def gradient(
@@ -118,7 +123,7 @@ def gradient(
     """
     from .adjoint import gradient
 
-    return gradient(system, of, list(by), stop_time, data, integral, dict(noise or {}), dict(start_values or {}), tolerance)
+    return gradient(system, of, names_of(by, "by"), stop_time, data, integral, numbers_by_name(noise, "noise"), numbers_by_name(start_values), tolerance)
 
 
 def fit(
@@ -140,16 +145,19 @@ def fit(
     """
     from .fitting import fit
 
-    return fit(system, data, vary, dict(start_values or {}), dict(bounds or {}), dict(noise or {}), list(each))
+    return fit(system, data, names_of(vary, "vary"), numbers_by_name(start_values), dict(bounds or {}), numbers_by_name(noise, "noise"), names_of(each, "each"))
 
 
 def run(
-    system: str | PathLike[str], start_values: Mapping[str, float] | None = None, folder: str | PathLike[str] = "."
+    system: str | PathLike[str], start_values: Mapping[str, float] | None = None, folder: str | PathLike[str] = ".", **words: Any
 ) -> dict[str, Path | str]:
-    """Simulates likewise, and leaves NAME.fmu, NAME.csv, NAME.png and NAME.html in the folder; the path of each by its kind, or why there is none."""
+    """
+    Simulates, with the words of simulate(), and leaves NAME.fmu, NAME.csv, NAME.png and NAME-motion.html in the folder; the path of each by its kind, or why
+    there is none.
+    """
     from .running import run
 
-    return run(system, dict(start_values or {}), folder)
+    return run(system, start_values, folder, **words)
 
 
 def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:

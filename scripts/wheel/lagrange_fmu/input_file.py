@@ -62,7 +62,7 @@ def read_table(path, units):
 
 
 def read_input(path, units):
-    """Likewise of inputs, which are linear between the lines; all values are there, and times do not decrease."""
+    """Likewise of inputs; all values are there, and times do not decrease."""
     data = read_table(path, units)
     if len(data) < 1 or not all(np.isfinite(data[name]).all() for name in data.dtype.names) or (np.diff(data["time"]) < 0).any():
         raise Problem(f"{path}: expected lines of finite numbers, whose times do not decrease")

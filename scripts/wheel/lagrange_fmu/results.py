@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import io
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,12 +48,13 @@ class Result(np.ndarray):
         return found.view(np.ndarray) if isinstance(key, str) else found
 
     def plot(self) -> Figure:
-        """A figure of matplotlib with an axis for each unit; needs pip install lagrange-fmu[plot]."""
+        """A figure of matplotlib with an axis for each unit, which Jupyter shows; needs pip install lagrange-fmu[plot]."""
         from .problem import Problem
-        from .simulation import figure_of
+        from .simulation import event_times, figure_of
 
+        times = event_times(self.motion.values)
         try:
-            return figure_of(self.description, self)
+            return figure_of(self.description, self, [time for time in times if self["time"][0] <= time <= self["time"][-1]])
         except ModuleNotFoundError:
             raise Problem("matplotlib is not installed; it comes with pip install matplotlib") from None
 
@@ -70,8 +70,12 @@ class Result(np.ndarray):
 
     def to_pandas(self) -> Any:
         """A DataFrame with time, in s, as its index; needs pip install pandas."""
-        import pandas
+        from .problem import Problem
 
+        try:
+            import pandas
+        except ModuleNotFoundError:
+            raise Problem("pandas is not installed; it comes with pip install pandas") from None
         return pandas.DataFrame({name: self[name] for name in self.dtype.names}).set_index("time")
 
     def _repr_png_(self) -> bytes | None:
@@ -80,9 +84,6 @@ class Result(np.ndarray):
         if self.description is None or self.ndim != 1:
             return None
         try:
-            figure = self.plot()
+            return self.plot()._repr_png_()
         except Problem:
             return None
-        picture = io.BytesIO()
-        figure.savefig(picture, format="png", dpi=100)
-        return picture.getvalue()

@@ -9,6 +9,7 @@ from .building import build_with
 from .input_file import read_input
 from .problem import Problem
 from .simulation import described, simulate, units_of, write_results
+from .variables import numbers_by_name
 
 
 def is_fmu(path):
@@ -27,12 +28,13 @@ def fmu_of(system, folder=None, method=None, fmi=None, words=()):
         yield build_with(words, system, output=folder or scratch, solver=method, fmi=fmi or 2)
 
 
-def motion_of(system, start_values=None, input=None, folder=None, method=None, fmi=None, **options):
-    """The Motion of a system or FMU; `input` may be the path of a CSV."""
-    with fmu_of(system, folder, method, fmi) as fmu:
+def motion_of(system, start_values=None, folder=None, /, input=None, solver=None, fmi=None, step=None, tolerance=None, **options):
+    """The Motion of a system or FMU; `input` may be the path of a CSV; options are those of simulate()."""
+    options |= {name: value for name, value in (("output_interval", step), ("relative_tolerance", tolerance)) if value is not None}
+    with fmu_of(system, folder, solver, fmi) as fmu:
         signals = read_input(input, units_of(described(fmu))) if isinstance(input, (str, os.PathLike)) else input
-        return simulate(fmu, start_values or {}, input=signals, **options)
+        return simulate(fmu, numbers_by_name(start_values), input=signals, **options)
 
 
-def run(system, start_values=None, folder=".", **options):
-    return write_results(motion_of(system, start_values, folder=folder, **options), Path(folder))
+def run(system, start_values=None, folder=".", /, **words):
+    return write_results(motion_of(system, start_values, folder, **words), Path(folder))

@@ -8,7 +8,7 @@ from .words_of_systems import SYSTEM_OR_FMU
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
     parser.add_argument("--edit", action="store_true", help="the system can be changed in the page, which derives it anew")
-    parser.add_argument("-o", "--output", metavar="PAGE.html", help="the page; else NAME.html in the current folder")
+    parser.add_argument("-o", "--output", metavar="PAGE.html", help="the page; else NAME.html, or with --edit NAME-edit.html, in the current folder")
 
 
 def run(arguments):
@@ -25,7 +25,7 @@ def run(arguments):
         laboratory = Path(__file__).parent.parent / "live_page" / "laboratory.wasm"
         system = system_file(arguments.system)
         name = system.parent.resolve().name if system.name == "system.xml" else system.stem
-        print(write_editor(system, laboratory, arguments.output or Path(f"{name}.html")).resolve())
+        print(write_editor(system, laboratory, arguments.output or Path(f"{name}-edit.html")).resolve())
         return
     caching.keep_what_zig_compiles()
     with fmu_of(arguments.system) as fmu:

@@ -1,0 +1,55 @@
+"""A simulation in model exchange, by CVode of FMPy, which holds inputs between its own steps: here the FMU has those of each time at which it is evaluated."""
+
+import shutil
+
+import numpy as np
+from fmpy import extract, simulate_fmu
+from fmpy.simulation import instantiate_fmu
+
+from .co_simulation import NEAR, Slave
+
+
+class Followed(Slave):
+    """Inputs that are linear between the rows of a table; of two rows of one time the second one holds from the event there on."""
+
+    def __init__(self, fmu, description, signals, table):
+        super().__init__(fmu, description, signals)
+        self.times, self.values = table["time"], np.column_stack([table[v.name].reshape(len(table), -1) for v in signals.variables])
+        self.jumps = np.flatnonzero(np.diff(self.times) == 0)
+        self.time, self.set_time, self.enter_event_mode = self.times[0], fmu.setTime, fmu.enterEventMode
+        self.pass_jumps()
+        fmu.setTime, fmu.enterEventMode = self.go_to, self.enter_event
+
+    def pass_jumps(self):
+        """The rows from the last jump to the next one hold."""
+        passed = np.count_nonzero(self.times[self.jumps] <= self.time + NEAR * (self.times[-1] - self.times[0]))
+        ends = [0, *(self.jumps + 1), len(self.times)]
+        self.rows = slice(ends[passed], ends[passed + 1])
+
+    def go_to(self, time):
+        self.set_time(time)
+        self.time, times, values = time, self.times[self.rows], self.values[self.rows]
+        self.set([np.interp(time, times, column) for column in values.T])
+
+    def enter_event(self):
+        self.enter_event_mode()
+        self.pass_jumps()
+
+
+def exchange(archive, description, start_values, signals, output, interval, start, stop, logger, debug_logging=True, visible=False, fmi_call_logger=None, **options):
+    """A structured array of time and the output, names of variables; options are those of simulate_fmu."""
+    table = None if signals is None else signals.as_table(start, stop, interval)
+    times = {"start_time": start, "stop_time": stop, "output_interval": interval}
+    folder = extract(archive)
+    try:
+        fmu = instantiate_fmu(folder, description, "ModelExchange", visible, debug_logging, logger, fmi_call_logger)
+        try:
+            if table is not None:
+                Followed(fmu, description, signals, table)
+            return simulate_fmu(
+                folder, fmi_type="ModelExchange", start_values=start_values, input=table, output=output, model_description=description, fmu_instance=fmu, **times, **options
+            )
+        finally:
+            fmu.freeInstance()
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)

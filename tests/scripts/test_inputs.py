@@ -1,0 +1,201 @@
+"""Inputs of simulations from tables and functions, in both versions of FMI and in model exchange, against closed forms; and how many rows there are."""
+
+import math
+import sys
+
+import numpy as np
+import pytest
+
+import fmi3
+import fmu
+import package
+from building import build_systems
+from fmu import ROOT
+
+sys.path.insert(0, str(ROOT))
+from scripts.problem import Problem  # noqa: E402
+from scripts.signals import spline_slopes  # noqa: E402
+from scripts.simulation import simulate  # noqa: E402
+
+MASS = """<system name="Pushed"><input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/>
+  <force coordinate="x">F</force><output name="push" unit="N">2*F</output><experiment stopTime="1" stepSize="0.25"/></system>"""
+SPRING = """<system name="Sprung"><input name="F" unit="N"/><input name="G" unit="N"/><coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/>
+  <potential>50*x^2</potential><force coordinate="x">F + G</force><experiment stopTime="2" stepSize="0.05"/></system>"""
+FLOOR = """<system name="Carried"><input name="zb" unit="m" derivatives="2"/><coordinate name="z" velocity="v" unit="m"/>
+  <particle mass="1" y="z + zb"/><potential>8*z^2</potential><experiment stopTime="2" stepSize="0.05"/></system>"""
+HAND = """<system name="Handed"><input name="u" unit="m" derivatives="2"/><coordinate name="x" velocity="v" unit="m"/>
+  <particle mass="3" x="x"/><constraint name="hand" unit="m">u - x</constraint><experiment stopTime="2" stepSize="0.05"/></system>"""
+EVEN = dict(fmi_type="CoSimulation", relative_tolerance=1e-11)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("inputs", {"Pushed": MASS, "Sprung": SPRING, "Carried": FLOOR, "Handed": HAND}, versions=(2, 3))
+
+
+def archives(name):
+    return fmu.archive(name), fmi3.archive(name)
+
+
+def moved(times, forces):
+    """Velocity and position of a mass of 1 kg at the times of a force that is linear between them: a cubic in each piece."""
+    v, x = [0.0], [0.0]
+    for h, low, high in zip(np.diff(times), forces, forces[1:]):
+        x.append(x[-1] + h * v[-1] + h**2 * (2 * low + high) / 6)
+        v.append(v[-1] + h * (low + high) / 2)
+    return v, x
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_linear_between_the_rows_of_a_table(version):
+    """Whose rows are no communication points: a force held over each step is 2 % off."""
+    times, forces = [0.0, 0.3, 0.4, 1.0], [0.0, 1.0, -1.0, 2.0]
+    result = simulate(archives("Pushed")[version], {}, input={"time": times, "F": forces}, **EVEN).outputs
+    assert result["time"].tolist() == [0, 0.25, 0.5, 0.75, 1]
+    v, x = moved(times, forces)
+    assert (result["v"][-1], result["x"][-1]) == pytest.approx((v[-1], x[-1]), abs=1e-12)
+    np.testing.assert_allclose(result["push"], 2 * np.interp(result["time"], times, forces), rtol=1e-12)
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_a_jump_is_two_rows(version):
+    """Of the force, of which 2 N act from 0.3 s on: v = t, then 0.3 + 2 (t - 0.3)."""
+    rows = {"time": [0, 0.3, 0.3, 1], "F": [1, 1, 2, 2]}
+    result = simulate(archives("Pushed")[version], {}, input=rows, **EVEN).outputs
+    assert result["time"].tolist() == [0, 0.25, 0.3, 0.3, 0.5, 0.75, 1] and result["push"].tolist() == [2, 2, 2, 4, 4, 4, 4]
+    np.testing.assert_allclose(result["v"], [0, 0.25, 0.3, 0.3, 0.7, 1.2, 1.7], rtol=1e-13)
+    assert simulate(archives("Pushed")[version], {}, input=rows, record_events=False, **EVEN).outputs["time"].tolist() == [0, 0.25, 0.5, 0.75, 1]
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_held_from_row_to_row(version):
+    result = simulate(archives("Pushed")[version], {}, input={"time": [0, 0.3, 0.5], "F": [1, 2, 5]}, hold=True, **EVEN).outputs
+    np.testing.assert_allclose(result["v"][-1], 0.3 + 0.2 * 2 + 0.5 * 5, rtol=1e-13)
+    held = simulate(archives("Pushed")[version], {}, input=lambda t: t, hold=True, record_events=False, **EVEN).outputs
+    np.testing.assert_allclose(held["v"], [0, 0, 0.0625, 0.1875, 0.375], atol=1e-14)  # of a function over each step
+
+
+def swings(t, force_rate):
+    """x'' + 100 x = c t from rest: x = c/100 (t - sin(10 t)/10)."""
+    return force_rate / 100 * (t - np.sin(10 * t) / 10)
+
+
+@pytest.mark.parametrize("version, error", [(0, 1e-11), (1, 2e-6)])
+def test_several_inputs_and_kinds(version, error):
+    """Arrays, numbers, functions, records; FMI 3.0 holds inputs twice in each step of 0.5 rad, with an error of the fourth order."""
+    archive = archives("Sprung")[version]
+    table = np.rec.fromarrays([[0.0, 2.0], [0.0, 6.0], [1.0, 1.0]], names="time,F,G")
+    given = [table, {"time": [0, 2], "F": [0, 6], "G": [1, 1]}, {"F": lambda t: 3 * t, "G": 1}, lambda t: {"F": 3 * t, "G": 1.0}, lambda t: (3 * t, 1)]
+    for one in given:
+        result = simulate(archive, {}, input=one, **EVEN).outputs
+        t = result["time"]
+        np.testing.assert_allclose(result["x"], swings(t, 3) + (1 - np.cos(10 * t)) / 100, atol=error)
+    fine = simulate(archive, {}, input=given[0], output_interval=0.025, **EVEN).outputs
+    np.testing.assert_allclose(fine["x"], swings(fine["time"], 3) + (1 - np.cos(10 * fine["time"])) / 100, atol=error / 12)
+
+
+class Frame:
+    """What simulations ask of a DataFrame."""
+
+    def __init__(self, index, **columns):
+        self.index, self.data, self.columns = index, columns, list(columns)
+
+    def reset_index(self):
+        return Frame("", time=self.index, **self.data)
+
+    def __getitem__(self, name):
+        return self.data[name]
+
+
+def test_a_data_frame():
+    """With time as a column, or as its index as that of to_pandas()."""
+    for frame in (Frame(None, time=[0, 1], F=[0, 1]), Frame([0, 1], F=[0, 1])):
+        assert simulate(fmu.archive("Pushed"), {}, input=frame, **EVEN).outputs["v"][-1] == pytest.approx(0.5, rel=1e-13)
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_a_function_is_a_cubic_over_each_step(version):
+    """sin(3 t) by 0.25 s: v = (1 - cos(3 t))/3, x = t/3 - sin(3 t)/9; its polynomials meet it in Lobatto's points, so that the velocity has a higher order still."""
+    result = simulate(archives("Pushed")[version], {}, input=lambda t: math.sin(3 * t), **EVEN).outputs
+    t = result["time"]
+    np.testing.assert_allclose(result["v"], (1 - np.cos(3 * t)) / 3, atol=1e-6)
+    np.testing.assert_allclose(result["x"], t / 3 - np.sin(3 * t) / 9, atol=1e-6)
+    np.testing.assert_allclose(result["push"], 2 * np.sin(3 * t), atol=1e-12)
+
+
+def test_in_model_exchange():
+    """From the same tables and functions, to the tolerance of FMPy's CVode, with the communication step of the experiment."""
+    for version in (0, 1):
+        for one, v in (({"time": [0, 0.3, 0.3, 1], "F": [0, 3, 1, 1]}, 0.45 + 0.7), (lambda t: math.sin(3 * t), (1 - math.cos(3)) / 3)):
+            result = simulate(archives("Pushed")[version], {}, input=one, fmi_type="ModelExchange", relative_tolerance=1e-9).outputs
+            assert result["v"][-1] == pytest.approx(v, rel=1e-4) and {0, 0.25, 0.5, 0.75, 1} <= {*result["time"].round(12)}
+
+
+@pytest.mark.parametrize("name, place, of", [("Carried", "z", lambda t: (np.cos(4 * t) - np.cos(2 * t)) * 4 / 12), ("Handed", "x", lambda t: 1 - np.cos(2 * t))])
+def test_what_moves_something(name, place, of):
+    """
+    Where u = 1 - cos(2 t): u'' = 4 cos(2 t). Its derivatives, which are inputs too, are those of a spline through its rows, or of the function.
+    z'' + 16 z = -4 cos(2 t) from rest: z = (cos(4 t) - cos(2 t))/3.
+    """
+    archive, moved_by = fmu.archive(name), {"Carried": "zb", "Handed": "u"}[name]
+    start = {}
+    t = np.linspace(0, 2, 81)
+    columns = {"time": t, moved_by: 1 - np.cos(2 * t)}
+    slopes = {f"der({moved_by})": 2 * np.sin(2 * t)}
+    for one, error in ((columns, 2e-5), (columns | slopes, 2e-5), (lambda t: 1 - math.cos(2 * t), 2e-4)):
+        result = simulate(archive, start, input=one, **EVEN).outputs
+        np.testing.assert_allclose(result[place], of(result["time"]), atol=error)
+
+
+def test_what_fmi3_holds_is_told():
+    with pytest.warns(UserWarning, match="FMI 3.0 holds 'zb' over each step"):
+        simulate(fmi3.archive("Carried"), {}, input=lambda t: 0.0, stop_time=0.1)
+
+
+def test_splines():
+    """Of a cubic polynomial they are it; of sines, of fourth order: Hall and Meyer's bound of a clamped spline's slopes is h^3/24 max f''''."""
+    t = np.array([0.0, 0.1, 0.5, 0.6, 1.0, 1.7])
+    np.testing.assert_allclose(spline_slopes(t, t**3 - 2 * t), 3 * t**2 - 2, rtol=1e-12)
+    t = np.linspace(0, 3, 61)
+    assert np.max(abs(spline_slopes(t, np.sin(t)) - np.cos(t))) < 0.05**3 / 4
+
+
+@pytest.mark.parametrize("stop, step, rows", [(2.0, 0.001, 2001), (3600.0, 0.5, 7201), (1.0, 0.3, 5), (0.1, 1.0, 2)])
+def test_the_step_is_kept(stop, step, rows):
+    """However many rows that makes; the last one is at the end."""
+    for archive in archives("Pushed"):
+        time = simulate(archive, {}, stop_time=stop, output_interval=step).outputs["time"]
+        assert len(time) == rows and time[-1] == stop
+        np.testing.assert_allclose(time[:-1], step * np.arange(rows - 1), rtol=1e-15)
+
+
+def test_the_step_of_the_experiment_is_kept(tmp_path):
+    """By the command and in model exchange, too."""
+    folder = package.assemble(tmp_path / "package")
+    result = package.run(folder, "run", fmu.archive("Pushed"), "--stop-time", "300", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert len((tmp_path / "Pushed.csv").read_text().splitlines()) == 1 + 1201
+    result = simulate(fmu.archive("Pushed"), {}, stop_time=300, fmi_type="ModelExchange").outputs
+    assert len(result) == 1201
+
+
+@pytest.mark.parametrize("given, message", [
+    ({"time": [0, 1], "f": [0, 1]}, "'f' is not an input of Pushed; did you mean 'F'?"),
+    ({"time": [0, 1], "q": [0, 1]}, "'q' is not an input of Pushed; these are: F"),
+    ({"t": [0, 1], "F": [0, 1]}, "the input has no 'time' but 't', 'F'"),
+    ({"time": [0, 1], "F": [0, 1, 2]}, "'F' of the input has 3 values and 'time' 2; expected one for each time"),
+    ({"time": [1, 0], "F": [0, 1]}, "the time 0 s of the input follows 1 s; expected times that do not decrease"),
+    ({"time": [0, 1], "F": [0, math.nan]}, "'F' of the input has values that are missing or infinite"),
+    ({"time": [0, 1], "F": ["a", "b"]}, "'F' of the input has values that are no numbers"),
+    ({"time": [0, 1], "F": [[0, 1], [2, 3]]}, "'F' of the input has 2 values in a row; expected 1"),
+    ([0, 1], "the input is a list; expected the path of a CSV, a structured array, a dict of arrays or a DataFrame"),
+    (np.zeros((3, 2)), "the input is a ndarray; expected the path"),
+    (lambda t: (t, t), "the input at 0 s has 2 numbers; expected 1, of F"),
+    (lambda t: math.nan if t > 0.6 else t, "expected finite numbers"),
+    (lambda t: "much", "the input at 0 s is 'much'; expected numbers"),
+    ({"G": lambda t: t}, "'G' is not an input of Pushed"),
+])  # fmt: skip
+def test_mistakes(given, message):
+    with pytest.raises(Problem) as problem:
+        simulate(fmu.archive("Pushed"), {}, input=given)
+    assert message in str(problem.value)
