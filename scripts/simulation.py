@@ -24,7 +24,7 @@ from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem
 from .signals import signals_of
-from .variables import check_start, elements, instead, known, names_of, start_values
+from .variables import check_start, elements, instead, known, names_of, near_file, start_values
 
 
 WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver", "step", "tolerance")  # with which users ask for a simulation
@@ -70,7 +70,7 @@ def print_problem(*words):
 def described(fmu):
     """The description of an FMU, or a Problem where it is none."""
     if not Path(fmu).exists():
-        raise Problem(f"there is no file {fmu}; expected an FMU")
+        raise Problem(f"there is no file {fmu}{near_file(fmu) or '; expected an FMU'}")
     try:
         return read_model_description(fmu)
     except (BadZipFile, KeyError):

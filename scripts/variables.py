@@ -6,8 +6,11 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from numbers import Real
+from pathlib import Path
 
 from .problem import Problem
+
+LIKE = 0.65  # difflib's ratio of a word and the one that was meant, at least
 
 
 def settable(description):
@@ -38,9 +41,13 @@ def why_not(name, description):
 
 
 def nearest(word, words):
-    """The one that was meant, most likely; None where none is like it."""
+    """The one that was meant, most likely; None where none is like it, or several begin so."""
     by_lower = {str(one).lower(): str(one) for one in words}
-    found = difflib.get_close_matches(str(word).lower(), by_lower, 1, 0.7)
+    word = str(word).lower()
+    begins = [one for one in by_lower if one.startswith(word)]
+    if word in by_lower or len(begins) > 1 or len(word) < 3:
+        return by_lower.get(word)
+    found = begins or difflib.get_close_matches(word, by_lower, 1, LIKE)
     return by_lower[found[0]] if found else None
 
 
@@ -48,6 +55,14 @@ def instead(word, words, what="these are"):
     """The end of a message: the word that was meant, or all that there are."""
     near = nearest(word, words)
     return f"did you mean '{near}'?" if near else f"{what}: {', '.join(map(str, words))}"
+
+
+def near_file(path):
+    """The end of a message about a file that is not there: one beside it with nearly this name."""
+    path = Path(path)
+    beside = {other.stem: other.name for other in path.parent.iterdir()} if path.parent.is_dir() else {}
+    near = nearest(path.stem, beside)
+    return f"; did you mean '{path.with_name(beside[near])}'?" if near else ""
 
 
 def _is_finite(value):

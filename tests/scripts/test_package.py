@@ -197,10 +197,18 @@ def test_reference(command, tmp_path):
     (["sweep", "text.fmu", "--vary", "l=1:2:3"], "text.fmu is not an FMU, which is a zip archive"),
     (["sweep", fmu.archive("SimplePendulum"), "--vary", "l=1:2"], "'l' has no COUNT; expected l=FROM:TO:COUNT"),
     (["sweep", fmi3.archive("SimplePendulum"), "--vary", "l=1,2"], "SimplePendulum.fmu is of FMI 3.0; expected one of FMI 2.0"),
+    (["rnu", "x.fmu"], "invalid choice: 'rnu'; did you mean 'run'?"),
+    (["run", "Near.fmu", "--stpo-time", "1"], "unrecognized arguments: --stpo-time 1; did you mean '--stop-time'?"),
+    (["run", "near.fum"], "there is no file near.fum; did you mean 'Near.fmu'?"),
+    (["run", fmu.archive("SimplePendulum"), "thetta=1"], "'thetta' is not a variable of SimplePendulum; did you mean 'theta'?"),
+    (["run", fmu.archive("SimplePendulum"), "--output", "totalenergy"], "'totalenergy' is not a variable of SimplePendulum; did you mean 'totalEnergy'?"),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "backk.csv"], "backk.csv: No such file or directory; did you mean 'back.csv'?"),
+    (["words", "restitutoin"], "the reference says nothing about 'restitutoin'; did you mean 'restitution'?"),
+    (["new", "A", "--template", "robott"], "invalid choice: 'robott'; did you mean 'robot'?"),
     (["words", "qqq"], "the reference says nothing about 'qqq'"),
 ])  # fmt: skip
 def test_mistakes(words, message, command, tmp_path):
-    for name, text in (("text.fmu", "no archive"), ("q.csv", "time,q\n0,1\n"), ("bad.csv", "time,F\n0,1\n1,a\n"), ("back.csv", "time,F\n1,1\n0,1\n")):
+    for name, text in (("text.fmu", "no archive"), ("Near.fmu", "no archive"), ("q.csv", "time,q\n0,1\n"), ("bad.csv", "time,F\n0,1\n1,a\n"), ("back.csv", "time,F\n1,1\n0,1\n")):
         (tmp_path / name).write_text(text)
     result = command(*words, cwd=tmp_path)
     assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr
@@ -240,7 +248,7 @@ motion = lagrange_fmu.simulate("Swing.fmu", {"theta": 1}, stop_time=0.5)
 motor = lagrange_fmu.simulate(MOTOR, stop_time=0.5)
 os.remove("Swing.fmu")
 print(motion.animate().save("swing.html").name, len(motion.plot().axes), motion[10:20].shape, motion["theta"][0])
-assert motion._repr_png_().startswith(b"\\x89PNG")
+assert motion._repr_png_().startswith(b"\\x89PNG") and motion.plot()._repr_png_().startswith(b"\\x89PNG")
 assert motion.animate()._repr_html_().startswith("<iframe srcdoc=\\"&lt;!doctype html&gt;")
 try:
     motor.animate()
@@ -252,3 +260,83 @@ except lagrange_fmu.Problem as problem:
     assert printed == ["swing.html 2 (10,) 1.0", "Motor has no particles, bodies, frames or points to be drawn; expected some in the system"]
     page = (tmp_path / "swing.html").read_text()
     assert '"recording":{' in page and re.search(r'"start":{[^}]*"theta":1.0[,}]', page)
+
+
+IN_SENTENCES = """
+import sys, lagrange_fmu
+FMU = PENDULUM
+blocked = ("sympy", "scipy", "scipy.integrate", "pandas")
+sys.modules |= dict.fromkeys(blocked)
+for call in (lambda: lagrange_fmu.from_sympy(None, "A.xml", {}), lambda: lagrange_fmu.fit(FMU, "data.csv", "l"), lambda: lagrange_fmu.simulate(FMU, stop_time=0.1).to_pandas()):
+    try:
+        call()
+    except lagrange_fmu.Problem as problem:
+        print(problem)
+for name in blocked:
+    del sys.modules[name]
+calls = [
+    lambda: lagrange_fmu.simulate(FMU, output="totalEnergi"),
+    lambda: lagrange_fmu.simulate(FMU, start={"theta": 1}),
+    lambda: lagrange_fmu.simulate(FMU, stop_tmie=1),
+    lambda: lagrange_fmu.simulate(FMU, [1.0]),
+    lambda: lagrange_fmu.simulate(FMU, {"theta": "much"}),
+    lambda: lagrange_fmu.simulate(FMU, input=3),
+    lambda: lagrange_fmu.simulate(FMU, fmi_type="Cosimulation"),
+    lambda: lagrange_fmu.simulate(FMU, stop_time=-1),
+    lambda: lagrange_fmu.linearize(FMU, [1]),
+    lambda: lagrange_fmu.fit(FMU, "data.csv", vary=[1]),
+]
+for call in calls:
+    try:
+        print(call())
+    except lagrange_fmu.Problem as problem:
+        print(problem)
+print(lagrange_fmu.simulate(FMU, output="totalEnergy", stop_time=0.1).dtype.names)
+"""
+SENTENCES = [
+    "sympy is not installed; it comes with pip install sympy",
+    "derivatives of motions and fits need SciPy; install it with",
+    "pandas is not installed; it comes with pip install pandas",
+    "'totalEnergi' is not a variable of SimplePendulum; did you mean 'totalEnergy'?",
+    "'start' is not an option of this simulation; expected one of these: start_values, output, input, ",
+    "'stop_tmie' is not an option of this simulation; did you mean 'stop_time'?",
+    "start_values is a list; expected a dict of numbers by name",
+    "start_values has 'much' for 'theta'; expected a finite number",
+    "the input is a int; expected the path of a CSV",
+    "the type 'Cosimulation' is not known; did you mean 'CoSimulation'?",
+    "the simulation is from 0 s to -1 s by ",
+    "at is a list; expected a dict of numbers by name",
+    "vary has 1; expected names of variables",
+    "('time', 'totalEnergy')",
+]
+
+
+def test_mistakes_in_python(tmp_path):
+    """A Problem with the remedy each, no traceback from within."""
+    (tmp_path / "script.py").write_text(IN_SENTENCES.replace("PENDULUM", repr(str(fmu.archive("SimplePendulum")))))
+    printed = succeed(package.python(package.assemble(tmp_path / "package"), "script.py", cwd=tmp_path)).splitlines()
+    assert len(printed) == len(SENTENCES)
+    for line, beginning in zip(printed, SENTENCES):
+        assert line.startswith(beginning), line
+
+
+NAMES = """
+import sympy
+from sympy.physics.mechanics import LagrangesMethod, dynamicsymbols
+import lagrange_fmu
+x, (k, m) = dynamicsymbols("x"), sympy.symbols("k m")
+method = LagrangesMethod(m * x.diff() ** 2 / 2 - k * x**2 / 2, [x])
+print(lagrange_fmu.from_sympy(method, "Named.xml", {"k": 9, "m": 1}, start={"x": 2, "v": 3}, speeds=["v"], units={"x": "m"}).read_text())
+for words in ({"speed": ["v"]}, {"start": {"y": 1}}, {"speeds": [1]}, {"start": [1]}):
+    try:
+        lagrange_fmu.from_sympy(method, "Named.xml", {k: 9, m: 1}, **words)
+    except lagrange_fmu.Problem as problem:
+        print(problem)
+"""
+
+
+def test_names_for_symbols_of_sympy(tmp_path):
+    printed = succeed(package.python(package.assemble(tmp_path / "package"), "-c", NAMES, cwd=tmp_path))
+    assert '<coordinate name="x" velocity="v" start="2.0" velocityStart="3.0" unit="m" />' in printed
+    for message in ("'speed' is not an option of from_sympy; did you mean 'speeds'?", "y is not a coordinate, velocity or input of this LagrangesMethod; ", "1 is no speed", "are a list; expected a dict"):
+        assert message in printed

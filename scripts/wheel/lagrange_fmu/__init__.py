@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from .building import build, check, new
 from .problem import Problem
-from .variables import names_of, numbers_by_name
+from .variables import instead, names_of, numbers_by_name
 
 if TYPE_CHECKING:
     import numpy as np
@@ -162,6 +162,12 @@ def run(
 
 def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:
     """Writes the system of a LagrangesMethod of sympy.physics.mechanics: see lagrange_fmu.sympy_system.from_sympy."""
-    from .sympy_system import from_sympy
+    try:
+        from .sympy_system import OPTIONS, from_sympy
+    except ModuleNotFoundError as missing:
+        raise Problem(f"{missing.name} is not installed; it comes with pip install sympy") from None
 
+    for name in options:
+        if name not in OPTIONS:
+            raise Problem(f"'{name}' is not an option of from_sympy; {instead(name, OPTIONS, 'expected one of these')}")
     return from_sympy(method, path, parameters, **options)

@@ -21,6 +21,7 @@ from .packing import pack
 from .problem import Problem
 from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
 from .runtime.scripts.one_file import one_file
+from .variables import instead, near_file
 
 HERE = Path(__file__).resolve().parent
 TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
@@ -33,7 +34,7 @@ def system_file(system):
     if path.is_dir():
         path = path / "system.xml"
     if not path.is_file():
-        raise Problem(f"there is no file {path}; expected a system in XML, a robot in URDF, or a folder with a system.xml in it")
+        raise Problem(f"there is no file {path}{near_file(path) or '; expected a system in XML, a robot in URDF, or a folder with a system.xml in it'}")
     return path
 
 
@@ -172,7 +173,7 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORM_NAMES:
-            raise Problem(f"the platform '{name}' is not known; expected {', '.join(PLATFORM_NAMES)}")
+            raise Problem(f"the platform '{name}' is not known; {instead(name, PLATFORM_NAMES, 'expected one of these')}")
     if fmi not in (2, 3):
         raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
     with tempfile.TemporaryDirectory() as scratch:
@@ -191,7 +192,7 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
 def new(name: str, template: str = "pendulum") -> Path:
     """Writes NAME.xml, a system to begin with, which is one of TEMPLATES, and returns its path."""
     if template not in TEMPLATES:
-        raise Problem(f"the template '{template}' is not known; expected {', '.join(TEMPLATES)}")
+        raise Problem(f"the template '{template}' is not known; {instead(template, TEMPLATES, 'expected one of these')}")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
     path = Path(f"{name}.xml")

@@ -1,6 +1,7 @@
 """The command lagrange-fmu."""
 
 import argparse
+import re
 import sys
 import warnings
 from importlib import import_module
@@ -10,14 +11,41 @@ import shtab
 from . import __version__, caching
 from .commands import COMMANDS
 from .problem import Problem
+from .variables import instead, near_file, nearest
 
 
 FILES = ("system", "input")  # the words of commands that name files
 
 
+class Words(argparse.ArgumentParser):
+    """Whose errors name the word that was meant, where one is like what was written."""
+
+    def error(self, message):
+        choice = re.fullmatch(r"(.*invalid choice: '?(.*?)'?) \(choose from (.*)\)", message)
+        if choice:
+            choices = re.findall(r"[^ ,']+", choice[3])
+            message = f"{choice[1]}; {instead(choice[2], choices, 'choose from')}"
+        super().error(message)
+
+    def options(self):
+        """Of all commands."""
+        for action in self._actions:
+            yield from action.option_strings
+            if isinstance(action, argparse._SubParsersAction):
+                for command in action.choices.values():
+                    yield from command.options()
+
+    def parse_args(self, words=None):
+        arguments, unknown = self.parse_known_args(words)
+        if unknown:
+            near = nearest(unknown[0].partition("=")[0], self.options()) if unknown[0].startswith("-") else None
+            self.error(f"unrecognized arguments: {' '.join(unknown)}" + (f"; did you mean '{near}'?" if near else ""))
+        return arguments
+
+
 def parser():
     """The command's words, those of each of COMMANDS among them."""
-    words = argparse.ArgumentParser(
+    words = Words(
         prog="lagrange-fmu",
         description="Energies and forces of a mechanical system become an FMU.",
         epilog=f"What was compiled is kept in {caching.folder()}, or where LAGRANGE_FMU_CACHE says; the folder can be deleted.",
@@ -52,4 +80,5 @@ def main(words=None):
         sys.stdout = None
         sys.exit(141)
     except OSError as problem:
-        sys.exit(f"lagrange-fmu: {problem.filename}: {problem.strerror}" if problem.filename else f"lagrange-fmu: {problem}")
+        near = near_file(problem.filename) if isinstance(problem, FileNotFoundError) and problem.filename else ""
+        sys.exit(f"lagrange-fmu: {problem.filename}: {problem.strerror}{near}" if problem.filename else f"lagrange-fmu: {problem}")

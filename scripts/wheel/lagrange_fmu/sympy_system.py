@@ -1,6 +1,8 @@
 """A LagrangesMethod of sympy.physics.mechanics as a system in XML."""
 
+import inspect
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,6 +12,7 @@ from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, Vector, dyn
 
 from .problem import Problem
 from .sympy_expressions import Names, prepared, text_of
+from .variables import nearest
 
 
 def _generalized_forces(method):
@@ -31,8 +34,12 @@ class _Content:
         self.time = dynamicsymbols._t
         self.coordinates = list(method.q)
         self.velocities = [q.diff(self.time) for q in self.coordinates]
+        speeds = None if speeds is None else [dynamicsymbols(speed) if isinstance(speed, str) else speed for speed in ([speeds] if isinstance(speeds, str) else speeds)]
         if speeds is not None and len(speeds) != len(self.velocities):
             raise Problem(f"there are {len(speeds)} speeds and {len(self.velocities)} coordinates; expected one for each")
+        for speed in speeds or []:
+            if not isinstance(speed, AppliedUndef):
+                raise Problem(f"{speed} is no speed; expected a dynamicsymbol or a name")
         self.velocity_of = dict(zip(speeds or [], self.velocities))
         in_motion = self._prepared([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
         forces = self._prepared(_generalized_forces(method))
@@ -93,12 +100,16 @@ class _Content:
 
 
 def _by_quantity(given, quantities, kind):
-    """Keys count as they are written, since equal symbols may differ in what is assumed of them."""
+    """Keys count as they are written, since equal symbols may differ in what is assumed of them; those of time by their names alone too."""
+    if not isinstance(given, Mapping):
+        raise Problem(f"the values of each {kind} are a {type(given).__name__}; expected a dict of values by symbol or name")
     known = {str(quantity): quantity for quantity in quantities}
+    names = {quantity.func.__name__: quantity for quantity in quantities if isinstance(quantity, AppliedUndef)} | known
     for key in given:
-        if str(key) not in known:
-            raise Problem(f"{key} is not a {kind} of this LagrangesMethod; expected {', '.join(known)}")
-    return {known[str(key)]: value for key, value in given.items()}
+        if str(key) not in names:
+            near = nearest(str(key).removesuffix("(t)"), names)
+            raise Problem(f"{key} is not a {kind} of this LagrangesMethod; {f'did you mean {near}?' if near else 'expected ' + ', '.join(known)}")
+    return {names[str(key)]: value for key, value in given.items()}
 
 
 def _values(given, quantities, kind):
@@ -127,7 +138,8 @@ def _variables(content, parameters, start, units):
     missing = [str(symbol) for symbol in content.parameters if symbol not in values]
     if missing:
         raise Problem(f"no value is given for {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
-    start = {content.velocity_of.get(key, key): value for key, value in start.items()}
+    speed_of = {str(speed): velocity for speed, velocity in content.velocity_of.items()} | {content.names[velocity]: velocity for velocity in content.velocities}
+    start = {speed_of.get(str(key), key): value for key, value in start.items()} if isinstance(start, Mapping) else start
     start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
     for symbol in content.parameters:
         yield "parameter", {"name": content.names[symbol], "start": values[symbol]} | units.get(symbol, {}), None
@@ -193,8 +205,8 @@ def from_sympy(
 ):
     """
     Writes a LagrangesMethod as NAME.xml, and returns the path. `parameters` are the start values of the symbols in it, `start`
-    those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols that stand for,
-    and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs.
+    those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols, or names, that stand for,
+    and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs. Names may stand for symbols in all dicts.
 
     `outputs` has expressions by name, to be read beside the coordinates and speeds; `units` those of parameters, inputs, coordinates and outputs,
     such as "kg"; `constraints` is a list of names, holonomic constraints first; `points` has what the animation shows by name: vectors from the origin,
@@ -223,3 +235,6 @@ def from_sympy(
     ElementTree.indent(root)
     path.write_text(ElementTree.tostring(root, encoding="unicode") + "\n", encoding="utf-8")
     return path
+
+
+OPTIONS = tuple(inspect.signature(from_sympy).parameters)[3:]

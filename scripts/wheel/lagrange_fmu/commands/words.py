@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from ..problem import Problem
+from ..variables import nearest
 
 REFERENCE = Path(__file__).resolve().parent.parent / "reference.md"
 
@@ -37,7 +38,9 @@ def run(arguments):
     if arguments.word:
         text = about(arguments.word.strip("<>/"), text)
         if not text:
-            raise Problem(f"the reference says nothing about '{arguments.word}'; lagrange-fmu words shows all of it")
+            near = nearest(arguments.word, dict.fromkeys(re.findall(r"[A-Za-z]\w{2,}", REFERENCE.read_text(encoding="utf-8"))))
+            remedy = f"did you mean '{near}'?" if near else "lagrange-fmu words shows all of it"
+            raise Problem(f"the reference says nothing about '{arguments.word}'; {remedy}")
     if sys.stdout.isatty():
         pydoc.pager(text)
     else:
