@@ -278,6 +278,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "option", false, read_option);
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
+  for_each(&mjcf, "contact", true, mjcf_read_rule);
   for_each(&mjcf, "worldbody", false, read_geoms_of_world);
   for_each(&mjcf, "worldbody", false, read_world);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);

@@ -7,10 +7,51 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
+/* The body of an element: the <body> or <worldbody> around its <frame>s. */
+static xmlNodePtr body_around(xmlNodePtr node) {
+  while (is_element(node->parent, "frame")) node = node->parent;
+  return node->parent;
+}
+
+static bool has_joint(xmlNodePtr body) {
+  xmlNodePtr node = body->children;
+  while (node != NULL && !is_element(node, "joint") && !is_element(node, "freejoint")) node = node->next;
+  return node != NULL;
+}
+
+/* The next body outwards, itself included, that has a joint; else the <worldbody>. */
+static xmlNodePtr moving_body(xmlNodePtr body) {
+  while (!is_element(body, "worldbody") && !has_joint(body)) body = body_around(body);
+  return body;
+}
+
+static char *name_or_nothing(xmlNodePtr node) {
+  char *name = is_element(node, "worldbody") ? copy_text(mjcf_world) : attribute(node, "name");
+  return name != NULL ? name : copy_text("");
+}
+
+void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node) {
+  bool is_pair = is_element(node, "pair");
+  if (!is_pair && !is_element(node, "exclude")) {
+    mjcf_report_unknown(mjcf, node, "a <pair> or <exclude>");
+    return;
+  }
+  struct ContactRule rule = {.node = node, .is_pair = is_pair};
+  for (int i = 0; i < 2; i++)
+    rule.names[i] = required_attribute(&mjcf->file, node, format_text("%s%d", is_pair ? "geom" : "body", i + 1));
+  mjcf->rules = make_room(mjcf->rules, mjcf->rule_count, sizeof *mjcf->rules);
+  mjcf->rules[mjcf->rule_count++] = rule;
+}
+
 struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
   double friction[3] = {1};
   mjcf_numbers(mjcf, node, "friction", 1, 3, friction);
+  xmlNodePtr body = body_around(node);
   struct MjcfContact contact = {.node = node,
+                                .body = body,
+                                .moving = moving_body(body),
+                                .name = name_or_nothing(node),
+                                .body_name = name_or_nothing(body),
                                 .friction = friction[0],
                                 .dimensions = mjcf_number(mjcf, node, "condim", 3),
                                 .priority = mjcf_number(mjcf, node, "priority", 0),
@@ -26,55 +67,34 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
   return contact;
 }
 
-/* The body of an element: the <body> or <worldbody> around its <frame>s. */
-static xmlNodePtr body_around(xmlNodePtr node) {
-  while (is_element(node->parent, "frame")) node = node->parent;
-  return node->parent;
-}
-
-static bool is_body_named(xmlNodePtr body, const char *name) {
-  return is_element(body, "worldbody") ? strcmp(name, mjcf_world) == 0 : attribute_is(body, "name", name);
-}
-
-/* An element of <contact> in which the two attributes say this of the two, in either order; NULL for none. */
-static xmlNodePtr find_contact(const struct Mjcf *mjcf, const char *kind, const char *const names[2], xmlNodePtr first,
-                               xmlNodePtr second, bool (*is_named)(xmlNodePtr node, const char *name)) {
-  for (xmlNodePtr section = mjcf->root->children; section != NULL; section = section->next)
-    for (xmlNodePtr node = is_element(section, "contact") ? section->children : NULL; node != NULL; node = node->next) {
-      if (!is_element(node, kind) || !has_attribute(node, names[0]) || !has_attribute(node, names[1])) continue;
-      const char *a = attribute(node, names[0]), *b = attribute(node, names[1]);
-      if ((is_named(first, a) && is_named(second, b)) || (is_named(first, b) && is_named(second, a))) return node;
-    }
+/* The <pair> of these geoms, or <exclude> of these bodies, in either order; NULL for none. */
+static const struct ContactRule *find_rule(const struct Mjcf *mjcf, bool is_pair, const char *first,
+                                           const char *second) {
+  for (size_t i = 0; i < mjcf->rule_count; i++) {
+    const struct ContactRule *rule = &mjcf->rules[i];
+    const char *a = rule->names[0], *b = rule->names[1];
+    if (rule->is_pair == is_pair &&
+        ((strcmp(first, a) == 0 && strcmp(second, b) == 0) || (strcmp(first, b) == 0 && strcmp(second, a) == 0)))
+      return rule;
+  }
   return NULL;
 }
 
-static bool is_excluded(const struct Mjcf *mjcf, xmlNodePtr first, xmlNodePtr second) {
-  static const char *const names[2] = {"body1", "body2"};
-  return find_contact(mjcf, "exclude", names, first, second, is_body_named) != NULL;
+static bool is_excluded(const struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  return find_rule(mjcf, false, first->body_name, second->body_name) != NULL;
 }
 
-static bool is_geom_named(xmlNodePtr geom, const char *name) {
-  return attribute_is(geom, "name", name);
-}
-
-static xmlNodePtr find_pair(const struct Mjcf *mjcf, const struct MjcfContact *first,
-                            const struct MjcfContact *second) {
-  static const char *const names[2] = {"geom1", "geom2"};
-  return find_contact(mjcf, "pair", names, first->node, second->node, is_geom_named);
-}
-
-/* True if a <pair> names the geom. */
-static bool is_in_pair(const struct Mjcf *mjcf, xmlNodePtr geom) {
-  const char *name = attribute(geom, "name");
-  for (xmlNodePtr section = mjcf->root->children; section != NULL && name != NULL; section = section->next)
-    for (xmlNodePtr node = is_element(section, "contact") ? section->children : NULL; node != NULL; node = node->next)
-      if (is_element(node, "pair") && (attribute_is(node, "geom1", name) || attribute_is(node, "geom2", name)))
-        return true;
-  return false;
+static const struct ContactRule *find_pair(const struct Mjcf *mjcf, const struct MjcfContact *first,
+                                           const struct MjcfContact *second) {
+  return find_rule(mjcf, true, first->name, second->name);
 }
 
 bool mjcf_touches(const struct Mjcf *mjcf, const struct MjcfContact *contact) {
-  return contact->type != 0 || contact->affinity != 0 || is_in_pair(mjcf, contact->node);
+  bool is_in_pair = false;
+  for (size_t i = 0; i < mjcf->rule_count; i++)
+    for (int k = 0; k < 2; k++)
+      is_in_pair |= mjcf->rules[i].is_pair && strcmp(mjcf->rules[i].names[k], contact->name) == 0;
+  return contact->type != 0 || contact->affinity != 0 || is_in_pair;
 }
 
 static bool masks_meet(const struct MjcfContact *first, const struct MjcfContact *second) {
@@ -94,17 +114,16 @@ static struct MjcfContact combined(const struct MjcfContact *first, const struct
 static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Collision *shape) {
   const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
   long line = xmlGetLineNo(contact.node);
-  xmlNodePtr pair = ground != NULL ? find_pair(mjcf, ground, &contact) : NULL;
+  const struct ContactRule *pair = ground != NULL ? find_pair(mjcf, ground, &contact) : NULL;
   shape->is_clear = mjcf->has_no_contacts;
   if (ground != NULL && pair == NULL)
-    shape->is_clear |=
-        !masks_meet(ground, &contact) || is_excluded(mjcf, body_around(ground->node), body_around(contact.node));
+    shape->is_clear |= !masks_meet(ground, &contact) || is_excluded(mjcf, ground, &contact);
   if (ground != NULL) contact = combined(ground, &contact);
   if (pair != NULL) {
     double friction[5] = {contact.friction};
-    mjcf_numbers(mjcf, pair, "friction", 1, 5, friction);
+    mjcf_numbers(mjcf, pair->node, "friction", 1, 5, friction);
     contact.friction = friction[0];
-    contact.dimensions = mjcf_number(mjcf, pair, "condim", contact.dimensions);
+    contact.dimensions = mjcf_number(mjcf, pair->node, "condim", contact.dimensions);
   }
   shape->friction = contact.dimensions == 1 ? 0 : contact.friction;
   if (contact.dimensions > 3 && !shape->is_clear)
@@ -120,35 +139,21 @@ void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, stru
   mjcf->contacts[mjcf->contact_count++] = *contact;
 }
 
-static bool has_joint(xmlNodePtr body) {
-  xmlNodePtr node = body->children;
-  while (node != NULL && !is_element(node, "joint") && !is_element(node, "freejoint")) node = node->next;
-  return node != NULL;
-}
-
-/* The next body outwards, itself included, that has a joint; else the <worldbody>. */
-static xmlNodePtr moving_body(xmlNodePtr body) {
-  while (!is_element(body, "worldbody") && !has_joint(body)) body = body_around(body);
-  return body;
-}
-
 static bool is_static(const struct MjcfContact *contact) {
-  return is_element(moving_body(body_around(contact->node)), "worldbody");
+  return is_element(contact->moving, "worldbody");
 }
 
 /* A body does not touch the one that carries it, unless that stands. */
-static bool carries(const struct Mjcf *mjcf, xmlNodePtr carrier, xmlNodePtr body) {
-  return !mjcf->touches_parents && !is_element(carrier, "worldbody") && !is_element(body, "worldbody") &&
-         moving_body(body_around(body)) == carrier;
+static bool is_carried(const struct Mjcf *mjcf, const struct MjcfContact *contact, const struct MjcfContact *carrier) {
+  return !mjcf->touches_parents && !is_static(carrier) && !is_static(contact) &&
+         moving_body(body_around(contact->moving)) == carrier->moving;
 }
 
 /* True if MuJoCo lets the two touch. */
 static bool may_meet(const struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
-  xmlNodePtr bodies[2] = {body_around(first->node), body_around(second->node)};
-  xmlNodePtr moving[2] = {moving_body(bodies[0]), moving_body(bodies[1])};
   if (find_pair(mjcf, first, second) != NULL) return true;
-  return moving[0] != moving[1] && masks_meet(first, second) && !carries(mjcf, moving[0], moving[1]) &&
-         !carries(mjcf, moving[1], moving[0]) && !is_excluded(mjcf, bodies[0], bodies[1]);
+  return first->moving != second->moving && masks_meet(first, second) && !is_carried(mjcf, first, second) &&
+         !is_carried(mjcf, second, first) && !is_excluded(mjcf, first, second);
 }
 
 static char *name_of(xmlNodePtr node) {
@@ -164,8 +169,7 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
   report_warning(mjcf->file.diagnostics, xmlGetLineNo(first->node),
                  "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected a <contact between=\"...\" "
                  "and=\"...\"> of shapes that may meet, in a <system> that includes the robot",
-                 name_of(first->node), name_of(body_around(first->node)), name_of(second->node),
-                 name_of(body_around(second->node)), others);
+                 name_of(first->node), name_of(first->body), name_of(second->node), name_of(second->body), others);
 }
 
 /* Warns of shapes that may meet: one of the two stands, or none. */

@@ -3,6 +3,9 @@
 
 #include "read/robots/mjcf/mjcf_values.h"
 
+/* A <pair> or <exclude>, before all geoms. */
+void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node);
+
 /* What the element says of its contacts. */
 struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node);
 

@@ -13,11 +13,19 @@ enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
 
 /* How a geom touches others. */
 struct MjcfContact {
-  xmlNodePtr node;   /* of the geom; NULL for none */
-  double friction;   /* coefficient of sliding friction */
+  xmlNodePtr node, body, moving; /* of the geom, NULL for none; its body; what moves this, else the <worldbody> */
+  char *name, *body_name;        /* "" for none */
+  double friction;               /* coefficient of sliding friction */
   double dimensions; /* of the force: 1 without friction, 3 with it, 4 and 6 with that of spinning, and rolling */
   double priority;
   unsigned type, affinity; /* masks: two touch where one's type and the other's affinity have a bit in common */
+};
+
+/* A <pair> of geoms that touch, or an <exclude> of bodies that do not. */
+struct ContactRule {
+  xmlNodePtr node;
+  char *names[2];
+  bool is_pair;
 };
 
 struct Mjcf {
@@ -32,7 +40,8 @@ struct Mjcf {
   char *mesh_folder;                    /* of the meshes' files, relative to the robot's; NULL for that itself */
   struct Names *meshes;                 /* that geoms have -> struct MjcfMesh */
   struct MjcfContact ground, *contacts; /* of the plane that is the ground, and of all other geoms that touch */
-  size_t contact_count;
+  struct ContactRule *rules;
+  size_t contact_count, rule_count;
   bool has_no_contacts, touches_parents; /* by <flag> */
   bool is_off[ACTUATOR_GROUPS];          /* groups of actuators without force */
   struct Names *places; /* of bodies and sites -> struct Placement in the world, with all joints at their ref */
