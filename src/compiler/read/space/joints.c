@@ -265,7 +265,7 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
 }
 
 /*
- * A half turn about an axis fulfils what a fixed joint holds, too. Reports a start that is nearer to that than to the pose,
+ * A half turn about an axis fulfils what a fixed joint holds, too. Warns of a start that is nearer to that than to the pose,
  * where the axes agree: there the real part of the quaternion between the two is smaller than another one.
  */
 static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
@@ -276,7 +276,7 @@ static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Sid
     char *what = format_text("the joint '%s' starts nearer to a half turn about %s than to its pose, which start "
                              "values near that pose avoid: the sum of the cosines between its axes %s, and %s,",
                              attribute(node, "name"), axes[i], axes[j], axes[k]);
-    expect_not_negative(reader, node, what, cosines, true);
+    expect_not_negative(reader, node, what, cosines, false);
   }
 }
 
