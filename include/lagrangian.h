@@ -65,8 +65,9 @@ struct ScalarVariable {
   const char *name;
   enum VariableKind kind;
   enum VariableType type;
-  size_t index;   /* among the variables of its kind */
-  bool is_output; /* causality is output */
+  size_t index;          /* among the variables of its kind */
+  bool is_output;        /* causality is output */
+  bool is_reinitialized; /* a state that events or constraints may change */
   double start, minimum, maximum;
   /*
    * Of a result that is a calculated parameter, and of a state whose start value is an expression: the parameters that

@@ -72,6 +72,7 @@ static void write_numbers(xmlTextWriterPtr writer, const struct Interface *inter
   if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);
   if (!isnan(entry->maximum)) write_number(writer, "max", entry->maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
+  if (entry->is_reinitialized) write_attribute(writer, "reinit", "true");
   if (entry->kind == VARIABLE_DERIVATIVE)
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",
                                       interface_find(interface, VARIABLE_STATE, entry->index) + FIRST_REFERENCE);

@@ -56,6 +56,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   if (!isnan(variable->entry.minimum)) write_number(writer, "min", variable->entry.minimum);
   if (!isnan(variable->entry.maximum)) write_number(writer, "max", variable->entry.maximum);
   if (!isnan(variable->nominal)) write_number(writer, "nominal", variable->nominal);
+  if (variable->entry.is_reinitialized) write_attribute(writer, "reinit", "true");
   if (has_start(&variable->entry)) write_number(writer, "start", variable->entry.start);
   if (kind == VARIABLE_DERIVATIVE)
     xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "derivative", "%zu",

@@ -30,6 +30,7 @@ struct Structure {
   const struct StructureForm *form;
   xmlTextWriterPtr writer;
   const struct Interface *interface;
+  const struct Graph *graph;
   struct Dependencies *dependencies;
   size_t *place_of; /* of the variable of each symbol: 1 + its place among the variables; 0 where it is no known */
   size_t *places;   /* workspace: of what one unknown depends on */
@@ -71,8 +72,27 @@ static size_t add_places(const struct Structure *structure, size_t count, Node n
   return count;
 }
 
-/* The places of the knowns that the unknown, with all its elements, depends on, ascending; returns their number. */
+/* The places of all knowns of initialization, ascending, as those that are depended on; returns their number. */
+static size_t find_all_places(const struct Structure *structure) {
+  const struct Interface *interface = structure->interface;
+  size_t count = 0, variable_count = structure->form->has_arrays ? interface->count : interface->count_in_fmi2;
+  for (size_t i = 0; i < variable_count; i++) {
+    const struct Vertex *vertex = &structure->graph->vertices[interface->variables[i].node];
+    bool is_known_here = vertex->operation == SYMBOL && structure->place_of[vertex->left] == i + 1 &&
+                         is_known(&interface->variables[i].entry, true);
+    if (!is_known_here || place_of_whole(structure, i) != i) continue;
+    structure->of_place[i] = DEPENDENT;
+    structure->places[count++] = i;
+  }
+  return count;
+}
+
+/*
+ * The places of the knowns that the unknown, with all its elements, depends on, ascending; returns their number. Where
+ * constraints move the start values, all that is computed initially depends on all of them.
+ */
 static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
+  if (initial && structure->dependencies->equations->constraints->count > 0) return find_all_places(structure);
   const struct InterfaceVariable *variable = &structure->interface->variables[unknown];
   size_t elements = structure->form->has_arrays && variable->array_count > 0 ? variable->array_count : 1, count = 0;
   for (size_t i = 0; i < elements; i++) count = add_places(structure, count, variable[i].node, initial);
@@ -96,7 +116,7 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
 /*
  * A derivative of a large coupled system depends on nearly all states, so that the lists of all of them would grow as
  * their square. Without a list it depends on all knowns (section 2.2.8). Outputs keep theirs: importers find algebraic
- * loops by them. Where constraints move the start values, all that is computed initially depends on all of them.
+ * loops by them.
  */
 enum { DEPENDENCY_LIMIT = 1000 };
 
@@ -106,8 +126,7 @@ static void write_unknown(const struct Structure *structure, const char *element
   xmlTextWriterStartElement(structure->writer, BAD_CAST element);
   xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST structure->form->key, "%zu",
                                     unknown + structure->form->first_key);
-  bool is_solved_for = initial && structure->dependencies->equations->constraints->count > 0;
-  if (!is_solved_for && (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output))
+  if (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output)
     write_dependencies(structure, count, initial);
   for (size_t i = 0; i < count; i++) structure->of_place[structure->places[i]] = INDEPENDENT;
   xmlTextWriterEndElement(structure->writer);
@@ -147,7 +166,7 @@ static void write_unknowns(const struct Structure *structure, int kind,
 void model_structure_write(xmlTextWriterPtr writer, const struct Program *program, const struct StructureForm *form) {
   const struct Interface *interface = program->interface;
   const struct Graph *graph = program->model->graph;
-  struct Structure structure = {.form = form, .writer = writer, .interface = interface};
+  struct Structure structure = {.form = form, .writer = writer, .interface = interface, .graph = graph};
   structure.dependencies = dependencies_create(program->model, program->equations);
   structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
   structure.places = allocate(interface->count, sizeof *structure.places);

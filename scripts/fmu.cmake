@@ -119,7 +119,7 @@ function(add_archive name version folder system platforms)
   add_dependencies(${target} derive_${name}) # else each FMU would derive it
 endfunction()
 
-# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form]) builds fmu/NAME.fmu in the
+# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS]) builds fmu/NAME.fmu in the
 # folder that CMake builds the current one in, and fmi3/NAME.fmu where the version 3 is asked for; NAME is the one in SYSTEM.xml, as
 # pack.cmake checks.
 #   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux and, of FMI 3, wasm32, by zig; none: this machine alone, by
@@ -127,11 +127,12 @@ endfunction()
 #   FMI_VERSIONS  2, 3 or both; none: 2
 #   SOLVER        a method of <solver> in place of the system's own, where there is anything that moves
 #   FORM          statements or tables, in place of the form that follows from the system's size
+#   ARRAYS        what <for> makes are arrays in FMI 3.0, not scalars
 # The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME, since a system may be named like another target.
 function(lagrange_add_fmu name system)
-  cmake_parse_arguments(PARSE_ARGV 2 fmu "" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
+  cmake_parse_arguments(PARSE_ARGV 2 fmu "ARRAYS" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
   if(fmu_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER or FORM")
+    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER, FORM or ARRAYS")
   endif()
   if(NOT fmu_FMI_VERSIONS)
     set(fmu_FMI_VERSIONS 2)
@@ -161,9 +162,12 @@ function(lagrange_add_fmu name system)
   if(fmu_FORM)
     set(form --form ${fmu_FORM})
   endif()
+  if(fmu_ARRAYS)
+    set(arrays --arrays)
+  endif()
   add_custom_command(OUTPUT ${folder}/system.c
                      BYPRODUCTS ${folder}/modelDescription.xml ${folder}/documentation/index.html ${folder}/model.png
-                     COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form}
+                     COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form} ${arrays}
                      DEPENDS lagrange-fmu::lagc ${dependencies}
                      COMMENT "Deriving ${name}" VERBATIM)
   add_custom_target(derive_${name} DEPENDS ${folder}/system.c)

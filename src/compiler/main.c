@@ -20,7 +20,7 @@
 #include "read/xml/schema.h"
 
 static const char usage[] =
-    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--scalars]\n"
+    "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--arrays]\n"
     "            [--along NAME ...] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --words | --version\n"
@@ -39,7 +39,7 @@ static const char usage[] =
     "is\n"
     "                   damped as if the point were behind by its velocity times pull.time\n"
     "  --adjoint        adds a reverse sweep: an adjoint derivative costs the same for any number of knowns\n"
-    "  --scalars        what <for> makes are scalars in FMI 3.0 too, not arrays\n"
+    "  --arrays         what <for> makes are arrays in FMI 3.0, not scalars\n"
     "  --along NAME     adds the derivatives of coordinates and outputs by a parameter, an input or a start value, "
     "X.by.NAME,\n"
     "                   by the variational equations\n"
@@ -55,7 +55,7 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, pull, scalars, words, help, version;
+  bool linearize, pull, arrays, words, help, version;
   struct Extras extras;
 };
 
@@ -90,7 +90,7 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
     else if (strcmp(word, "--pull") == 0) arguments->pull = true;
-    else if (strcmp(word, "--scalars") == 0) arguments->scalars = true;
+    else if (strcmp(word, "--arrays") == 0) arguments->arrays = true;
     else if (strcmp(word, "--adjoint") == 0) arguments->extras.adjoint = true;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "tables") == 0) arguments->form = TABLES;
     else if (strcmp(word, "--form") == 0 && strcmp(next, "statements") == 0) arguments->form = STATEMENTS;
@@ -110,7 +110,7 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
 static void compile(struct Model *model, const struct Equations *equations, const struct Arguments *arguments,
                     struct Diagnostics *diagnostics) {
   struct Interface *interface = interface_create(model, equations);
-  if (!arguments->scalars) arrays_find(interface);
+  if (arguments->arrays) arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
   struct Expressions *expressions = expressions_create(model, equations, interface, arguments->extras, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, arguments->form) : NULL;

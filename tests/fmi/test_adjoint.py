@@ -28,7 +28,7 @@ HELD["AdjointBranchedArm"] = (ROOT / "tests" / "support" / "branched_arm.xml").r
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("adjoint", {"Mixed": MIXED} | HELD, "--adjoint", "--scalars", versions=(3,))
+    build_systems("adjoint", {"Mixed": MIXED} | HELD, "--adjoint", versions=(3,))
 
 
 def model(name):

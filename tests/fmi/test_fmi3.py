@@ -74,7 +74,9 @@ LEVERS = """
 
 @pytest.fixture(scope="module")
 def own_systems():
-    fmu.build_systems("fmi3-systems", {"TypesOfAll": TYPES, "MovedHand": HAND, "Levers": LEVERS}, versions=[2, 3])
+    fmu.build_systems("fmi3-systems", {"MovedHand": HAND, "Levers": LEVERS}, versions=[2, 3])
+    texts = {f"Array{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'"{name}"', f'"Array{name}"', 1) for name in ("ChainPendulum", "RobotArm")}
+    fmu.build_systems("fmi3-arrays", texts | {"TypesOfAll": TYPES}, "--arrays", versions=[2, 3])
 
 
 @pytest.fixture
@@ -140,8 +142,8 @@ def test_co_simulation_has_the_bits_of_fmi2(name):
     assert columns(third, names).tobytes() == columns(second, names).tobytes()
 
 
-@pytest.mark.parametrize("name", ["SimplePendulum", "ChainPendulum", "FourBar", "ParticleCartesian", "StateFeedback"])
-def test_model_exchange_agrees(name):
+@pytest.mark.parametrize("name", ["SimplePendulum", "ChainPendulum", "ArrayChainPendulum", "FourBar", "ParticleCartesian", "StateFeedback"])
+def test_model_exchange_agrees(name, own_systems):
     words = dict(stop_time=0.5, output_interval=0.01, relative_tolerance=1e-8)
     names = fmu.names_of(name, "output")
     ours = fmpy.simulate_fmu(str(fmi3.unpacked(name)), fmi_type="CoSimulation", **words)
@@ -167,14 +169,14 @@ def test_event_indicators(opened):
         ball.fmu.setContinuousStates((c_double * 2)(height, 0.0), 2)
         value = (c_double * 1)()
         ball.fmu.getEventIndicators(value, 1)
-        assert value[0] == ball.get("eventIndicator")[0] == pytest.approx(height, abs=1e-10)
+        assert value[0] == ball.get("eventIndicator[1]")[0] == pytest.approx(height, abs=1e-10)
         ball.fmu.enterEventMode()
     refused(ERROR, ball.fmu.getEventIndicators, (c_double * 2)(), 2)
     assert "2 elements; expected 1, the number of event indicators" in ball.messages[-1][2]
     resting = opened("BouncingBall").initialize({"h": 0.0})
     assert resting.fmu.getInt32(resting.vr("ground.closed")) == [1]
-    assert resting.get("eventIndicator")[0] == pytest.approx(9.81)
-    refused(ERROR, resting.set, dict(eventIndicator=1.0))
+    assert resting.get("eventIndicator[1]")[0] == pytest.approx(9.81)
+    refused(ERROR, resting.set, {"eventIndicator[1]": 1.0})
 
 
 def test_intermediate_update_at_an_event(opened):
@@ -286,9 +288,9 @@ def test_types(types, opened):
         instance.fmu.setBoolean(instance.vr("on"), [True])
 
 
-@pytest.mark.parametrize("name", ["ChainPendulum", "FourBar", "DampedPendulum"])
+@pytest.mark.parametrize("name", ["ArrayChainPendulum", "ChainPendulum", "FourBar", "DampedPendulum"])
 @pytest.mark.parametrize("kind", [FMU3Slave, FMU3Model])
-def test_partial_derivatives(name, kind, opened):
+def test_partial_derivatives(name, kind, opened, own_systems):
     """Directional ones against difference quotients; adjoint ones have the same scalar products."""
     instance = opened(name, kind=kind)
     model = fmi3.description(name)
@@ -315,9 +317,9 @@ def test_partial_derivatives(name, kind, opened):
     np.testing.assert_allclose(directional, (values[0] - values[1]) / (2 * h), rtol=1e-6, atol=1e-7)
 
 
-def test_output_derivatives(opened):
+def test_output_derivatives(opened, own_systems):
     """One order for a whole array, and another for the next."""
-    instance = opened("ChainPendulum").initialize()
+    instance = opened("ArrayChainPendulum").initialize()
     instance.step(0.3)
     references, values = (c_uint32 * 2)(*instance.vr("theta", "omega")), (c_double * 20)()
     for orders, expected in (((1, 1), ("der(theta)", "der(omega)")), ((2, 1), ("der(omega)", "der(omega)"))):
@@ -475,7 +477,7 @@ def test_terminals_are_drawn():
 def test_terminals(own_systems):
     """A flange where one input is the force along a coordinate, with the names of Modelica's connectors."""
     members, kinds = {}, {}
-    for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "Levers"):
+    for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "ArrayRobotArm", "Levers"):
         root = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "terminalsAndIcons.xml")
         members[name] = {
             terminal.get("name"): [(m.get("variableName"), m.get("memberName"), m.get("variableKind")) for m in terminal.iter("TerminalMemberVariable")]
@@ -483,13 +485,14 @@ def test_terminals(own_systems):
         }
         kinds[name] = {terminal.get("terminalKind") for terminal in root.iter("Terminal")}
     assert kinds["InvertedPendulumCart"] == kinds["ParticleCartesian"] == {"Modelica.Mechanics.Translational.Interfaces.Flange_a"}
-    assert kinds["DampedPendulum"] == {"Modelica.Mechanics.Rotational.Interfaces.Flange_a"} and kinds["RobotArm"] == {None}
+    assert kinds["DampedPendulum"] == {"Modelica.Mechanics.Rotational.Interfaces.Flange_a"} and kinds["ArrayRobotArm"] == {None}
     force = [("x", "s", "signal"), ("v", "v", "signal"), ("F", "f", "inflow")]
     assert members["InvertedPendulumCart"] == {"x": force}
     torque = [("theta", "phi", "signal"), ("omega", "w", "signal"), ("tau", "tau", "inflow")]
     assert members["DampedPendulum"] == {"theta": torque}
     torques = [("q", "phi", "signal"), ("w", "w", "signal"), ("tau", "tau", "inflow")]
-    assert members["RobotArm"] == {"q": torques}, "arrays of six flanges"
+    assert members["ArrayRobotArm"] == {"q": torques}, "arrays of six flanges"
+    assert members["RobotArm"] == {f"q[{i}]": [(f"{name}[{i}]", member, kind) for name, member, kind in torques] for i in range(1, 7)}
     assert {name: terminal[2][0] for name, terminal in members["Levers"].items()} == {"y": "alone"}
     assert members["SimplePendulum"] == {} and set(members["ParticleCartesian"]) == {"x", "y", "z"}
 

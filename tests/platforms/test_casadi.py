@@ -25,8 +25,14 @@ def function_of(name, fmi):
     return builder, function, point
 
 
-# It knows neither arrays of FMI 3.0 nor unknowns that depend on everything.
-@pytest.mark.parametrize("name, fmi", [(name, fmi) for fmi in (2, 3) for name in NAMES if fmi == 2 or name not in ("RobotArm", "FourBar")])
+@pytest.mark.parametrize("name", fmu.moving_names())
+def test_reads_fmi3(name):
+    """With all states and outputs, one by one."""
+    builder = casadi.DaeBuilder(name, str(fmi3.unpacked(name)), {})
+    assert (builder.nx(), builder.ny()) == (len(fmu.states_of(name)), len(fmu.names_of(name, "output")))
+
+
+@pytest.mark.parametrize("name, fmi", [(name, fmi) for fmi in (2, 3) for name in NAMES])
 def test_jacobian(name, fmi, capfd):
     """Against differences of the function that CasADi makes of the FMU, and without a complaint of the FMU."""
     builder, function, point = function_of(name, fmi)

@@ -86,7 +86,6 @@ def test_ecos(name):
 
 @pytest.mark.parametrize("name", ["DampedPendulum", "FourBar", "ParticleCartesian", "StateFeedback"])
 def test_ecos_with_fmi3(name):
-    """It knows no arrays."""
     outputs, expected = outputs_by_fmpy(name)
     np.testing.assert_allclose(values_by_ecos(name, fmi3.archive(name), outputs), expected, rtol=1e-9, atol=1e-9)
 

@@ -20,7 +20,7 @@ MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant n
 @pytest.fixture(scope="module", autouse=True)
 def built():
     systems = {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Held": HELD, "Double": DOUBLE, "Many": MANY, "Worked": WORKED, "Stiff": STIFF}
-    build_systems("gradients", systems, "--adjoint", "--scalars", versions=(3,))
+    build_systems("gradients", systems, "--adjoint", versions=(3,))
 
 
 def archive(name):

@@ -13,7 +13,7 @@ UNITS = {"theta": "rad", "h[1]": "m"}
 @pytest.fixture(scope="module", autouse=True)
 def built():
     build_systems("measured", {"Oscillator": OSCILLATOR})
-    build_systems("measured", {"Back": OSCILLATOR.replace('"Oscillator"', '"Back"')}, "--adjoint", "--scalars", versions=(3,))
+    build_systems("measured", {"Back": OSCILLATOR.replace('"Oscillator"', '"Back"')}, "--adjoint", versions=(3,))
 
 
 def read(folder, text):

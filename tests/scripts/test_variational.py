@@ -47,7 +47,7 @@ def built():
 
     build_systems("variational_switched", {name: text for name, (text, _) in SWITCHED.items()} | {"Flat": FLAT})
     for name, (text, by) in SWITCHED.items():
-        build_systems(f"variational_{name}", {name: text}, "--scalars", *(word for value in by for word in ("--along", value)), versions=(3,))
+        build_systems(f"variational_{name}", {name: text}, *(word for value in by for word in ("--along", value)), versions=(3,))
 
 
 def archive(name):

@@ -46,7 +46,6 @@ FLIPS = {
     "cylindrical": [(np.pi, 0, 0)],
     "prismatic": [(np.pi, 0, 0), (0, np.pi, 0), (0, 0, np.pi)],
     "planar": [(np.pi, 0, 0)],
-    "fixed": [(np.pi, 0, 0), (0, np.pi, 0), (0, 0, np.pi)],
     "screw": [(np.pi, 0, 0), (0, 0, np.pi)],
 }
 FLIPPED = [(kind, number) for kind, flips in FLIPS.items() for number in range(len(flips))]

@@ -159,13 +159,14 @@ def build(
     solver: str | None = None,
     output: str | os.PathLike[str] = ".",
     fmi: int = 2,
+    arrays: bool = False,
 ) -> Path:
     """
     Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
     `output`. Platforms are one or several of PLATFORM_NAMES, this machine's where none are given; `solver` is a method in place of the system's own;
-    `fmi` is the version of FMI, 2 or 3.
+    `fmi` is the version of FMI, 2 or 3. With `arrays`, what <for> makes are arrays in FMI 3.0, not scalars.
     """
-    return build_with((), system, platforms, solver, output, fmi)
+    return build_with(("--arrays",) if arrays else (), system, platforms, solver, output, fmi)
 
 
 def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):

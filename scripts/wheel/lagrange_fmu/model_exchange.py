@@ -13,8 +13,7 @@ from .running import fmu_of, is_fmu
 from .simulation import check_start, described, units_of
 from .variables import settable
 
-SCALARS = ("--scalars",)  # words for lagc
-ADJOINT = ("--adjoint", *SCALARS)
+ADJOINT = ("--adjoint",)  # words for lagc
 COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # what is discrete beside modes
 
 
@@ -148,7 +147,7 @@ def opened(system, values, method=None, what="be linearized there", adjoint=Fals
     it is to stop at events. messages: those of another one, to which what it logs is appended.
     """
     messages = [] if messages is None else messages
-    words = ADJOINT if adjoint else [*words_for(by), *SCALARS] if stops_at_events else words_for(by)
+    words = ADJOINT if adjoint else words_for(by)
     with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=words) as fmu:
         description = described(fmu)
         if not stops_at_events:

@@ -35,6 +35,7 @@ static bool are_same_number(double a, double b) {
 static bool are_alike(const struct InterfaceVariable *a, const struct InterfaceVariable *b, size_t index) {
   const struct ScalarVariable *first = &a->entry, *second = &b->entry;
   return first->kind == second->kind && first->type == second->type && first->is_output == second->is_output &&
+         first->is_reinitialized == second->is_reinitialized &&
          (first->follows_from == NULL) == (second->follows_from == NULL) && starts_nearby(a) == starts_nearby(b) &&
          are_same_number(first->minimum, second->minimum) && are_same_number(first->maximum, second->maximum) &&
          are_same_number(a->nominal, b->nominal) && are_same_text(a->unit, 1, b->unit, index) &&
@@ -57,12 +58,12 @@ static bool has_element(const struct Interface *interface, const char *first, si
   return false;
 }
 
-/* How many elements of one array begin with the variable; 0 where it begins none. */
+/* How many elements of one array begin with the variable; 0 where it begins none. Indicators stay scalars for importers. */
 static size_t count_elements(const struct Interface *interface, size_t place) {
   const struct InterfaceVariable *first = &interface->variables[place];
   const char *name = first->entry.name;
   size_t count = 0;
-  if (!is_element(name, 1)) return 0;
+  if (first->entry.kind == VARIABLE_INDICATOR || !is_element(name, 1)) return 0;
   for (; place + count < interface->count; count++) {
     const char *next = first[count].entry.name;
     if (!is_element(next, count + 1) || !are_same_text(name, 1, next, count + 1)) break;

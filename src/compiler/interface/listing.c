@@ -259,6 +259,31 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   }
 }
 
+/* Whether a constraint, contact or friction acts on the coordinate, by itself or by way of others. */
+static bool is_constrained(const struct Equations *equations, size_t coordinate) {
+  const struct InertiaBlock *block = inertia_block_of(equations->inertia, coordinate);
+  size_t i = 0;
+  while (i < block->count && block->coordinates[i] < equations->count) i++;
+  return i < block->count;
+}
+
+/* Those that impacts, projection on constraints, or events may set. */
+static void mark_reinitialized_states(struct Interface *interface, const struct Model *model,
+                                      const struct Equations *equations) {
+  size_t n = equations->count;
+  struct InterfaceVariable *states = &interface->variables[interface->first[VARIABLE_STATE]];
+  for (size_t i = 0; i < 2 * n && equations->constraints->count > 0; i++)
+    states[i].entry.is_reinitialized = is_constrained(equations, i % n);
+  for (size_t i = 0; i < model->switches.event_count; i++) {
+    const struct Event *event = &model->switches.events[i];
+    for (size_t j = 0; j < event->assignment_count; j++) {
+      const struct Symbol *symbol = graph_symbol_of(model->graph, event->assignments[j].symbol);
+      if (symbol->kind == COORDINATE) states[symbol->index].entry.is_reinitialized = true;
+      if (symbol->kind == VELOCITY) states[n + (size_t)symbol->index].entry.is_reinitialized = true;
+    }
+  }
+}
+
 /* What FMI 2.0 asks for by a function alone. */
 static void append_indicators(struct Interface *interface, const struct SwitchingExpressions *switching) {
   for (size_t i = 0; switching != NULL && i < switching->indicator_count; i++) {
@@ -288,6 +313,7 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
       interface->variables[i].node = without_branches(model, interface->variables[i].node);
   append_statistics(interface, model, equations->method);
   mark_moved_states(interface, model, equations);
+  mark_reinitialized_states(interface, model, equations);
 }
 
 /* The expression where one stands for itself; in trees each would hold all of the tree. */

@@ -29,8 +29,8 @@ static void write_variable(FILE *file, const struct ScalarVariable *variable) {
       [TYPE_REAL] = "TYPE_REAL", [TYPE_INTEGER] = "TYPE_INTEGER", [TYPE_BOOLEAN] = "TYPE_BOOLEAN"};
   fputs("    {", file);
   write_c_string(file, variable->name);
-  fprintf(file, ", %s, %s, %zu, %s, ", kinds[variable->kind], types[variable->type], variable->index,
-          name_of(variable->is_output));
+  fprintf(file, ", %s, %s, %zu, %s, %s, ", kinds[variable->kind], types[variable->type], variable->index,
+          name_of(variable->is_output), name_of(variable->is_reinitialized));
   const double numbers[] = {variable->start, variable->minimum, variable->maximum};
   for (int i = 0; i < 3; i++) {
     write_c_number(file, numbers[i]);

@@ -103,6 +103,12 @@ static bool is_variation_at_event(const struct Instance *instance, const struct 
   return instance->situation->phase == PHASE_EVENT && is_variation(variable);
 }
 
+/* Whether it is a state that the importer may change at an event, as the FMU does not (FMI 3.0.2, section 2.3.6). */
+static bool is_free_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
+  return instance->situation->phase == PHASE_EVENT && instance->kind == KIND_MODEL_EXCHANGE &&
+         variable->kind == VARIABLE_STATE && !variable->is_reinitialized;
+}
+
 /* Whether this kind of variable may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {
@@ -110,7 +116,8 @@ static bool is_settable(const struct Instance *instance, const struct ScalarVari
   case VARIABLE_PARAMETER: return instance->situation->phase != PHASE_CONTINUOUS_TIME;
   case VARIABLE_MODE: return is_before_start(instance);
   case VARIABLE_STATE:
-    return is_before_start(instance) || is_exchanged(instance) || is_variation_at_event(instance, variable);
+    return is_before_start(instance) || is_exchanged(instance) || is_variation_at_event(instance, variable) ||
+           is_free_at_event(instance, variable);
   default: return false;
   }
 }
@@ -162,7 +169,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
     if (instance->situation->changed == CHANGED_NOTHING) instance->situation->changed = CHANGED_COURSE;
     return;
   }
-  if (variable->kind == VARIABLE_STATE) initial_state_set(instance, variable->index);
+  if (variable->kind == VARIABLE_STATE && is_before_start(instance)) initial_state_set(instance, variable->index);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
                                                       : &instance->parameter[variable->index];
