@@ -283,3 +283,9 @@ def test_who_waits_for_sundials(solver, is_built, source, ready):
     (add(ready.folder / "fmu" / "Pendulum") / "system.xml").write_text(f"<system>{solver}</system>")
     assert ready.run("run", "Pendulum")[0] == 0
     assert (ready.folder / "build" / "sundials" / "version").exists() == is_built
+
+
+@pytest.mark.parametrize("words, status", [(["--help"], 0), (["-h"], 0), ([], 1), (["-DFMI_VERSIONS=2"], 1)])
+def test_build_says_how_it_is_called(words, status):
+    result = subprocess.run([ROOT / "scripts" / "build", *words], capture_output=True, text=True)
+    assert result.returncode == status and result.stdout.startswith("usage: scripts/build FOLDER")
