@@ -25,9 +25,11 @@ def curve(table):
     number = lambda value: sp.Float(float(value), 40)
 
     def at(u):
-        value = number(y[0]) + number(cubics[2, 0]) * Minimum(0, u - number(x[0])) + number(slope) * Maximum(u - number(x[-1]), 0)
+        """At a knot the slope is that of the interval behind it alone."""
+        beyond = [Maximum(u - number(knot), 0) for knot in x]
+        value = number(y[0]) + number(cubics[2, 0]) * Minimum(u - number(x[0]), 0) + number(slope) * beyond[-1]
         for i, (d, c, b, _) in enumerate(cubics.T):
-            way = Minimum(number(x[i + 1] - x[i]), Maximum(u - number(x[i]), 0))
+            way = beyond[i] - beyond[i + 1]
             value += way * (number(b) + way * (number(c) + way * number(d)))
         return value
 

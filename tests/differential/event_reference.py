@@ -17,6 +17,7 @@ from .reference import EVALUATIONS, INPUT_COEFFICIENTS, OUTCOMES, REAL, Undecide
 from .system import course
 
 AHEAD = 1e-7  # the way that is tried, in s
+OFF_KINK = 1e-16  # s
 TOUCHING, SLOW, REST = 1e-12, 1e-12, 1e-13
 EVENT_LIMIT, ROUND_LIMIT = 20000, 100
 INTEGRATOR = Path(__file__).with_name("reference.c"), Path(__file__).with_name("events.c")
@@ -164,6 +165,8 @@ class EventReference:
     # --- What holds ---
 
     def _settle(self, starts=False):
+        if starts:  # at a kink of a gap the side counts to which the motion goes
+            self.state[: self.n] += OFF_KINK * self.state[self.n :]
         for _ in range(ROUND_LIMIT):
             self._collide()
             self._choose()

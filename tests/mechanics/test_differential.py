@@ -20,7 +20,7 @@ from differential.generator import generate
 from differential.reference import Reference
 from differential.skeletons import coordinate, body
 from differential.switches import Contact, Event, Friction, Switches
-from differential.system import Action, Plan, System
+from differential.system import Action, Plan, System, Table
 from references import Motion
 
 SEED = 644
@@ -162,6 +162,42 @@ def test_reference_switches(tmp_path):
     assert list(column("rub.sliding")) == [1, 1, 1, 0, 0] and list(column("n")) == [0, 0, 2, 2, 2]
     assert column("v3") == pytest.approx([0, 0, push, push, push], rel=1e-13)
     assert column("q3")[2:] == pytest.approx(push * np.array([0.8, 2.8, 3.3]), rel=1e-13)
+
+
+S1, S2, GRAVITY = 0.25, 0.75, 2.0  # slopes on both sides of a knot at x = 1, y = 0.25
+
+
+def ramp(gap, rates, restitution):
+    """A point that starts at the knot with these rates, with gravity."""
+    system = System("Ramp", plan=Plan(0.0, 0.5, [Action() for _ in range(2)], 1e-10), switches=Switches(are_followed=True))
+    system.tables.append(Table("profile", [0.0, 1.0, 2.0], [0.0, S1, S1 + S2], "linear"))
+    draw = Draw(0, system)
+    places = [coordinate(draw, start, rate)[0] for start, rate in zip((1.0, S1), rates)]
+    body(draw, node(1), x=places[0], y=places[1])
+    system.forces = [("q2", node(-GRAVITY))]
+    system.switches.contacts.append(Contact("ground", gap, restitution))
+    return system
+
+
+@pytest.mark.parametrize("gap", [name("q2") - function("profile", name("q1")),
+                                 name("q2") - 0.25 * name("q1") - 0.25 * (name("q1") - 1 + absolute(name("q1") - 1))])  # fmt: skip
+@pytest.mark.parametrize("restitution, direction", [(0.5, 1), (0.0, 1), (0.5, -1)])
+def test_reference_starts_at_a_knot(gap, restitution, direction, tmp_path):
+    """
+    Up along S1 to the slope S2: by Newton's law through the mass along the normal (-S2, 1), s + (1 + e) (S2 - S1)/(1 + S2^2) of it.
+    Down from the knot it stays on S1.
+    """
+    system = ramp(gap, (direction, direction * S1), restitution)
+    rows = EventReference(Derivation(system), tmp_path).trajectory(7, 1e-16, 0.5)
+    push = (1 + restitution) * (S2 - S1) / (1 + S2**2) if direction > 0 else 0.0
+    vx, vy, t = direction - S2 * push, direction * S1 + push, 0.25
+    pull = -GRAVITY * (S1 if direction < 0 else S2) / (1 + (S1 if direction < 0 else S2) ** 2)
+    flies = restitution > 0 and direction > 0
+    x = 1 + vx * t + (0 if flies else pull * t**2 / 2)
+    y = S1 + vy * t - GRAVITY * t**2 / 2 if flies else S1 + (x - 1) * (S1 if x < 1 else S2)
+    assert rows[1][:2] == pytest.approx([x, y], abs=1e-12)
+    outcome = judge_system(system, tmp_path / "fmu")
+    assert outcome.verdict == "agrees", outcome.message
 
 
 def test_reference_agrees_with_taylor_series(tmp_path):

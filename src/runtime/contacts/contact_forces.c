@@ -29,6 +29,7 @@ static const double jamming_share = 1e-3;
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
 
+static const char crushed[] = "contacts crush what is between them";
 static const char no_pushes[] = "the forces of contacts cannot be found there";
 
 struct RestingContacts {
@@ -52,6 +53,15 @@ static double noise_of_acceleration(const struct Settlement *settlement, size_t 
   bool parts = is_hit(settlement, indicator) && settlement->was_opened[contact] != 0.0;
   double noise = settlement->noise[contact_place(settlement->switches, contact, CONTACT_ACCELERATION)];
   return (parts ? parting_in_noise : 1.0) * noise;
+}
+
+/* Whether a contact that its force has opened in this event touches, and would come back at once. */
+static bool any_comes_back(const struct Settlement *settlement) {
+  bool any = false;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++)
+    any |= settlement->was_opened[i] > 0.0 && settlement->takes_part[i] != 0.0 && !contact_is_closed(settlement, i) &&
+           contact_value(settlement, i, CONTACT_ACCELERATION) < -noise_of_acceleration(settlement, i);
+  return any;
 }
 
 /* Which contacts may open or close by their forces, and which frictions slide. Whether such a friction rests on any. */
@@ -111,6 +121,51 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
   }
 }
 
+void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact) {
+  log_message(
+      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      "time %g: the contact '%s' closes, and nothing at it can give way: all that changes its gap is prescribed; "
+      "expected prescribed motions that keep the gap open, or a coordinate that is free",
+      settlement->time, settlement->switches->contacts[contact].name);
+}
+
+/* Of the contacts among the pushes, the one whose push closes a row's gap most; the row itself where none does. */
+static size_t find_opponent(const struct Pushes *pushes, size_t row) {
+  size_t found = row;
+  double most = 0.0;
+  for (size_t i = 0; i < pushes->contact_count; i++) {
+    double mobility = pushes->mobility[row * pushes->count + i];
+    if (mobility >= most) continue;
+    most = mobility;
+    found = i;
+  }
+  return found;
+}
+
+static void log_crushed(const struct Settlement *settlement, const struct Pushes *pushes, size_t contact) {
+  const struct ContactFacts *contacts = settlement->switches->contacts;
+  size_t row = 0;
+  while (pushes->member[row] != contact) row++;
+  log_message(
+      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      "time %g: the contacts '%s' and '%s' crush what is between them: prescribed motions close one of them, and "
+      "no force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of "
+      "one",
+      settlement->time, contacts[contact].name, contacts[pushes->member[find_opponent(pushes, row)]].name);
+}
+
+const char *contact_forces_refuse_crushed(struct Settlement *settlement, size_t contact) {
+  const struct SwitchTable *switches = settlement->switches;
+  struct Pushes pushes;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    settlement->takes_part[i] = i == contact || is_touching(settlement, i) ? 1.0 : 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 0.0;
+  if (!find_pushes(settlement, &pushes)) return no_pushes;
+  log_crushed(settlement, &pushes, contact);
+  pushes_free(settlement, &pushes);
+  return crushed;
+}
+
 static void free_resting(const struct Settlement *settlement, struct RestingContacts *resting) {
   if (resting->block != NULL) scratch_return(settlement->instance, SCRATCH_RESTING);
   pushes_free(settlement, &resting->pushes);
@@ -142,16 +197,22 @@ static bool create_resting(struct Settlement *settlement, struct RestingContacts
   return true;
 }
 
-/* Whether an open contact at rest would close by more than rounding, as one that another has opened too soon. */
-static bool sinks(const struct Settlement *settlement, const struct RestingContacts *resting) {
-  double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces);
-  bool any = false;
+/*
+ * The open contact at rest that closes most, and by more than rounding, as one that another has opened too soon;
+ * contact_count for none.
+ */
+static size_t find_sinking(const struct Settlement *settlement, const struct RestingContacts *resting) {
+  double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces), most = 0.0;
+  size_t found = settlement->switches->contact_count;
   for (size_t i = 0; i < resting->forces.count; i++) {
     size_t contact = resting->pushes.member[i];
+    double acceleration = contact_value(settlement, contact, CONTACT_ACCELERATION);
     double least = noise_of_acceleration(settlement, contact) + rounding / resting->unit[i];
-    any |= !contact_is_closed(settlement, contact) && contact_value(settlement, contact, CONTACT_ACCELERATION) < -least;
+    if (contact_is_closed(settlement, contact) || !(acceleration < -least) || acceleration >= most) continue;
+    most = acceleration;
+    found = contact;
   }
-  return any;
+  return found;
 }
 
 /* The contact that its frictions leave least of its mobility. */
@@ -232,10 +293,16 @@ const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
   struct RestingContacts resting;
   *again = false;
   const char *problem = NULL;
-  if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return problem;
-  bool closes = sinks(settlement, &resting);
-  enum RestingSolutions solutions = resting_forces_solve(&resting.forces, !closes);
-  if (numbers_of_solutions[solutions] != NULL)
+  bool slides = choose_resting(settlement);
+  if (!slides && !any_comes_back(settlement)) return NULL;
+  if (!create_resting(settlement, &resting, &problem)) return problem;
+  size_t sinking = find_sinking(settlement, &resting);
+  bool closes = sinking < settlement->switches->contact_count;
+  enum RestingSolutions solutions = slides || closes ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
+  if (!slides && solutions >= PERHAPS_NONE) {
+    log_crushed(settlement, &resting.pushes, sinking);
+    problem = crushed;
+  } else if (numbers_of_solutions[solutions] != NULL)
     problem = refuse_forces(settlement, &resting, numbers_of_solutions[solutions]);
   else if (closes) *again = take_solution(settlement, &resting);
   if (solutions == PERHAPS_OTHERS) tell_of_others(settlement, &resting);

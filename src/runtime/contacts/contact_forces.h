@@ -10,6 +10,15 @@
  */
 const char *contact_forces_settle(struct Settlement *settlement, bool *again);
 
+/*
+ * Logs a contact that closes whatever its impulse, with one that opposes it: prescribed motions crush what is between them.
+ * Returns the reason why the motion cannot go on.
+ */
+const char *contact_forces_refuse_crushed(struct Settlement *settlement, size_t contact);
+
+/* Logs a contact that closes, and whose gap no force changes. */
+void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact);
+
 /* Where the motion ends: whether friction jams a contact that slides, which is logged. */
 bool contact_forces_explain(struct Settlement *settlement);
 

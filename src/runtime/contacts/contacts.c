@@ -27,6 +27,9 @@ static const double largest_penetration = 1e-9;
 /* A gap below 0 by so many times what rounding makes of it may be found again: a search forgives FLOOR_IN_NOISE times. */
 static const double found_again = 0.25 * FLOOR_IN_NOISE;
 
+/* Less of the largest rate of a gap in an event may be left by impulses that iterations find. */
+static const double unresolved_share = 1e-6;
+
 /* A velocity whose square is no number is none. */
 static const double least_speed = 1e-150;
 
@@ -47,6 +50,12 @@ static size_t find_impact(const struct Settlement *settlement) {
     found = i;
   }
   return found;
+}
+
+/* Whether a contact closes although all that touch have been given impulses at once. */
+static bool closes_clearly(const struct Settlement *settlement, size_t contact) {
+  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
+  return settlement->value[rate] < -unresolved_share * settlement->largest[rate];
 }
 
 static void open_all(struct Settlement *settlement) {
@@ -192,6 +201,41 @@ static bool close_contacts(struct Settlement *settlement) {
   return true;
 }
 
+static const char *refuse_rest(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t contact = 0;
+  while (contact + 1 < switches->contact_count && !is_touching(settlement, contact)) contact++;
+  log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+              "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
+              "constraints that leave it room",
+              settlement->time, switches->contacts[contact].name);
+  return no_impact;
+}
+
+/* A contact that would come back at once, and whose gap no force changes; contact_count for none. */
+static size_t find_prescribed(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t contact = 0;
+  while (contact < switches->contact_count &&
+         (!contact_is_closed(settlement, contact) ||
+          settlement_moves(settlement, switches->contacts[contact].constraint) ||
+          contact_value(settlement, contact, CONTACT_ACCELERATION) >=
+              -settlement->noise[contact_place(switches, contact, CONTACT_ACCELERATION)]))
+    contact++;
+  return contact;
+}
+
+/* Takes the velocities to what contacts that have come to rest allow. NULL, or the reason why there are none. */
+static const char *let_rest(struct Settlement *settlement) {
+  if (!settlement_push(settlement)) return refuse_rest(settlement);
+  size_t fixed = find_prescribed(settlement);
+  if (fixed < settlement->switches->contact_count) {
+    contact_forces_refuse_fixed(settlement, fixed);
+    return no_impact;
+  }
+  return let_stopped_head(settlement) ? NULL : refuse_rest(settlement);
+}
+
 /* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */
 static double largest_drift(const struct Settlement *settlement) {
   return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(settlement->state, 0);
@@ -325,11 +369,14 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   const char *problem = may_turn && !settlement->jumped ? check_gaps(settlement) : NULL;
   if (problem != NULL) return problem;
   if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
-  size_t contact = settlement->impacts <= IMPACT_LIMIT ? find_impact(settlement) : switches->contact_count;
-  if (contact < switches->contact_count) return take_impact(settlement, contact) ? NULL : no_impact;
-  if (close_contacts(settlement)) return settlement_push(settlement) && let_stopped_head(settlement) ? NULL : no_impact;
+  size_t contact = find_impact(settlement);
+  bool hits = contact<switches->contact_count, is_tried = settlement->impacts> IMPACT_LIMIT;
+  if (hits && is_tried && closes_clearly(settlement, contact))
+    return contact_forces_refuse_crushed(settlement, contact);
+  if (hits && !is_tried) return take_impact(settlement, contact) ? NULL : no_impact;
+  if (close_contacts(settlement)) return let_rest(settlement);
   bool lifts;
-  if (!lift(settlement, &lifts)) return no_impact;
+  if (!lift(settlement, &lifts)) return refuse_rest(settlement);
   if (lifts) return NULL;
   size_t pulling = find_pulling(settlement);
   *again = pulling < switches->contact_count;

@@ -194,12 +194,6 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
   return NULL;
 }
 
-/* Whether anything moves along a constraint that holds, as the last corrections tell: in a plane nothing moves across it. */
-static bool constraint_moves(const struct Settlement *settlement, size_t constraint) {
-  const double *slope = settlement->correction + lagrangian.coordinate_count + 2 * lagrangian.constraints.count;
-  return slope[constraint] > 0.0;
-}
-
 /* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
 static size_t count_redundant(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
@@ -209,7 +203,7 @@ static size_t count_redundant(struct Settlement *settlement) {
   if (instance->singular != 0) return SIZE_MAX;
   const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
   size_t count = 0;
-  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && constraint_moves(settlement, j);
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && settlement_moves(settlement, j);
   return count;
 }
 
@@ -219,8 +213,8 @@ bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *h
   size_t without = count_redundant(settlement);
   *mode = 0.0;
   settlement->instance->prepared_is_stale = true;
-  size_t with = count_redundant(settlement), velocities = constraint_moves(settlement, facts->constraint);
-  if (is_in_plane(settlement->switches, friction)) velocities += constraint_moves(settlement, facts[1].constraint);
+  size_t with = count_redundant(settlement), velocities = settlement_moves(settlement, facts->constraint);
+  if (is_in_plane(settlement->switches, friction)) velocities += settlement_moves(settlement, facts[1].constraint);
   *mode = kept;
   settlement->instance->prepared_is_stale = true;
   *held = with >= without + velocities;

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "contacts/complementarity.h"
+#include "contacts/contact_forces.h"
 #include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
@@ -260,19 +261,37 @@ static void add_impulses(struct Settlement *settlement, const struct Pushes *pus
 static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
   double bounce = bounces ? restitution_of(settlement, pushes->member[0]) : 0.0;
   double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
-  if (!(pushes->mobility[0] > DBL_MIN)) return false;
+  if (!(pushes->mobility[0] > DBL_MIN)) {
+    contact_forces_refuse_fixed(settlement, pushes->member[0]);
+    return false;
+  }
   add_impulses(settlement, pushes, &impulse);
   return true;
 }
 
-static void refuse_planes(const struct Settlement *settlement, const struct Pushes *pushes) {
+/* The first contact whose gap no impulse changes; their number for none. */
+static size_t find_fixed(const struct Pushes *pushes) {
+  size_t row = 0;
+  while (row < pushes->contact_count && pushes->mobility[row * pushes->count + row] > DBL_MIN) row++;
+  return row;
+}
+
+static void refuse_impact(const struct Settlement *settlement, const struct Pushes *pushes) {
+  const struct SwitchTable *switches = settlement->switches;
   size_t row = find_plane(settlement, pushes);
-  if (row == pushes->count) return;
-  log_message(
-      settlement->instance, STATUS_DISCARD,
-      "time %g: no impulses were found for an impact with the friction '%s', which acts in a plane; expected less "
-      "friction, or another position",
-      settlement->time, settlement->switches->frictions[pushes->member[row]].name);
+  size_t fixed = find_fixed(pushes);
+  if (fixed < pushes->contact_count) contact_forces_refuse_fixed(settlement, pushes->member[fixed]);
+  else if (row < pushes->count)
+    log_message(
+        settlement->instance, STATUS_DISCARD,
+        "time %g: no impulses were found for an impact with the friction '%s', which acts in a plane; expected less "
+        "friction, or another position",
+        settlement->time, switches->frictions[pushes->member[row]].name);
+  else
+    log_message(settlement->instance, STATUS_DISCARD,
+                "time %g: no impulses were found for an impact of the contact '%s'; expected less friction, or another "
+                "position",
+                settlement->time, switches->contacts[pushes->member[0]].name);
 }
 
 /* Whether all that is hit closes and slides as slowly as what rests: an impact by rounding alone. */
@@ -304,7 +323,7 @@ static bool take_several(struct Settlement *settlement, const struct Pushes *pus
   if (is_done) {
     tell_of_other_outcomes(settlement, &problem);
     add_impulses(settlement, pushes, problem.impulse);
-  } else refuse_planes(settlement, pushes);
+  } else refuse_impact(settlement, pushes);
   if (problem.block != NULL) scratch_return(settlement->instance, SCRATCH_IMPACT);
   return is_done;
 }

@@ -104,14 +104,21 @@ const char *branches_check(const struct Settlement *settlement) {
   return NULL;
 }
 
+/* At a kink of a gap the piece to which the motion goes is needed before impacts; a side that starts at 0 has none yet. */
+static double sign_at_start(const struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t rate = branch_rate_place(switches, branch);
+  double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
+  if (sign != 0.0 || switches->branches[branch].is_side || switches->contact_laws == NULL) return sign;
+  return sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+}
+
 bool branches_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (!settlement_evaluate(settlement)) return false;
-    for (size_t i = 0; i < switches->branch_count; i++) {
-      double noise = settlement_noise(settlement, i, branch_rate_place(switches, i));
-      settlement_set_mode(settlement, switches->branches[i].mode, sign_with_noise(settlement->value[i], noise));
-    }
+    for (size_t i = 0; i < switches->branch_count; i++)
+      settlement_set_mode(settlement, switches->branches[i].mode, sign_at_start(settlement, i));
   }
   return true;
 }

@@ -195,6 +195,11 @@ bool settlement_push(struct Settlement *settlement) {
   return true;
 }
 
+bool settlement_moves(const struct Settlement *settlement, size_t constraint) {
+  const double *slope = settlement->correction + lagrangian.coordinate_count + 2 * lagrangian.constraints.count;
+  return slope[constraint] > 0.0;
+}
+
 bool settlement_move(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   memset(settlement->rounded, 0, lagrangian.state_count * sizeof *settlement->rounded);

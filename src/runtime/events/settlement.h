@@ -110,6 +110,9 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
 /* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
 bool settlement_push(struct Settlement *settlement);
 
+/* Whether anything moves along a constraint that holds, as settlement_push() found: in a plane nothing moves across it. */
+bool settlement_moves(const struct Settlement *settlement, size_t constraint);
+
 /* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
 bool settlement_move(struct Settlement *settlement);
 
