@@ -24,6 +24,9 @@ static const double equal_share = 1e-9;
 /* How far a contact may be penetrated where it is set. */
 static const double largest_penetration = 1e-9;
 
+/* In units of the largest coordinate: start values of four digits penetrate a contact by no more. */
+static const double rounded_start = 1e-4;
+
 /* A gap below 0 by so many times what rounding makes of it may be found again: a search forgives FLOOR_IN_NOISE times. */
 static const double found_again = 0.25 * FLOOR_IN_NOISE;
 
@@ -318,6 +321,57 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   return done;
 }
 
+/* Takes back a move of the start in which a fixed coordinate had a part. Whether there was any. */
+static bool undo_move_of_fixed(struct Settlement *settlement) {
+  const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
+  bool moves = false;
+  for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++)
+    moves |= is_fixed[i] && fabs(settlement->correction[i]) > largest_penetration * scale_of(settlement->state, i);
+  for (size_t i = 0; i < lagrangian.coordinate_count && moves; i++) settlement->state[i] -= settlement->correction[i];
+  return moves;
+}
+
+/* Whether the gap of a contact is below 0 by what rounded start values may make of it. */
+static bool is_rounded(const struct Settlement *settlement, size_t contact) {
+  double gap = contact_value(settlement, contact, CONTACT_GAP);
+  return gap < -largest_penetration && gap >= -rounded_start * largest_scale(settlement->state, 0);
+}
+
+/* Moves apart the contacts that rounded start values penetrate. Whether there were any that can be moved. */
+static bool part_at_start(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool parts = false;
+  settlement_keep_modes(settlement);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    if (!is_rounded(settlement, i)) continue;
+    settlement->takes_part[i] = fmin(settlement->takes_part[i], contact_value(settlement, i, CONTACT_GAP));
+    set_contact(settlement, i, true);
+    parts = true;
+  }
+  parts = parts && settlement_move(settlement) && !undo_move_of_fixed(settlement);
+  settlement_restore_modes(settlement);
+  return parts;
+}
+
+static void log_parted(const struct Settlement *settlement) {
+  for (size_t i = 0; i < settlement->switches->contact_count; i++)
+    if (settlement->takes_part[i] < 0.0 && !is_rounded(settlement, i))
+      log_message(settlement->instance, STATUS_DONE,
+                  "time %g: the start is moved so that the contact '%s' is not penetrated, whose gap was %g",
+                  settlement->time, settlement->switches->contacts[i].name, settlement->takes_part[i]);
+}
+
+static bool lift_start(struct Settlement *settlement) {
+  int count = 0;
+  for (size_t i = 0; i < settlement->switches->contact_count; i++) settlement->takes_part[i] = 0.0;
+  while (count < LIFT_LIMIT && part_at_start(settlement)) {
+    if (!settlement_evaluate(settlement)) return false;
+    count++;
+  }
+  log_parted(settlement);
+  return count == 0 || settlement_push(settlement);
+}
+
 /* The closed contact that pulls most, or whose force has just gone; contact_count for none. */
 static size_t find_pulling(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -391,5 +445,6 @@ const struct ContactLaws contact_laws = {.act = act_once,
                                          .settle_forces = contact_forces_settle,
                                          .share_load = contacts_share_load,
                                          .part = part,
+                                         .lift_start = lift_start,
                                          .check_gaps = check_gaps,
                                          .explain = contact_forces_explain};

@@ -1,6 +1,7 @@
 #include "events/branches.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
@@ -67,11 +68,15 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
 /* Where neither side of a zero leads away from it. */
 static const char *refuse_branch(const struct Settlement *settlement, size_t branch) {
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
+  bool turns = strcmp(facts->function, "min") == 0 || strcmp(facts->function, "max") == 0;
+  bool may_be_corner = turns && settlement->switches->contact_laws != NULL;
   log_message(
       settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
       "time %g: %s, line %ld of system.xml, jumps back and forth there: on either side of its jump the motion leads "
-      "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
-      settlement->time, facts->function, facts->line);
+      "back to it, %s",
+      settlement->time, facts->function, facts->line,
+      may_be_corner ? "as where a body touches both pieces of a gap; expected a <contact> for each piece"
+                    : "as with dry friction that sticks; expected <friction>, which sticks, in place of sign");
   return without_end;
 }
 

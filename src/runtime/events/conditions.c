@@ -90,13 +90,32 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
   return false;
 }
 
+/*
+ * Whether the zero of an expression was located, and no coordinate has been set since: the expression is there, and has not come
+ * to the other side. What turns it back, as the event itself, makes no further passage.
+ */
+static bool is_at_zero(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool is_located = settlement->occasion == AT_EVENT && settlement->indicator < switches->branch_count;
+  return is_located && switches->branches[settlement->indicator].is_side && !settlement->moved;
+}
+
+/* The next passage of what happened at 0 begins there. */
+static void begin_at_zero(struct Settlement *settlement) {
+  for (size_t i = 0; i < settlement->switches->event_count; i++)
+    if (settlement->happened[i] != 0.0 && settlement->switches->events[i].passage == PASSAGE_BOTH)
+      settlement->condition[i] = 0.0;
+}
+
 const char *conditions_happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
   /* What contacts and frictions come to at the start has held before. */
   if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
   settlement->has_started = true;
+  bool at_zero = is_at_zero(settlement);
   for (size_t i = 0; i < switches->event_count; i++) {
+    settlement->happened[i] = happens(settlement, i) ? 1.0 : 0.0;
     if (!happens(settlement, i)) continue;
     if (find_rivals(settlement, i)) return "two events contradict each other";
     assign(settlement, &switches->events[i]);
@@ -104,5 +123,6 @@ const char *conditions_happen(struct Settlement *settlement, bool *again) {
   }
   note_conditions(settlement, true);
   if (!*again) keep_sides(settlement);
+  if (at_zero) begin_at_zero(settlement);
   return NULL;
 }

@@ -89,10 +89,12 @@ static const char *check_constraints(struct Settlement *settlement) {
                 "coordinates and velocities that they move, which fulfil them",
                 settlement->time, settlement->moved ? "coordinates" : "modes");
   else
-    log_message(instance, status,
-                "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, or in the gap of a closed "
-                "contact, and positions or velocities would have to jump with it; expected one without kinks",
-                settlement->time, settlement->switched->function, settlement->switched->line);
+    log_message(
+        instance, status,
+        "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, or in the gap of a closed "
+        "contact, and positions or velocities would have to jump with it; expected one without kinks, or a <contact> "
+        "for each piece of a gap",
+        settlement->time, settlement->switched->function, settlement->switched->line);
   return constraints_not_kept;
 }
 

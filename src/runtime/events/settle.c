@@ -83,7 +83,9 @@ static const char *begin_settlement(struct Settlement *settlement) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
   if (settlement->occasion != AT_START) return continuity_begin(settlement);
   if (!branches_begin(settlement)) return "there are no accelerations";
-  return laws != NULL ? laws->check_gaps(settlement) : NULL;
+  if (laws == NULL) return NULL;
+  if (!laws->lift_start(settlement) || !branches_begin(settlement)) return constraints_not_kept;
+  return laws->check_gaps(settlement);
 }
 
 /* Velocities that have jumped keep the constraints. */

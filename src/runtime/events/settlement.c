@@ -36,6 +36,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
       {&settlement->force_noise, switches->friction_count},
       {&settlement->began, switches->friction_count},
       {&settlement->condition, switches->event_count},
+      {&settlement->happened, switches->event_count},
       {&settlement->takes_part, switches->contact_count + switches->friction_count},
       {&settlement->energy, switches->energy_count},
       {&settlement->acceleration, rows_of_matrix()},
@@ -206,7 +207,9 @@ bool settlement_move(struct Settlement *settlement) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, settlement->time, settlement->state);
   struct Seed seed = {.state = settlement->rounded};
-  instance->singular = lagrangian.constraints.correct_positions(&point, &seed, settlement->correction);
+  bool keeps_fixed = settlement->occasion == AT_START && lagrangian.constraints.coordinate_is_fixed != NULL;
+  instance->singular = (keeps_fixed ? lagrangian.constraints.start_positions
+                                    : lagrangian.constraints.correct_positions)(&point, &seed, settlement->correction);
   if (instance->singular != 0 || !are_finite(settlement->correction, lagrangian.coordinate_count)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) settlement->state[i] += settlement->correction[i];
   settlement->changed = true;

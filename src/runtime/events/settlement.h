@@ -17,6 +17,7 @@ struct Settlement {
   double *began;              /* the mode of each friction, at the beginning of the event */
   double *largest;            /* of velocities and rates in value[], since the start of the event */
   double *condition;          /* as it was before the last change */
+  double *happened;           /* 1 of each event that happened in this round, else 0 */
   double *flips, *was_opened; /* of each branch and friction; of each contact: -1 where it closed again by its force */
   double *rate;               /* of each branch, before it flipped last; 0 where it did not */
   double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
@@ -58,6 +59,8 @@ struct ContactLaws {
   const char *(*settle_forces)(struct Settlement *settlement, bool *again);
   /* Behind those: closes what touches at rest and shares the load; *again where there is any. NULL, or as above. */
   const char *(*share_load)(struct Settlement *settlement, bool *again);
+  /* Moves start values that penetrate contacts by their rounding; false where velocities do not follow. */
+  bool (*lift_start)(struct Settlement *settlement);
   /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
   bool (*part)(struct Settlement *settlement);
   /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
