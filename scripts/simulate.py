@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from scripts.problem import Problem
-from scripts.simulation import print_results, simulate, start_value, write_results
+from scripts.simulation import print_results, simulate, start_value, write_motion
 
 
 def main():
@@ -15,10 +15,9 @@ def main():
     parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE")
     arguments = parser.parse_args()
     try:
-        motion = simulate(arguments.fmu, dict(arguments.start))
+        print_results(write_motion(lambda: simulate(arguments.fmu, dict(arguments.start)), Path("build/results")))
     except Problem as problem:
         sys.exit(f"scripts/run: {problem}")
-    print_results(write_results(motion, Path("build/results")))
 
 
 if __name__ == "__main__":

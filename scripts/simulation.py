@@ -2,6 +2,7 @@
 
 import argparse
 import inspect
+import io
 import math
 import re
 import sys
@@ -22,9 +23,10 @@ from .co_simulation import EVENTS, OPTIONS, Interrupted, co_simulate
 from .exchange import exchange
 from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
-from .problem import Problem
+from .problem import Problem, Unfinished
 from .signals import signals_of
 from .variables import check_start, elements, instead, known, names_of, near_file, start_values
+from .whole_files import write_whole
 
 
 WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver", "step", "tolerance")  # with which users ask for a simulation
@@ -37,6 +39,7 @@ FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at
 LEVEL = 1e-6  # of its size: what changes by less is drawn as if it did not
 MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
 WIDEST_TITLE = 75  # letters
+STOPPED = "-stopped.csv"  # behind the name of a system whose simulation did not come to its end
 
 
 @dataclass
@@ -92,15 +95,21 @@ def experiment_of(description, start_time=None, stop_time=None, output_interval=
 
 
 def _log_into(problems):
-    """A logger that prints problems, and collects what ends a simulation."""
+    """Returns a logger that collects errors, and prints warnings."""
 
     def log(*words):
-        print_problem(*words)
         *_, status, _, message = words
         if status > 1:
             problems.append(message.decode().replace("%%", "%"))
+        else:
+            print_problem(*words)
 
     return log
+
+
+def _what_ended(fmu, problems, exception):
+    """The message of a simulation that failed: what the FMU says, or, if it says nothing, which call failed."""
+    return f"{fmu}: {'; '.join(dict.fromkeys(problems)) or exception}"
 
 
 def _check_options(options, allowed):
@@ -129,6 +138,11 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     signals = None if input is None else signals_of(input, description, begin, hold)
     tree = read_tree(fmu)
     recorded = list(dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)]))
+    starts = start_values(description) | {name: value for name, value in start.items() if np.ndim(value) == 0}
+
+    def motion_with(values):
+        return Motion(fmu, description, tree, starts, scalars(repack_fields(values[["time", *outputs]])), scalars(values))
+
     problems = []
     options = {"logger": _log_into(problems), "debug_logging": True} | options
     try:
@@ -137,10 +151,13 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
             values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance and float(tolerance), **options)
         else:
             values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
-    except (FMICallException, Interrupted) as problem:
-        raise Problem("; ".join([f"{fmu}: {problem}", *problems])) from None
-    starts = start_values(description) | {name: value for name, value in start.items() if np.ndim(value) == 0}
-    return Motion(fmu, description, tree, starts, scalars(repack_fields(values[["time", *outputs]])), scalars(values))
+    except FMICallException as problem:
+        raise Problem(_what_ended(fmu, problems, problem)) from None
+    except Interrupted as interrupted:
+        raise Unfinished(_what_ended(fmu, problems, interrupted), motion_with(interrupted.reached)) from None
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    return motion_with(values)
 
 
 def crowds_of(names):
@@ -239,24 +256,51 @@ def figure_of(description, result, events=()):
     return figure
 
 
+def csv_of(values):
+    text = io.StringIO()
+    np.savetxt(text, values, delimiter=",", header=",".join(values.dtype.names), comments="", fmt="%.17g")
+    return text.getvalue()
+
+
+def picture_of(figure):
+    """A PNG, in bytes."""
+    picture = io.BytesIO()
+    figure.savefig(picture, format="png", dpi=120)
+    return picture.getvalue()
+
+
 def write_results(motion, folder):
     """Writes them into the folder; the path of each kind, the FMU's too, or why there is none."""
-    folder.mkdir(parents=True, exist_ok=True)
     name, result = motion.description.modelName, motion.outputs
-    csv, plot, animation = ((folder / f"{name}{end}").resolve() for end in (".csv", ".png", "-motion.html"))
-    np.savetxt(csv, result, delimiter=",", header=",".join(result.dtype.names), comments="", fmt="%.17g")
+    csv, plot, animation, stopped = ((folder / f"{name}{end}").resolve() for end in (".csv", ".png", "-motion.html", STOPPED))
+    write_whole(csv, csv_of(result))
+    stopped.unlink(missing_ok=True)
     written = {"FMU": Path(motion.fmu).resolve(), "CSV": csv, "plot": plot, "animation": animation}
     try:
-        figure_of(motion.description, result, event_times(motion.values)).savefig(plot, dpi=120)
+        write_whole(plot, picture_of(figure_of(motion.description, result, event_times(motion.values))))
     except ModuleNotFoundError:
         plot.unlink(missing_ok=True)
         written["plot"] = "none, since matplotlib is not installed: pip install matplotlib"
     if scene_of(motion.tree):
-        animation.write_text(page_of_motion(motion.tree, motion.values, motion.start), encoding="utf-8")
+        write_whole(animation, page_of_motion(motion.tree, motion.values, motion.start))
     else:
         animation.unlink(missing_ok=True)
         written["animation"] = "none, since the system has no particles, bodies, frames or points"
     return written
+
+
+def write_motion(simulated, folder):
+    """The same of the Motion that simulated() returns. One that stops leaves the rows until then in a CSV of another name, and none of earlier results."""
+    try:
+        motion = simulated()
+    except Unfinished as unfinished:
+        motion = unfinished.motion
+        name, until = motion.description.modelName, motion.outputs["time"][-1]
+        path = write_whole(folder / f"{name}{STOPPED}", csv_of(motion.outputs))
+        for end in (".csv", ".png", "-motion.html"):
+            (folder / f"{name}{end}").unlink(missing_ok=True)
+        raise Unfinished(f"{unfinished}; the motion until {until:.9g} s is in {path}", motion) from None
+    return write_results(motion, folder)
 
 
 def print_results(written):

@@ -23,6 +23,12 @@ from .problem import Problem
 from .progress import Progress
 from .simulation import described
 from .variables import settable, why_not
+from .whole_files import replace
+
+try:
+    import fcntl
+except ModuleNotFoundError:  # on Windows, where a folder cannot be locked
+    fcntl = None
 
 CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
 LANES_CHUNK, LANES_PARTS = 1000, 25  # the same in lanes, which take less time for a run than to write it
@@ -58,13 +64,6 @@ def points(variations, random, seed):
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
-def replace(temporary, path):
-    """Gives a file its name when it is on the disk, so that a machine that loses power leaves it whole or not at all."""
-    with open(temporary, "rb+") as file:
-        os.fsync(file.fileno())
-    os.replace(temporary, path)
-
-
 def read(path):
     """A table; pyarrow's read_table would first load what data sets of many files need."""
     with pq.ParquetFile(path) as file:
@@ -77,7 +76,23 @@ class Parts:
     def __init__(self, output, plan):
         digest = hashlib.sha256(json.dumps(plan, sort_keys=True).encode()).hexdigest()[:16]
         self.folder = output.with_suffix("").parent / f"{output.stem}.parts-{digest}"
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self.lock = self._locked()
+
+    def _locked(self):
+        """The folder, created and locked for this process; an equal sweep that runs is waited for."""
+        while True:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            if fcntl is None:
+                return None
+            lock = os.open(self.folder, os.O_RDONLY)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                print("the same sweep runs already; waiting for it to end ...", file=sys.stderr, flush=True)
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            if self.folder.exists() and os.path.samestat(os.fstat(lock), os.stat(self.folder)):
+                return lock
+            os.close(lock)  # the other one has removed it
 
     def path(self, chunk):
         return self.folder / f"{chunk:06}.parquet"
@@ -113,6 +128,8 @@ class Parts:
         writer.close()
         replace(temporary, output)
         shutil.rmtree(self.folder)
+        if self.lock is not None:
+            os.close(self.lock)
 
 
 def ensemble_of(path, description, names, settings, runner, compile_ensemble):

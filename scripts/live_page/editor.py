@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 from ..problem import Problem
+from ..whole_files import write_whole
 from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
 
 HERE = Path(__file__).resolve().parent
@@ -66,7 +67,4 @@ def editor_of(system, laboratory, examples=None):
 
 
 def write_editor(system, laboratory, path, examples=None):
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(editor_of(system, laboratory, examples), encoding="utf-8")
-    return path
+    return write_whole(path, editor_of(system, laboratory, examples))

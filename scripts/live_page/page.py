@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from ..problem import Problem
+from ..whole_files import write_whole
 from .description import scene_of
 from .origin import can_be_pulled, pulled_system
 from .wasm import compile_to_wasm
@@ -163,7 +164,4 @@ def page_of_motion(tree, result, start):
 
 
 def write_page(fmu, path, origin=None):
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page_of(fmu, origin), encoding="utf-8")
-    return path
+    return write_whole(path, page_of(fmu, origin))

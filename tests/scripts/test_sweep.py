@@ -140,6 +140,15 @@ def test_damaged_parts_are_run_again(tmp_path):
     assert table["run"] == list(range(1000)) and set(table["problem"]) == {None}
 
 
+def test_two_equal_sweeps_at_once(tmp_path):
+    """The second waits for the first, and both are right."""
+    words = command(tmp_path / "x.parquet", "SimplePendulum", "--vary", "theta=0:3", "--random", "1500", "--stop", "20")
+    both = [subprocess.Popen(words, env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    texts = [process.communicate(timeout=120) for process in both]
+    assert [process.returncode for process in both] == [0, 0] and all("1500 runs, 0 failed" in text for text, _ in texts), texts
+    assert [path.name for path in tmp_path.iterdir()] == ["x.parquet"] and pq.read_table(tmp_path / "x.parquet").num_rows == 1500
+
+
 def test_nowhere_to_write():
     result = subprocess.run(command("/proc/x.parquet", *WORDS), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
     (line,) = result.stderr.splitlines()

@@ -22,6 +22,7 @@ from .problem import Problem
 from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
 from .runtime.scripts.one_file import one_file
 from .variables import instead, near_file
+from .whole_files import write_whole
 
 HERE = Path(__file__).resolve().parent
 TEMPLATES = ("pendulum", "cart", "robot", "bounce", "linkage")
@@ -185,7 +186,6 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
         compile_libraries(folder, name, platforms, fmi, content)
         write_descriptions(folder, name, fmi, content)
         archive = Path(output) / f"{name}.fmu"
-        archive.parent.mkdir(parents=True, exist_ok=True)
         pack(content, archive)
     return archive
 
@@ -197,9 +197,6 @@ def new(name: str, template: str = "pendulum") -> Path:
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
     path = Path(f"{name}.xml")
-    try:
-        with open(path, "x", encoding="utf-8") as file:
-            file.write((HERE / "templates" / f"{template}.xml").read_text(encoding="utf-8").replace("@NAME@", name))
-    except FileExistsError:
-        raise Problem(f"{path} is already there; expected another name") from None
-    return path
+    if path.exists():
+        raise Problem(f"{path} is already there; expected another name")
+    return write_whole(path, (HERE / "templates" / f"{template}.xml").read_text(encoding="utf-8").replace("@NAME@", name))

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .whole_files import write_whole
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -20,9 +22,7 @@ class Animation:
         self.page = page
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        path = Path(path)
-        path.write_text(self.page, encoding="utf-8")
-        return path
+        return write_whole(path, self.page)
 
     def _repr_html_(self) -> str:
         return f'<iframe srcdoc="{html.escape(self.page)}" style="width: 100%; height: 560px; border: 1px solid #8884"></iframe>'

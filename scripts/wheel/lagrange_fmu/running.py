@@ -8,7 +8,7 @@ from pathlib import Path
 from .building import build_with
 from .input_file import read_input
 from .problem import Problem
-from .simulation import described, simulate, units_of, write_results
+from .simulation import described, simulate, units_of, write_motion
 from .variables import numbers_by_name
 
 
@@ -37,4 +37,4 @@ def motion_of(system, start_values=None, folder=None, /, input=None, solver=None
 
 
 def run(system, start_values=None, folder=".", /, **words):
-    return write_results(motion_of(system, start_values, folder, **words), Path(folder))
+    return write_motion(lambda: motion_of(system, start_values, folder, **words), Path(folder))

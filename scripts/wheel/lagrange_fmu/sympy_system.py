@@ -13,6 +13,7 @@ from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, Vector, dyn
 from .problem import Problem
 from .sympy_expressions import Names, prepared, text_of
 from .variables import nearest
+from .whole_files import write_whole
 
 
 def _generalized_forces(method):
@@ -233,8 +234,7 @@ def from_sympy(
         ElementTree.SubElement(root, tag, attributes).text = text
     ElementTree.SubElement(root, "experiment", stopTime=repr(float(stop_time)))
     ElementTree.indent(root)
-    path.write_text(ElementTree.tostring(root, encoding="unicode") + "\n", encoding="utf-8")
-    return path
+    return write_whole(path, ElementTree.tostring(root, encoding="unicode") + "\n")
 
 
 OPTIONS = tuple(inspect.signature(from_sympy).parameters)[3:]
