@@ -157,6 +157,7 @@ struct FrictionFacts {
   size_t told;       /* the mode that is told: 0 also where others hold the velocity at 0 */
   size_t constraint; /* which holds while it sticks */
   const char *name;
+  bool is_given; /* its velocity is given: it never sticks, and its mode is that of a branch */
 };
 
 /*

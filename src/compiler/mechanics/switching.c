@@ -21,6 +21,7 @@ static struct NodeList roots_of(const struct Model *model, const struct Equation
     append_node(&roots, switches->contacts[i].restitution);
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
+    append_node(&roots, switches->frictions[i].mode);
     append_node(&roots, switches->frictions[i].velocity);
     append_node(&roots, switches->frictions[i].stiction);
     append_node(&roots, switches->frictions[i].stiction_back);
@@ -101,6 +102,7 @@ static Node left_of_stiction(struct Graph *graph, const struct Friction *frictio
 
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
+  if (friction->is_given) return ONE; /* its branch has the indicator */
   Node force = model->unknowns.forces[friction->constraint];
   Node left = left_of_stiction(graph, friction, force);
   Node along = multiply(graph, friction->mode, friction->velocity);
@@ -347,8 +349,9 @@ Node without_branches(const struct Model *model, Node node) {
   if (switches->branch_count == 0) return node;
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->branch_count; i++)
-    replacements[graph->vertices[switches->branches[i].mode].left] =
-        function(graph, SIGN, switches->branches[i].indicator, ZERO);
+    if (!switches->branches[i].is_of_friction)
+      replacements[graph->vertices[switches->branches[i].mode].left] =
+          function(graph, SIGN, switches->branches[i].indicator, ZERO);
   /* An indicator may rest on branches itself, of expressions that were read before. */
   for (size_t depth = 0; depth <= switches->branch_count && graph_depends_on(graph, node, MODE); depth++) {
     Node before = node;

@@ -40,7 +40,7 @@ static Node is_free_beside(struct Graph *graph, Node is_free, Node coefficient) 
 static size_t coordinate_of(const struct Model *model, const struct Friction *friction, Node *coefficient) {
   struct Graph *graph = model->graph;
   const struct Gradient gradient = gradient_by_kinds(graph, friction->velocity, OF_VELOCITIES);
-  if (gradient.count != 1) return model->coordinates.count;
+  if (gradient.count != 1 || friction->is_given) return model->coordinates.count;
   *coefficient = gradient.values[0];
   Node rest = subtract(graph, friction->velocity, multiply(graph, *coefficient, gradient.symbols[0]));
   bool is_alone = simplify_fraction(graph, rest) == ZERO;
@@ -131,8 +131,8 @@ static void hold_indicators(struct Model *model) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
     Node coefficient = ZERO;
-    bool is_of_coordinate = coordinate_of(model, friction, &coefficient) < model->coordinates.count;
-    for (size_t j = 0; j < switches->branch_count && !is_of_coordinate; j++) {
+    bool has_other = !friction->is_given && coordinate_of(model, friction, &coefficient) == model->coordinates.count;
+    for (size_t j = 0; j < switches->branch_count && has_other; j++) {
       Node *indicator = &switches->branches[j].indicator, held;
       if (is_along(graph, *indicator, friction->velocity, &held))
         *indicator = choose_node(graph, is_free(graph, friction), *indicator, held);

@@ -10,6 +10,7 @@
 struct Branch {
   Node mode, indicator;
   bool is_side;         /* of an event's expression: what comes to 0 and rests there keeps it */
+  bool is_of_friction;  /* the mode of a friction whose velocity is given; results hold the mode itself */
   unsigned kinds;       /* of the symbols that decide on the mode, those of further modes among them */
   const char *function; /* that has the pieces, and where: for messages */
   long line;
@@ -42,11 +43,13 @@ struct PlaneSide {
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, 0 while it sticks: then a constraint
  * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
  * where others hold the velocity at 0: the told mode is 0 then. Against a negative velocity it pushes with sliding_back, up to
- * stiction_back.
+ * stiction_back. One whose velocity is given, by drives or inputs, never sticks: its mode is that of a branch, the velocity's
+ * sign, and at rest it has no force.
  */
 struct Friction {
   size_t constraint; /* among the model's */
   Node mode, told, velocity, sliding, stiction, sliding_back, stiction_back;
+  bool is_given;
   struct PlaneSide plane;
 };
 

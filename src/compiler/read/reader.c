@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "model/given_frictions.h"
 #include "model/held_velocities.h"
 #include "read/checks.h"
 #include "read/context/attributes.h"
@@ -120,6 +121,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, EXPRESSIONS);
   if (reader->options->pull && reader->model->coordinates.count > 0) add_pulls(reader);
   undisplace_branches(reader);
+  if (reader->diagnostics->errors == 0) find_given_frictions(reader->model);
   complete_friction_forces(reader);
   if (reader->diagnostics->errors == 0) hold_velocities(reader->model);
   reader->model->forces.any |= reader->model->given.inputs_move;

@@ -48,7 +48,8 @@ static void write_frictions(FILE *file, const struct SwitchTable *facts) {
   for (size_t i = 0; i < facts->friction_count; i++) {
     const struct FrictionFacts *friction = &facts->frictions[i];
     fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->told, friction->constraint);
-    write_name(file, friction->name);
+    write_c_string(file, friction->name);
+    fprintf(file, ", %s}, ", name_of(friction->is_given));
   }
   fputs("};\n\n", file);
 }

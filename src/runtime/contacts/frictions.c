@@ -177,7 +177,7 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
   const struct SwitchTable *switches = settlement->switches;
   *switched = false;
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
-    if (is_in_plane(switches, i)) continue;
+    if (is_in_plane(switches, i) || switches->frictions[i].is_given) continue;
     struct FrictionState state = friction_state(settlement, i);
     double mode = friction_mode(settlement, &state);
     if (mode == state.mode) continue;
@@ -241,7 +241,8 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
     double mode = is_planar ? fabs(mode_of(settlement, facts->mode)) : mode_of(settlement, facts->mode);
     double velocity =
         is_planar ? speed_in_plane(settlement, i) : settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
-    bool held = false, may_rest = mode != 0.0 && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
+    bool held = false,
+         may_rest = mode != 0.0 && !facts->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
     if (!is_planar) may_rest &= !leaves_rest(settlement, i);
     if (may_rest && !frictions_find_held(settlement, i, &held)) return false;
     if (is_planar) i++; /* the one across is told with it */

@@ -19,10 +19,24 @@ static double sign_with_noise(double value, double noise) {
   return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
 }
 
-/* Where its zero was located, it may be left as far below as the search takes for rounding. */
+/* Whether the indicator is the velocity of a friction that is given, which has not been at rest when the event began. */
+static bool is_driven(const struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool is_driven = false;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    is_driven |= switches->frictions[i].is_given && switches->frictions[i].mode == switches->branches[branch].mode &&
+                 settlement->began[i] != 0.0;
+  return is_driven;
+}
+
+/*
+ * Where its zero was located, it may be left as far below as the search takes for rounding; what a drive has brought to rest has the
+ * rounding of its way there.
+ */
 static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
   double noise = settlement_noise(settlement, branch, branch_rate_place(settlement->switches, branch));
-  return noise * (is_hit(settlement, branch) ? FLOOR_IN_NOISE : 1.0);
+  bool is_rough = is_hit(settlement, branch) || is_driven(settlement, branch);
+  return noise * (is_rough ? FLOOR_IN_NOISE : 1.0);
 }
 
 /* Whether an event has left it a little beyond 0, and it comes back to the sign of its mode. */
@@ -39,12 +53,16 @@ static bool passes(const struct Settlement *settlement, size_t branch) {
   return is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
 }
 
-/* Whether a friction has come to stick in this settlement: an indicator at 0 without a rate then rests there, as a velocity does. */
-static bool has_stuck(const struct Settlement *settlement) {
-  bool has = false;
-  for (size_t i = 0; i < settlement->switches->friction_count; i++)
-    has |= settlement->began[i] != 0.0 && friction_holds(settlement->instance, i);
-  return has;
+/*
+ * Whether an indicator that is at 0 without a rate rests there, as a velocity does: a friction has come to stick in this settlement,
+ * or a drive has brought the velocity of one to rest.
+ */
+static bool rests(const struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  bool rests = is_driven(settlement, branch);
+  for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_side; i++)
+    rests |= settlement->began[i] != 0.0 && friction_holds(settlement->instance, i);
+  return rests;
 }
 
 /* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
@@ -60,9 +78,8 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   if (sign != 0.0) return sign;
   if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
   /* What was set to rest at 0 is there, wherever it comes from. */
-  bool rests = !settlement->switches->branches[branch].is_side && has_stuck(settlement);
   bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
-  return was_set || rests ? 0.0 : mode;
+  return was_set || rests(settlement, branch) ? 0.0 : mode;
 }
 
 /* Where neither side of a zero leads away from it. */

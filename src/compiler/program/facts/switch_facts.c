@@ -38,7 +38,7 @@ static const struct FrictionFacts *frictions_of(const struct Program *program) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
     facts[i] = (struct FrictionFacts){mode_index(program, friction->mode), mode_index(program, friction->told),
-                                      friction->constraint, name_of(program, friction->constraint)};
+                                      friction->constraint, name_of(program, friction->constraint), friction->is_given};
   }
   return facts;
 }

@@ -1,0 +1,65 @@
+#include "model/given_frictions.h"
+
+#include "algebra/differentiate.h"
+#include "base/memory.h"
+
+/*
+ * The one velocity in a constraint that holds at all times which is not given yet; the number of coordinates if there are others,
+ * or none.
+ */
+static size_t only_unknown(const struct Model *model, Node constraint, const bool *is_given) {
+  const struct Graph *graph = model->graph;
+  size_t n = model->coordinates.count, found = n;
+  enum SymbolKind kind = graph_depends_on(graph, constraint, VELOCITY) ? VELOCITY : COORDINATE;
+  const struct Gradient gradient = gradient_by_kinds(model->graph, constraint, 1u << kind);
+  for (size_t i = 0; i < gradient.count; i++) {
+    size_t index = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
+    if (is_given[index]) continue;
+    if (found < n || graph_depends_on(graph, gradient.values[i], MODE)) return n;
+    found = index;
+  }
+  return found;
+}
+
+/* Of each velocity, whether drives give it, also by way of constraints. */
+static bool *given_velocities(const struct Model *model) {
+  size_t n = model->coordinates.count;
+  bool *is_given = allocate(n, sizeof *is_given), grows = true;
+  for (size_t i = 0; i < n; i++) is_given[i] = model->given.drives[i].given;
+  while (grows) {
+    grows = false;
+    for (size_t i = 0; i < model->constraints.count; i++) {
+      size_t found = only_unknown(model, model->constraints.items[i].node, is_given);
+      if (found == n) continue;
+      is_given[found] = grows = true;
+    }
+  }
+  return is_given;
+}
+
+static bool has_given_velocity(const struct Model *model, const struct Friction *friction, const bool *is_given) {
+  const struct Gradient gradient = gradient_by_kinds(model->graph, friction->velocity, 1u << VELOCITY);
+  bool all = true;
+  for (size_t i = 0; i < gradient.count; i++)
+    all &= is_given[graph_symbol_of(model->graph, gradient.symbols[i])->index];
+  return all;
+}
+
+void find_given_frictions(struct Model *model) {
+  struct Switches *switches = &model->switches;
+  if (switches->friction_count == 0) return;
+  const bool *is_given = given_velocities(model);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    struct Friction *friction = &switches->frictions[i];
+    struct Variable *constraint = &model->constraints.items[friction->constraint];
+    if (friction->plane.axis != NO_PLANE || !has_given_velocity(model, friction, is_given)) continue;
+    friction->is_given = true;
+    constraint->node = ZERO;
+    append_branch(switches, (struct Branch){.mode = friction->mode,
+                                            .indicator = friction->velocity,
+                                            .is_of_friction = true,
+                                            .kinds = model->graph->vertices[friction->velocity].kinds,
+                                            .function = "a friction",
+                                            .line = constraint->line});
+  }
+}
