@@ -57,7 +57,7 @@ static bool passes(const struct Settlement *settlement, size_t branch) {
  * Whether an indicator that is at 0 without a rate rests there, as a velocity does: a friction has come to stick in this settlement,
  * or a drive has brought the velocity of one to rest.
  */
-static bool rests(const struct Settlement *settlement, size_t branch) {
+static bool stays_at_zero(const struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
   bool rests = is_driven(settlement, branch);
   for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_side; i++)
@@ -79,7 +79,7 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
   /* What was set to rest at 0 is there, wherever it comes from. */
   bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
-  return was_set || rests(settlement, branch) ? 0.0 : mode;
+  return was_set || stays_at_zero(settlement, branch) ? 0.0 : mode;
 }
 
 /* Where neither side of a zero leads away from it. */
