@@ -8,14 +8,15 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'#include "([a-z0-9_/]+\.[ch])"\n')
+NAMING = {2: "FMI 2.0.4, section 2.1.1", 3: "FMI 3.0.2, section 2.2.2"}  # where the prefix is defined
 HEAD = """/*
  * {license}
  */
 
 /*
- * {name} in C11, without any library but libm. Several FMUs can be linked into one program: compile each with
- * {fmi}_FUNCTION_PREFIX defined as the FMU's name and _, here {name}_, which the functions of FMI then begin with.
- * For a shared library, leave it undefined.
+ * {name} in C11, without any library but libm. Several FMUs can be linked into one program: the functions of FMI begin
+ * with {name}_ ({section}). For a shared library, whose functions have no prefix, define
+ * {fmi}_OVERRIDE_FUNCTION_PREFIX. CMake defines {name}_EXPORTS for a shared library of this name, which does the same.
  */
 #define FMU_IN_ONE_FILE
 #ifdef __GNUC__ /* a system needs few of the functions and arguments */
@@ -24,7 +25,10 @@ HEAD = """/*
 #endif
 #ifndef LANES
 {names}#endif
-#if defined({fmi}_FUNCTION_PREFIX) && !defined({fmi}_OVERRIDE_FUNCTION_PREFIX)
+#if !defined({fmi}_OVERRIDE_FUNCTION_PREFIX) && !defined({name}_EXPORTS)
+#ifndef {fmi}_FUNCTION_PREFIX
+#define {fmi}_FUNCTION_PREFIX {name}_
+#endif
 #define {fmi}_PASTE(prefix, name) prefix##name
 #define {fmi}_FULL_NAME(prefix, name) {fmi}_PASTE(prefix, name)
 {functions}#endif
@@ -59,6 +63,7 @@ def one_file(root, global_names, version, system, name):
         license=re.sub(r" \* $", " *", (root / "LICENSE").read_text().strip().replace("\n", "\n * "), flags=re.M),
         name=name,
         fmi=fmi,
+        section=NAMING[version],
         names="".join(f"#define {symbol} {name}_{symbol}\n" for symbol in names),
         functions="".join(f"#define {symbol} {fmi}_FULL_NAME({fmi}_FUNCTION_PREFIX, {symbol})\n" for symbol in functions),
         text=text,

@@ -3,6 +3,7 @@
  * file; without it the functions are elsewhere.
  */
 #ifdef FMU_SOURCE
+#define FMI2_OVERRIDE_FUNCTION_PREFIX
 #include FMU_SOURCE
 #else
 #include "fmi2.h"

@@ -1,6 +1,6 @@
 /*
- * Two FMUs of C sources linked into one program, with their functions told apart by FMI2_FUNCTION_PREFIX: steps both in
- * turn and prints the first two outputs of each: two_in_one GUID GUID STEPS STEP. FIRST and SECOND are the FMUs' names.
+ * Two FMUs of C sources linked into one program: steps both in turn and prints the first two outputs of each: two_in_one
+ * GUID GUID STEPS STEP. FIRST and SECOND are the FMUs' names, with which their functions begin.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -11,6 +11,7 @@ from fmpy.build import build_platform_binary
 from lxml import etree
 
 import clashes
+import fmi3
 import fmu
 from building import runtime
 from fmu import BUILD, ROOT, complaints_about
@@ -93,15 +94,27 @@ def test_one_piece_has_all_that_it_calls(kind, tmp_path):
     assert result.returncode == 0, result.stderr[:2000]
 
 
+def global_names(source, folder, *words):
+    subprocess.run(["gcc", "-std=c11", "-O0", *words, "-c", source, "-o", folder / "fmu.o"], check=True)
+    symbols = subprocess.run(["nm", "-g", "--defined-only", folder / "fmu.o"], capture_output=True, text=True).stdout
+    return [line.split()[-1] for line in symbols.splitlines()]
+
+
 def test_global_names_are_those_of_the_fmu(tmp_path):
-    """FMI 2.0.4, section 2.1.2: sources of several FMUs may become one program."""
+    """FMI 2.0.4, section 2.1.1: sources of several FMUs may become one program."""
     for name in ("SimplePendulum", "SimplePendulumLinear", "StateFeedback", "ChainPendulum"):
-        words = ["gcc", "-std=c11", "-O0", "-c", source_of(name), "-o", tmp_path / "fmu.o"]
-        subprocess.run([*words, f"-DFMI2_FUNCTION_PREFIX={name}_"], check=True)
-        symbols = subprocess.run(["nm", "-g", "--defined-only", tmp_path / "fmu.o"], capture_output=True, text=True).stdout
-        defined = [line.split()[-1] for line in symbols.splitlines()]
+        defined = global_names(source_of(name), tmp_path)
         assert f"{name}_fmi2DoStep" in defined and f"{name}_instance_create" in defined
         assert [symbol for symbol in defined if not symbol.startswith(f"{name}_")] == []
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_functions_of_a_shared_library_have_no_prefix(version, tmp_path):
+    """As the official headers do it, and where CMake says that it makes one of the FMU's name; a prefix that is given wins."""
+    name = "SimplePendulum"
+    source, function = {2: fmu, 3: fmi3}[version].unpacked(name) / "sources" / f"{name}.c", f"fmi{version}DoStep"
+    for prefix, *words in [(f"{name}_",), ("", f"-DFMI{version}_OVERRIDE_FUNCTION_PREFIX"), ("", f"-D{name}_EXPORTS"), ("My_", f"-DFMI{version}_FUNCTION_PREFIX=My_")]:
+        assert [symbol for symbol in global_names(source, tmp_path, *words) if symbol.endswith(function)] == [prefix + function]
 
 
 @pytest.mark.parametrize("names", [("SimplePendulum", "DoublePendulum"), ("SimplePendulumLinear", "SimplePendulum")])
@@ -110,8 +123,7 @@ def test_two_fmus_in_one_program(names, tmp_path, open_fmu):
     program = tmp_path / "program"
     objects = [tmp_path / f"{name}.o" for name in names]
     for name, compiled in zip(names, objects):
-        prefix = f"-DFMI2_FUNCTION_PREFIX={name}_"
-        subprocess.run(["gcc", "-std=c11", "-O0", "-c", prefix, source_of(name), "-o", compiled], check=True)
+        subprocess.run(["gcc", "-std=c11", "-O0", "-c", source_of(name), "-o", compiled], check=True)
     main = [ROOT / "tests" / "c" / "two_in_one.c", f"-DFIRST={names[0]}", f"-DSECOND={names[1]}", f"-I{ROOT}/include"]
     subprocess.run(["gcc", *main, *objects, "-o", program, "-lm"], check=True)
     steps, size = 20, 0.05

@@ -11,7 +11,7 @@ from fmpy.ssp.ssd import read_ssd
 from coupling import balance, foreign, oscillator
 from coupling.master import Diverged, Master
 from coupling.slaves import FMUS, Slave
-from fmu import ROOT
+from fmu import ROOT, unpacked
 
 pytestmark = pytest.mark.release
 
@@ -69,6 +69,30 @@ def test_players_of_the_archive(by, initial, start):
 def test_archive_is_valid_and_complete():
     structure = read_ssd(str(balance.SSP), validate=True)
     assert [component.name for component in structure.system.elements] == ["cart", "feedback"]
+
+
+def units(elements):
+    """The exponents of units, by name."""
+    return {unit.get("name"): dict(unit[0].attrib) for unit in elements}
+
+
+def test_units_of_the_archive_are_defined():
+    """
+    SSP 1.0: a unit must be defined in the Units of the file that contains it, which for parameter values is their set. Each unit
+    is that of the FMUs.
+    """
+    space = "{http://ssp-standard.org/SSP1/SystemStructure%s}"
+    ssc, ssd, ssv = (space % name for name in ("Common", "Description", "ParameterValues"))
+    with zipfile.ZipFile(balance.SSP) as archive:
+        root = ElementTree.fromstring(archive.read("SystemStructure.ssd"))
+    connectors = {real.get("unit") for real in root.iter(f"{ssc}Real")}
+    files = [(root.find(f"{ssd}Units"), connectors)]
+    files += [(values.find(f"{ssv}Units"), {real.get("unit") for real in values.iter(f"{ssv}Real")}) for values in root.iter(f"{ssv}ParameterSet")]
+    descriptions = [ElementTree.parse(unpacked(name) / "modelDescription.xml") for name in ("InvertedPendulumCart", "StateFeedback")]
+    of_fmus = {name: unit for description in descriptions for name, unit in units(description.iter("Unit")).items()}
+    assert len(files) == 3
+    for defined, used in files:
+        assert defined is not None and units(defined) == {name: of_fmus[name] for name in used}
 
 
 def test_the_archive_names_a_master_for_omsimulator():
