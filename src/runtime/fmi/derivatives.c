@@ -89,7 +89,8 @@ static enum Status derivative_along_seed(struct Instance *instance, const unsign
     if (variable == NULL || check_unknown(instance, variable) != STATUS_DONE) return STATUS_ERROR;
   }
   initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
-  enum Status status = evaluate_prepare(instance);
+  enum Status status = reading_follow_start(instance, &direction.seed, direction.state);
+  if (status == STATUS_DONE) status = evaluate_prepare(instance);
   struct Point point = instance_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;

@@ -1,5 +1,6 @@
 #include "stepping/reading.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
@@ -72,4 +73,77 @@ void reading_end(struct Instance *instance) {
   if (!failed) return;
   instance->shown->phase = instance->situation->phase;
   instance->situation->phase = PHASE_ERROR;
+}
+
+/* The displacement of the difference quotients, in units of the scales of what is displaced. */
+static const double displacement = 1e-3;
+
+/* The largest of count values, in units of the sizes of what they change, which are 1 at least. */
+static double relative_size(const double *value, const double *of, size_t count) {
+  double largest = 0.0;
+  for (size_t i = 0; i < count; i++) largest = fmax(largest, fabs(value[i]) / fmax(fabs(of[i]), 1.0));
+  return largest;
+}
+
+static double size_of_seed(const struct Instance *instance, const struct Seed *seed) {
+  double size = fabs(seed->time);
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    size = fmax(size, fabs(seed->state[i]) / scale_of(instance->state, i));
+  size = fmax(size, relative_size(seed->input, instance->input, lagrangian.input_count));
+  return fmax(size, relative_size(seed->parameter, instance->parameter, lagrangian.parameter_count));
+}
+
+/* Lets the situation be the start from what was set, displaced by step along the seed. False where there is none. */
+static bool find_displaced(struct Instance *instance, const struct Seed *seed, double step) {
+  memcpy(instance->situation, instance->given, situation_size());
+  instance->situation->time += step * seed->time;
+  for (size_t i = 0; i < lagrangian.state_count; i++) instance->state[i] += step * seed->state[i];
+  for (size_t i = 0; i < lagrangian.input_count; i++) instance->input[i] += step * seed->input[i];
+  for (size_t i = 0; i < lagrangian.parameter_count; i++) instance->parameter[i] += step * seed->parameter[i];
+  return start_find(instance) == STATUS_DONE;
+}
+
+/* Adds the difference quotient of fourth order to along[state_count]; the situation is then undefined. */
+static bool add_differences(struct Instance *instance, const struct Seed *seed, double step, double *along) {
+  static const double weight[] = {1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0};
+  static const double at[] = {-2.0, -1.0, 1.0, 2.0};
+  for (size_t j = 0; j < sizeof at / sizeof *at; j++) {
+    if (!find_displaced(instance, seed, at[j] * step)) return false;
+    for (size_t i = 0; i < lagrangian.state_count; i++) along[i] += weight[j] * instance->state[i] / step;
+  }
+  return true;
+}
+
+/* With workspace: kept of situation_size() bytes, along of state_count zeros. */
+static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct Situation *kept,
+                       double *along) {
+  struct Log log = instance->log;
+  double size = size_of_seed(instance, seed);
+  if (size == 0.0) return true;
+  memcpy(kept, instance->situation, situation_size());
+  instance->log.wanted = 0;
+  bool is_found = add_differences(instance, seed, displacement / size, along);
+  instance->log = log;
+  memcpy(instance->situation, kept, situation_size());
+  instance->prepared_is_stale = true;
+  if (is_found) memcpy(state, along, lagrangian.state_count * sizeof *state);
+  return is_found;
+}
+
+/* Systems that switch are left out: modes of the start may differ from those beside it. */
+enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state) {
+  bool is_moved = instance->is_reading && instance->shown_is_found && lagrangian.constraints.projection != NULL &&
+                  lagrangian.event_laws == NULL && instance->situation->phase == PHASE_INITIALIZATION;
+  if (!is_moved) return STATUS_DONE;
+  double *along = instance->memory.allocate(lagrangian.state_count, sizeof *along);
+  struct Situation *kept = instance->memory.allocate(1, situation_size());
+  bool has_memory = along != NULL && kept != NULL;
+  bool is_found = has_memory && find_along(instance, seed, state, kept, along);
+  if (along != NULL) instance->memory.free(along);
+  if (kept != NULL) instance->memory.free(kept);
+  if (!has_memory) return refuse_call(instance, "there is no memory for the derivatives");
+  if (is_found) return STATUS_DONE;
+  log_message(instance, STATUS_DISCARD, "%s: the simulation cannot start near these start values; expected others",
+              instance->function);
+  return STATUS_DISCARD;
 }

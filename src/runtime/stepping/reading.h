@@ -14,4 +14,11 @@
 void reading_begin(struct Instance *instance);
 void reading_end(struct Instance *instance);
 
+/*
+ * While variables are read in initialization mode: how the start, moved onto the constraints, changes along a direction of what was
+ * set. seed->state is state[state_count], the direction of the states that were set, which becomes that of the start. Discards
+ * where there is no start nearby.
+ */
+enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state);
+
 #endif
