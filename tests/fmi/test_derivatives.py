@@ -135,7 +135,7 @@ def test_input_derivatives_hold_for_one_step(open_fmu):
     assert instance.get("Fx", "vx") == pytest.approx([1.0, 1.5])
 
 
-@pytest.mark.parametrize("order", [0, -1, 4, 100])
+@pytest.mark.parametrize("order", [0, -1])
 def test_input_derivative_orders(order, open_fmu):
     """Rule 12: order 0 is no derivative."""
     instance = open_fmu("ParticleCartesian").initialize()

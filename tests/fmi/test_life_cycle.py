@@ -85,7 +85,7 @@ ME = {
     "fmi2GetDerivatives":           "-    x    x    x    x    x",
     "fmi2GetEventIndicators":       "-    x    x    x    x    x",
     "fmi2GetContinuousStates":      "-    x    x    x    x    x",
-    "fmi2GetNominalsOfContinuousStates": "x    -    x    x    x    x",
+    "fmi2GetNominalsOfContinuousStates": "x    x    x    x    x    x",
     "fmi2SetRealInputDerivatives":  "-    -    -    -    -    -",
     "fmi2GetRealOutputDerivatives": "-    -    -    -    -    -",
     "fmi2DoStep":                   "-    -    -    -    -    -",

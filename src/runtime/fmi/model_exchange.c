@@ -10,7 +10,10 @@
 #include "stepping/reading.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time) {
+  double start = instance->situation->start_time;
   if (!isfinite(time)) return refuse_call(instance, "the time is %g; expected a finite number", time);
+  if (time < start)
+    return refuse_call(instance, "the time is %.15g; expected none before startTime %.15g", time, start);
   instance->situation->time = time;
   return STATUS_DONE;
 }
@@ -22,10 +25,17 @@ static bool check_states(struct Instance *instance, const void *array, size_t co
   return false;
 }
 
+/* An integrator that went too far may try a shorter step. */
+static enum Status discard_state(const struct Instance *instance, size_t state, double value) {
+  log_message(instance, STATUS_DISCARD, "%s: state %zu is %g; expected a finite number", instance->function, state + 1,
+              value);
+  return STATUS_DISCARD;
+}
+
 enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count) {
   if (!check_states(instance, state, count)) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(state[i])) return refuse_call(instance, "state %zu is %g; expected a finite number", i + 1, state[i]);
+    if (!isfinite(state[i])) return discard_state(instance, i, state[i]);
   if (count > 0) memcpy(instance->state, state, count * sizeof *state);
   return STATUS_DONE;
 }
@@ -67,12 +77,36 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
   return status;
 }
 
-static bool has_drifted(struct Instance *instance) {
-  if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
-  return lagrangian.constraints.projection->drift(instance, instance->situation->time) > instance->situation->tolerance;
+void exchange_enter_event_mode(struct Instance *instance) {
+  if (instance->situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
+  instance->situation->phase = PHASE_EVENT;
 }
 
-bool exchange_needs_event(struct Instance *instance) {
+enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
+  if (instance->lacks_update && lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance))
+    return refuse_call(instance, "an event is due; expected an update of the discrete states before it");
+  instance->lacks_update = false;
+  instance->situation->phase = PHASE_CONTINUOUS_TIME;
+  return STATUS_DONE;
+}
+
+/*
+ * The importer's integrator errs by up to the tolerance e in each step, so that after n steps the motion is off by up to n e,
+ * in any coordinates. The drift d is the part of this error across the constraints; it changes the forces by a share of the
+ * order of d, and so the motion along the constraints by an error of the order of d. While d < n e, this is no more than what
+ * has come together along them. A projection needs an event, behind which the integrator starts at order 1 with short steps,
+ * each with an error of its own: more events would cost time and accuracy. The drift grows with n^2, since errors of velocities
+ * add up, so that the first steps need no event. In long runs d^2 < e keeps the terms of second order below the tolerance.
+ */
+static bool has_drifted(struct Instance *instance) {
+  const struct Situation *situation = instance->situation;
+  if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  double drift = lagrangian.constraints.projection->drift(instance, situation->time);
+  return drift > fmin((double)situation->completed_steps * situation->tolerance, sqrt(situation->tolerance));
+}
+
+bool exchange_complete_step(struct Instance *instance) {
+  instance->situation->completed_steps++;
   return has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
 }
 
@@ -88,6 +122,7 @@ static enum Status settle_modes(struct Instance *instance, bool *changed) {
 
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
+  instance->lacks_update = false;
   enum Status status = settle_modes(instance, states_changed);
   if (status != STATUS_DONE || lagrangian.constraints.projection == NULL || instance->kind == KIND_CO_SIMULATION)
     return status;

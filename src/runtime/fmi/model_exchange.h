@@ -18,8 +18,16 @@ enum Status exchange_get_nominals(struct Instance *instance, double *nominal, si
 /* The array has an element for each event indicator; another count is an error. */
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count);
 
-/* Whether an event is needed: the state has drifted from the constraints by more than the tolerance, or a mode must change. */
-bool exchange_needs_event(struct Instance *instance);
+void exchange_enter_event_mode(struct Instance *instance);
+
+/* An error where events are due for which the discrete states were not updated. */
+enum Status exchange_enter_continuous_time_mode(struct Instance *instance);
+
+/*
+ * Counts a step of the importer. True if an event is needed: a mode must change, or the drift from the constraints is as large
+ * as the error of the whole motion.
+ */
+bool exchange_complete_step(struct Instance *instance);
 
 /* Brings the modes into agreement with the state, and this back to the constraints; tells whether it was moved. */
 enum Status exchange_update(struct Instance *instance, bool *states_changed);

@@ -43,8 +43,7 @@ FMI(Status) FMI(Reset)(void *c) {
 FMI(Status) FMI(EnterContinuousTimeMode)(void *c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__);
   if (instance == NULL) return FMI(Error);
-  instance->situation->phase = PHASE_CONTINUOUS_TIME;
-  return FMI(OK);
+  return status_of(exchange_enter_continuous_time_mode(instance));
 }
 
 /* --- States, saved and restored ------------------------------------------------------------------------------------ */
@@ -90,7 +89,7 @@ FMI(CompletedIntegratorStep)
   if (instance == NULL || !check_array(instance, enterEventMode, 1, "enterEventMode") ||
       !check_array(instance, terminateSimulation, 1, "terminateSimulation"))
     return FMI(Error);
-  *enterEventMode = exchange_needs_event(instance);
+  *enterEventMode = exchange_complete_step(instance);
   *terminateSimulation = FMI(False);
   return FMI(OK);
 }

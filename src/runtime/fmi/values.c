@@ -131,9 +131,18 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
 
 static enum Status refuse_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   bool is_below = value < variable->minimum;
-  return refuse_call(instance, "%g for '%s' is %s, %g", value, variable->name,
-                     is_below ? "below its minimum" : "above its maximum",
-                     is_below ? variable->minimum : variable->maximum);
+  log_message(instance, STATUS_DISCARD, "%s: %g for '%s' is %s, %g", instance->function, value, variable->name,
+              is_below ? "below its minimum" : "above its maximum", is_below ? variable->minimum : variable->maximum);
+  return STATUS_DISCARD;
+}
+
+/* An integrator that went too far may try a shorter step. */
+static enum Status refuse_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+  static const char format[] = "%s: the value for '%s' is %g; expected a finite number";
+  if (variable->kind != VARIABLE_STATE || !is_exchanged(instance))
+    return log_error(instance, format, instance->function, variable->name, value);
+  log_message(instance, STATUS_DISCARD, format, instance->function, variable->name, value);
+  return STATUS_DISCARD;
 }
 
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
@@ -142,8 +151,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable);
   if (!is_settable(instance, variable))
     return refuse_call(instance, "'%s' cannot be set in the state '%s'", variable->name, instance_phase_name(instance));
-  if (!isfinite(value))
-    return refuse_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
+  if (!isfinite(value)) return refuse_infinite(instance, variable, value);
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
     return refuse_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
                        value);
@@ -180,8 +188,9 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
 }
 
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value) {
-  for (size_t i = 0; i < count; i++)
-    if (check_value(instance, reference[i], value[i], TYPE_REAL) != STATUS_DONE) return STATUS_ERROR;
+  enum Status status = STATUS_DONE;
+  for (size_t i = 0; i < count; i++) status = worse(status, check_value(instance, reference[i], value[i], TYPE_REAL));
+  if (status != STATUS_DONE) return status;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
   if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
@@ -189,8 +198,9 @@ enum Status values_set(struct Instance *instance, const unsigned *reference, siz
 
 enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
                              enum VariableType type) {
-  for (size_t i = 0; i < count; i++)
-    if (check_value(instance, reference[i], value[i], type) != STATUS_DONE) return STATUS_ERROR;
+  enum Status status = STATUS_DONE;
+  for (size_t i = 0; i < count; i++) status = worse(status, check_value(instance, reference[i], value[i], type));
+  if (status != STATUS_DONE) return status;
   for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
   if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
@@ -200,12 +210,20 @@ static enum Status check_input_derivative(struct Instance *instance, unsigned re
   const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
   if (variable->kind != VARIABLE_INPUT) return refuse_call(instance, "'%s' is not an input", variable->name);
-  if (order < 1 || order > INPUT_ORDER)
-    return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
-                       INPUT_ORDER);
+  if (order < 1)
+    return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 or more", order, variable->name);
   if (!isfinite(value))
     return refuse_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
   return STATUS_DONE;
+}
+
+static enum Status ignore_input_derivative(const struct Instance *instance, const struct ScalarVariable *variable,
+                                           int order) {
+  log_message(instance, STATUS_WARNING,
+              "%s: the derivative %d of '%s' is ignored, since an input is a polynomial of degree %d over a step; "
+              "expected orders up to %d",
+              instance->function, order, variable->name, INPUT_ORDER, INPUT_ORDER);
+  return STATUS_WARNING;
 }
 
 enum Status values_set_input_derivatives(struct Instance *instance, const unsigned *reference, size_t count,
@@ -215,9 +233,14 @@ enum Status values_set_input_derivatives(struct Instance *instance, const unsign
   size_t inputs = lagrangian.input_count;
   if (!instance->situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * inputs * sizeof *instance->input_derivatives);
-  for (size_t i = 0; i < count; i++)
-    instance->input_derivatives[(size_t)(order[i] - 1) * inputs + lagrangian.variables[reference[i]].index] = value[i];
+  enum Status status = STATUS_DONE;
+  for (size_t i = 0; i < count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
+    if (order[i] <= INPUT_ORDER)
+      instance->input_derivatives[(size_t)(order[i] - 1) * inputs + variable->index] = value[i];
+    else status = worse(status, ignore_input_derivative(instance, variable, order[i]));
+  }
   instance->situation->input_derivatives_set = 1;
   instance->situation->changed = CHANGED_VALUES;
-  return STATUS_DONE;
+  return status;
 }

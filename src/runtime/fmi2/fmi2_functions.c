@@ -54,7 +54,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);
   if (instance == NULL) return fmi2Error;
-  instance->situation->phase = PHASE_EVENT;
+  exchange_enter_event_mode(instance);
   return fmi2OK;
 }
 

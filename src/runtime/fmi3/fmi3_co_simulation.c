@@ -42,21 +42,6 @@ static void observe(struct Component *component) {
   component->instance.observe = intermediate_observe;
 }
 
-/*
- * A step that did not come to its end is an early return where the importer knows these; else it is discarded, and the
- * instance is as it was before.
- */
-static enum Status end_part_of_step(struct Component *component, double start) {
-  struct Situation *situation = component->instance.situation;
-  if (component->early_return_allowed && situation->time > start) {
-    situation->phase = PHASE_STEP_COMPLETE;
-    component->has_returned_early = true;
-    return STATUS_DONE;
-  }
-  instance_restore(&component->instance, component->before);
-  return STATUS_DISCARD;
-}
-
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
                       fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
                       fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
@@ -75,7 +60,8 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   component->has_returned_early = false;
   observe(component);
   enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize);
-  if (status == STATUS_DISCARD) status = end_part_of_step(component, currentCommunicationPoint);
+  /* The instance is as before the call (section 2.2.3); an early return would hide that the motion ends. */
+  if (status == STATUS_DISCARD) instance_restore(instance, component->before);
   if (status == STATUS_DONE && instance->situation->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* What went wrong in the callback was logged. */
   if (instance->situation->phase == PHASE_ERROR) status = STATUS_ERROR;
@@ -83,7 +69,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   bool is_early = is_at_event && instance->situation->time < currentCommunicationPoint + communicationStepSize;
   *eventHandlingNeeded = is_at_event;
   *terminateSimulation = fmi3False;
-  *earlyReturn = component->has_returned_early || is_early;
+  *earlyReturn = status == STATUS_DONE && (component->has_returned_early || is_early);
   *lastSuccessfulTime = instance->situation->time;
   return status_of(status);
 }

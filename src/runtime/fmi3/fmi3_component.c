@@ -20,7 +20,12 @@ struct Log log_of(struct Component *component) {
       .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
 
-/* Checks the arguments that all kinds have. Why there is no instance is told with logging or without. */
+/* Without logging no message is sent, not even of a failed instantiation (section 2.3.1). */
+static unsigned categories_of(bool logging) {
+  return logging ? ALL_CATEGORIES : 0;
+}
+
+/* Checks the arguments that all kinds have. */
 static bool can_instantiate(const struct Log *log, const char *name, const char *token, const char *function) {
   if (name == NULL || name[strspn(name, " \t\r\n")] == '\0')
     log_write(log, STATUS_ERROR, "%s: the instance has no name; expected one", function);
@@ -67,15 +72,13 @@ static struct Component *component_create(const struct Component *description, e
   return NULL;
 }
 
-static struct Component *instantiate(const struct Component *description, enum Kind kind, bool logging,
-                                     const struct Log *log, const char *function) {
+static struct Component *instantiate(const struct Component *description, enum Kind kind, const struct Log *log,
+                                     const char *function) {
   struct Component *component = component_create(description, kind);
   if (component == NULL) {
     log_write(log, STATUS_ERROR, "%s: there is no memory", function);
     return NULL;
   }
-  component->categories = logging ? ALL_CATEGORIES : 0;
-  component->instance.log = log_of(component);
   log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);
   return component;
 }
@@ -85,10 +88,11 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String in
                                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage) {
   (void)resourcePath;
   (void)visible;
-  struct Component description = {.logger = logMessage, .environment = environment, .categories = ALL_CATEGORIES};
+  struct Component description = {
+      .logger = logMessage, .environment = environment, .categories = categories_of(loggingOn)};
   struct Log log = log_of(&description);
   if (!can_instantiate(&log, instanceName, instantiationToken, __func__)) return NULL;
-  return instantiate(&description, KIND_MODEL_EXCHANGE, loggingOn, &log, __func__);
+  return instantiate(&description, KIND_MODEL_EXCHANGE, &log, __func__);
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
@@ -102,7 +106,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
   (void)visible;
   struct Component description = {.logger = logMessage,
                                   .environment = environment,
-                                  .categories = ALL_CATEGORIES,
+                                  .categories = categories_of(loggingOn),
                                   .intermediate_update = intermediateUpdate,
                                   .early_return_allowed = earlyReturnAllowed};
   struct Log log = log_of(&description);
@@ -114,7 +118,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
               "%s: eventModeUsed is true; expected false, since the system has no events (no hasEventMode)", __func__);
     return NULL;
   }
-  struct Component *component = instantiate(&description, KIND_CO_SIMULATION, loggingOn, &log, __func__);
+  struct Component *component = instantiate(&description, KIND_CO_SIMULATION, &log, __func__);
   if (component == NULL) return NULL;
   component->instance.uses_event_mode = eventModeUsed;
   component->instance.stops_at_events = eventModeUsed && earlyReturnAllowed;
@@ -135,7 +139,8 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
   (void)clockUpdate;
   (void)lockPreemption;
   (void)unlockPreemption;
-  struct Component description = {.logger = logMessage, .environment = environment, .categories = ALL_CATEGORIES};
+  struct Component description = {
+      .logger = logMessage, .environment = environment, .categories = categories_of(loggingOn)};
   struct Log log = log_of(&description);
   log_write(&log, STATUS_ERROR, "%s: the FMU supports only model exchange and co-simulation", __func__);
   return NULL;

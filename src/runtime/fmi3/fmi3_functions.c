@@ -55,7 +55,7 @@ fmi3Status fmi3EnterEventMode(fmi3Instance c) {
                                "%s is not allowed in the state '%s' of an instance that was made with eventModeUsed "
                                "false; expected true",
                                __func__, instance_phase_name(instance)));
-  instance->situation->phase = PHASE_EVENT;
+  exchange_enter_event_mode(instance);
   return fmi3OK;
 }
 

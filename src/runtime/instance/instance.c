@@ -124,6 +124,7 @@ void instance_restore(struct Instance *instance, const void *situation) {
   memcpy(instance->situation, situation, situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_singularity = 0;
+  instance->lacks_update = false;
 }
 
 const char *instance_phase_name(const struct Instance *instance) {

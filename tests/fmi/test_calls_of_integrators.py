@@ -1,0 +1,139 @@
+"""What an integrator may ask for: trial states that are not finite, times before the start, event mode with events that are due."""
+
+from ctypes import c_double
+
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Model
+
+import fmu
+from fmu import DISCARD, ERROR
+
+
+def array(*values):
+    return (c_double * len(values))(*values), len(values)
+
+
+def falling_ball(open_fmu):
+    """In continuous-time mode."""
+    ball = open_fmu("BouncingBall", kind=FMU2Model).initialize()
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
+    return ball
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_states_that_are_not_finite(value, open_fmu):
+    """An integrator may try a shorter step: Discard (FMI 2.0.4, section 2.1.3), and nothing has changed."""
+    ball = falling_ball(open_fmu)
+    before = ball.get("h", "v")
+    with ball.fails(DISCARD, "expected a finite number"):
+        ball.fmu.setContinuousStates(*array(1.0, value))
+    with ball.fails(DISCARD, "'h'.*expected a finite number"):
+        ball.set(h=value)
+    assert ball.get("h", "v") == before
+    ball.fmu.setContinuousStates(*array(0.5, 0.0))
+    assert ball.get("h") == 0.5
+
+
+def test_a_time_before_the_start(open_fmu):
+    ball = open_fmu("BouncingBall", kind=FMU2Model).initialize(start_time=2.0)
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
+    ball.fmu.setTime(2.0)
+    with ball.fails(ERROR, "the time is 1.5; expected none before startTime 2"):
+        ball.fmu.setTime(1.5)
+
+
+def test_an_event_is_not_passed_over(open_fmu):
+    """Event mode cannot end while a bounce is due for which the discrete states were not updated (FMI 2.0.4, section 3.2.2)."""
+    ball = falling_ball(open_fmu)
+    ball.fmu.enterEventMode()
+    ball.fmu.enterContinuousTimeMode()  # nothing is due
+    ball.fmu.setContinuousStates(*array(-1e-6, -1.0))
+    ball.fmu.enterEventMode()
+    with ball.fails(ERROR, "an event is due; expected an update of the discrete states"):
+        ball.fmu.enterContinuousTimeMode()
+    ball.reset().initialize()
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
+    ball.fmu.setContinuousStates(*array(-1e-6, -1.0))
+    ball.fmu.enterEventMode()
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
+    assert ball.get("v") > 0.0
+
+
+@pytest.mark.parametrize("order", [4, 20, 100])
+def test_input_derivatives_of_high_order(order, open_fmu):
+    """An input is a cubic over a step. Higher derivatives are ignored with a warning: the motion is that without them."""
+    ends = []
+    for orders in ([1], [1, order]):
+        particle = open_fmu("ParticleCartesian").initialize({"x": 0.0, "vx": 0.0})
+        particle.fmu.setRealInputDerivatives(particle.vr("Fx") * len(orders), orders, [6.0, 1.0][: len(orders)])
+        particle.step(1.0)
+        ends.append(particle.get("x", "vx"))
+    assert any(f"the derivative {order} of 'Fx' is ignored" in text for _, _, text in particle.messages)
+    assert ends[0] == ends[1] != [0.0, 0.0]
+
+
+def integrate(name, end, tolerance):
+    """CVode (BDF), step by step: the steps, the events, and the states at the end."""
+    from ctypes import byref
+
+    from fmpy.sundials import CVode, CVodeSolver, realtype
+
+    normal, one_step = 1, 2
+    instance = fmu.Instance(name, kind=FMU2Model).initialize(tolerance=tolerance)
+    model, size = instance.fmu, instance.description.numberOfContinuousStates
+    model.newDiscreteStates()
+    model.enterContinuousTimeMode()
+
+    class NoInput:
+        def apply(self, *arguments, **words):
+            pass
+
+    solver = CVodeSolver(nx=size, nz=0, get_x=model.getContinuousStates, set_x=model.setContinuousStates, get_dx=model.getDerivatives, get_z=model.getEventIndicators,
+                         get_nominals=model.getNominalsOfContinuousStates, set_time=model.setTime, input=NoInput(), startTime=0.0, relativeTolerance=tolerance,
+                         maxNumSteps=100000)  # fmt: skip
+    time, steps, events = 0.0, 0, 0
+    while time < end:
+        reached = realtype(0.0)
+        assert CVode(solver.cvode_mem, end, solver.x, byref(reached), one_step) >= 0
+        if reached.value > end:
+            assert CVode(solver.cvode_mem, end, solver.x, byref(reached), normal) >= 0
+        time, steps = min(reached.value, end), steps + 1
+        model.setTime(time)
+        model.setContinuousStates(solver.px, size)
+        if model.completedIntegratorStep()[0]:
+            events += 1
+            model.enterEventMode()
+            model.newDiscreteStates()
+            model.enterContinuousTimeMode()
+            solver.reset(time)
+    states = instance.get(*(unknown.variable.derivative.name for unknown in instance.description.derivatives))
+    instance.free()
+    return steps, events, np.array(states)
+
+
+@pytest.mark.parametrize("name, others", [("PendulumCartesian", "SimplePendulum"), ("FreeBody", None), ("FourBar", None), ("RollingDisk", None), ("KnifeEdge", None)])
+def test_few_events_bring_back_to_the_constraints(name, others):
+    """At most 10 a second; a pendulum in Cartesian coordinates takes at most three times the steps of that in its angle."""
+    end, tolerance = 10.0, 1e-9
+    steps, events, state = integrate(name, end, tolerance)
+    assert events <= 10 * end
+    if others is None:
+        return
+    assert steps <= 3 * integrate(others, end, tolerance)[0]
+    assert abs(np.hypot(*state[:2]) - 1.0) < np.sqrt(tolerance)
+
+
+def test_the_drift_costs_no_more_than_the_steps():
+    """A pendulum that starts at rest on the level of its pivot: against the period by the elliptic integral."""
+    from scipy.special import ellipk
+
+    period = 4 * ellipk(0.5) * np.sqrt(1.0 / 9.81)
+    steps, _, state = integrate("PendulumCartesian", 4 * period, 1e-9)
+    largest_speed = np.sqrt(2 * 9.81)
+    scales = np.array([1.0, 1.0, largest_speed, largest_speed])
+    assert np.max(np.abs(state - [-1.0, 0.0, 0.0, 0.0]) / scales) < steps * 1e-9
