@@ -48,6 +48,7 @@ enum SymbolKind {
   TIME,
   COORDINATE,
   VELOCITY,
+  STATE, /* behind the velocities, with a rate of its own */
   ACCELERATION,
   INPUT,
   DISPLACEMENT, /* a virtual one, always 0: index 2 i of the i-th, 2 i + 1 of its rate */
@@ -57,6 +58,7 @@ enum SymbolKind {
   SEED_TIME,
   SEED_COORDINATE,
   SEED_VELOCITY,
+  SEED_STATE,
   SEED_ACCELERATION,
   SEED_INPUT,
   SEED_RESULT, /* by what a result counts in a weighted gradient */

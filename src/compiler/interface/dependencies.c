@@ -99,8 +99,11 @@ static void follow_starts(struct Dependencies *dependencies) {
   for (size_t i = 0; i < found; i++) {
     size_t number = dependencies->symbols[i];
     const struct Symbol *symbol = &dependencies->graph->symbols[number];
-    if (symbol->kind != COORDINATE && symbol->kind != VELOCITY) continue;
-    const struct VariableList *list = symbol->kind == COORDINATE ? &model->coordinates : &model->velocities;
+    const struct VariableList *list = symbol->kind == COORDINATE ? &model->coordinates
+                                      : symbol->kind == VELOCITY ? &model->velocities
+                                      : symbol->kind == STATE    ? &model->states
+                                                                 : NULL;
+    if (list == NULL) continue;
     const struct Variable *state = &list->items[symbol->index];
     if (start_follows(model, state)) descend(dependencies, state->start_expression, dependencies->of[number]);
   }

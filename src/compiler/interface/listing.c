@@ -194,6 +194,7 @@ static void append_statistics(struct Interface *interface, const struct Model *m
 static bool uses_time(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   bool uses = graph_depends_on(graph, equations->power, TIME) || graph_depends_on(graph, equations->total, TIME);
+  for (size_t i = 0; i < equations->rates.count; i++) uses |= graph_depends_on(graph, equations->rates.nodes[i], TIME);
   for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
   for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
@@ -212,21 +213,23 @@ static bool steps_in_time(const struct Model *model) {
     const char *function = model->switches.branches[i].function;
     steps |= strcmp(function, "sign") == 0 || strcmp(function, "a condition") == 0;
     steps |= graph_depends_on(graph, indicator, TIME) || graph_depends_on(graph, indicator, VELOCITY) ||
-             graph_depends_on(graph, indicator, INPUT);
+             graph_depends_on(graph, indicator, STATE) || graph_depends_on(graph, indicator, INPUT);
   }
   return steps;
 }
 
 /* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
-static const char *total_energy_description(const struct Model *model, const struct Equations *equations) {
+static const char *total_energy_description(const struct Model *model) {
   const struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
   bool changes = switches->contact_count + switches->event_count > 0 || model->energies.driven ||
                  model->given.constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
-                 graph_depends_on(graph, model->energies.potential.node, TIME) || steps_in_time(model);
-  if (changes || (model->forces.any && equations->integrands.count == 0)) return "kinetic and potential energy";
-  return equations->integrands.count > 0 ? "kinetic and potential energy; changes by nonConservativeWork alone"
+                 graph_depends_on(graph, model->energies.potential.node, TIME) ||
+                 graph_depends_on(graph, model->energies.potential.node, STATE) || steps_in_time(model);
+  bool has_work = work_of(model) != NULL;
+  if (changes || (model->forces.any && !has_work)) return "kinetic and potential energy";
+  return has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                                          : "kinetic and potential energy; constant";
 }
 
@@ -307,11 +310,7 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   append_constraint_forces(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
-  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model, equations));
-  for (size_t i = 0; i < interface->count; i++)
-    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
-      interface->variables[i].node = without_branches(model, interface->variables[i].node);
-  append_statistics(interface, model, equations->method);
+  append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model));
   mark_moved_states(interface, model, equations);
   mark_reinitialized_states(interface, model, equations);
 }
@@ -322,21 +321,22 @@ static Node acceleration_of(const struct Model *model, const struct Equations *e
   return is_in_tree ? model->unknowns.accelerations[i] : equations->acceleration[i];
 }
 
-/* Coordinates, velocities and the work of forces, then the derivatives of each. */
+/* Coordinates, velocities and the states behind them, then the derivatives of each. */
 static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   size_t n = model->coordinates.count;
-  const struct VariableList *works = &model->forces.works;
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);
   append_list(interface, model, &model->velocities, VARIABLE_STATE, n);
-  append_list(interface, model, works, VARIABLE_STATE, 2 * n);
-  for (size_t i = 0; i < works->count; i++) interface->variables[interface->count - 1 - i].entry.is_output = false;
+  append_list(interface, model, &model->states, VARIABLE_STATE, 2 * n);
+  for (size_t i = 0; i < model->states.count; i++)
+    interface->variables[interface_find(interface, VARIABLE_STATE, 2 * n + i)].entry.is_output =
+        !model->states.items[i].is_work;
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->coordinates.items[i], i, model->velocities.items[i].node);
   for (size_t i = 0; i < n; i++)
     append_derivative(interface, &model->velocities.items[i], n + i, acceleration_of(model, equations, i));
-  for (size_t i = 0; i < works->count; i++)
-    append_derivative(interface, &works->items[i], 2 * n + i, equations->integrands.nodes[i]);
-  interface->state_count = 2 * n + works->count;
+  for (size_t i = 0; i < model->states.count; i++)
+    append_derivative(interface, &model->states.items[i], 2 * n + i, equations->rates.nodes[i]);
+  interface->state_count = 2 * n + model->states.count;
 }
 
 static void append_outputs(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
@@ -358,6 +358,10 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_outputs(interface, model, equations);
   append_calculated(interface, model);
   if (model->coordinates.count > 0) append_mechanics(interface, model, equations);
+  for (size_t i = 0; i < interface->count; i++)
+    if (interface->variables[i].entry.kind == VARIABLE_RESULT)
+      interface->variables[i].node = without_branches(model, interface->variables[i].node);
+  if (!is_motionless(model)) append_statistics(interface, model, equations->method);
   interface->count_in_fmi2 = interface->count;
   append_indicators(interface, equations->switching);
   if (!interface->depends_on_time) append_time(interface, model);

@@ -60,3 +60,10 @@ bool is_looped(const struct Equations *equations, size_t row) {
 size_t row_count(const struct Equations *equations) {
   return equations->count + equations->constraints->count;
 }
+
+bool rates_use_unknowns(const struct Graph *graph, const struct Equations *equations) {
+  bool use = false;
+  for (size_t i = 0; i < equations->rates.count; i++)
+    use |= graph_depends_on(graph, equations->rates.nodes[i], ACCELERATION);
+  return use;
+}

@@ -19,8 +19,7 @@ struct Equations {
   Node *right_side, *residual, *acceleration;
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
-  /* The rates of the states behind the velocities: with <work/> the power, and its derivatives that variations.h adds. */
-  struct NodeList integrands;
+  struct NodeList rates; /* of the model's states behind the velocities; they hold no accelerations of unrolled blocks */
   /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
   Node power;
   Node stated_power;                            /* the same, which may hold the acceleration symbols */
@@ -41,6 +40,9 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
 
 /* Whether the row belongs to a block that is solved at run time, by ldlt.h. */
 bool is_looped(const struct Equations *equations, size_t row);
+
+/* True if rates of states hold accelerations or forces that are found at run time. */
+bool rates_use_unknowns(const struct Graph *graph, const struct Equations *equations);
 
 /* How many rows there are. */
 size_t row_count(const struct Equations *equations);

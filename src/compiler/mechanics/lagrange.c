@@ -162,8 +162,8 @@ static Node with_accelerations(const struct Model *model, const struct Equations
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, node, ACCELERATION)) return node;
   Node *symbols = own_symbols(graph);
-  for (size_t i = 0; i < equations->count; i++)
-    symbols[graph->vertices[model->unknowns.accelerations[i]].left] = equations->acceleration[i];
+  for (size_t i = 0; i < row_count(equations); i++)
+    symbols[graph->vertices[unknown_of_row(model, i)].left] = equations->acceleration[i];
   substitute(graph, &node, 1, symbols, &node);
   shorten(graph, 1, &node);
   return node;
@@ -180,13 +180,19 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   power = add(graph, power, moving_power(model));
   equations->stated_power = add(graph, power, model->forces.driven_power.node);
   equations->power = equations->stated_power;
-  const struct VariableList *works = &model->forces.works;
-  if (works->count > 0) equations->power = with_accelerations(model, equations, equations->power);
-  for (size_t i = 0; i < works->count; i++)
-    append_node(&equations->integrands, i == 0 ? equations->power : works->items[i].node);
+  if (work_of(model) != NULL) equations->power = with_accelerations(model, equations, equations->power);
   equations->kinetic = model->energies.kinetic_energy.node;
   equations->potential = stored_energy(model, model->energies.potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
+}
+
+/* Of the states behind the velocities. */
+static void derive_rates(const struct Model *model, struct Equations *equations) {
+  for (size_t i = 0; i < model->states.count; i++) {
+    const struct Variable *state = &model->states.items[i];
+    Node rate = state == work_of(model) ? equations->power : with_reactions(model, equations->reactions, state->rate);
+    append_node(&equations->rates, with_accelerations(model, equations, rate));
+  }
 }
 
 /* What an output tells: forces of reaction may decide on its branches, and have branches themselves. */
@@ -219,6 +225,7 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
     solve_for_accelerations(model, equations);
     derive_energies(model, equations, force);
     reactions_derive(model, equations->reactions);
+    derive_rates(model, equations);
     copy_outputs(model, equations);
   }
   if (graph_limit(graph) != NULL)

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "algebra/differentiate.h"
 #include "algebra/formula.h"
@@ -18,7 +19,7 @@ struct Expansion {
 };
 
 enum {
-  STATES_AND_INPUTS = 1u << COORDINATE | 1u << VELOCITY | 1u << INPUT,
+  STATES_AND_INPUTS = 1u << COORDINATE | 1u << VELOCITY | 1u << STATE | 1u << INPUT,
   EXPANDED = STATES_AND_INPUTS | 1u << ACCELERATION,
 };
 
@@ -47,8 +48,8 @@ static struct Expansion expansion_create(const struct Model *model) {
   struct Expansion expansion = {.graph = graph};
   expansion.values = own_symbols(graph);
   expansion.deviations = allocate(graph->symbol_count, sizeof(Node));
-  const struct VariableList *lists[] = {&model->coordinates, &model->velocities, &model->inputs};
-  for (size_t list = 0; list < 3; list++)
+  const struct VariableList *lists[] = {&model->coordinates, &model->velocities, &model->states, &model->inputs};
+  for (size_t list = 0; list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       set_value(&expansion, lists[list]->items[i].node, point_of(model, lists[list]->items[i].node));
   return expansion;
@@ -85,7 +86,7 @@ static Node expand_twice(const struct Expansion *expansion, Node node) {
   return result;
 }
 
-static void warn_without_equilibrium(const struct Model *model, const Node *accelerations,
+static void warn_without_equilibrium(const struct Model *model, const Node *accelerations, const Node *rates,
                                      const struct Diagnostics *diagnostics) {
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
   for (size_t i = 0; i < model->coordinates.count; i++) {
@@ -95,6 +96,10 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
       report_warning(diagnostics, 0, "the point is not an equilibrium: %s = %g, der(%s) = %g there",
                      model->velocities.items[i].name, velocity, model->velocities.items[i].name, acceleration);
   }
+  for (size_t i = 0; i < model->states.count; i++)
+    if (!(fabs(values[rates[i]]) < 1e-9))
+      report_warning(diagnostics, 0, "the point is not an equilibrium: der(%s) = %g there", model->states.items[i].name,
+                     values[rates[i]]);
 }
 
 /*
@@ -172,11 +177,14 @@ static bool can_be_linearized(const struct Model *model, const struct Equations 
   bool depends_on_time = false;
   for (size_t i = 0; i < equations->count; i++)
     depends_on_time |= graph_depends_on(model->graph, equations->residual[i], TIME);
+  for (size_t i = 0; i < equations->rates.count; i++)
+    depends_on_time |= graph_depends_on(model->graph, equations->rates.nodes[i], TIME);
   if (depends_on_time)
     report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
-  else if (equations->count == 0)
-    report_error(diagnostics, 0, "the system has no coordinates, and nothing to linearise; expected a <coordinate>");
-  return !depends_on_time && equations->count > 0;
+  else if (is_motionless(model))
+    report_error(diagnostics, 0,
+                 "the system has neither coordinates nor states, and nothing to linearise; expected a <coordinate> or a <state>");
+  return !depends_on_time && !is_motionless(model);
 }
 
 static bool is_singular(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics) {
@@ -191,12 +199,12 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
   return singular;
 }
 
-/* The expression with the linearised forces of constraints in place of their symbols. */
-static Node without_forces(const struct Model *model, const struct Equations *linear, Node node) {
+/* The expression with the linearised forces of constraints, from row first on, in place of their symbols. */
+static Node without_unknowns(const struct Model *model, const struct Equations *linear, size_t first, Node node) {
   struct Graph *graph = model->graph;
   Node *replacements = own_symbols(graph), result;
-  for (size_t j = 0; j < model->constraints.count; j++)
-    replacements[graph->vertices[model->unknowns.forces[j]].left] = linear->acceleration[linear->count + j];
+  for (size_t i = first; i < linear->count + model->constraints.count; i++)
+    replacements[graph->vertices[unknown_of_row(model, i)].left] = linear->acceleration[i];
   substitute(graph, &node, 1, replacements, &result);
   return result;
 }
@@ -233,11 +241,13 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->residual[i] = subtract(graph, model->unknowns.accelerations[i], linear->acceleration[i]);
   }
   for (size_t i = 0; i < model->reactions.count; i++)
-    linear->reactions[i] = without_forces(model, linear, expand(expansion, equations->reactions[i]));
+    linear->reactions[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->reactions[i]));
   for (size_t i = 0; i < model->outputs.count; i++)
-    linear->outputs[i] = without_forces(model, linear, expand(expansion, equations->outputs[i]));
+    linear->outputs[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->outputs[i]));
   for (size_t i = 0; i < model->mechanism.places.count; i++)
-    linear->places[i] = without_forces(model, linear, expand(expansion, equations->places[i]));
+    linear->places[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->places[i]));
+  for (size_t i = 0; i < equations->rates.count; i++)
+    append_node(&linear->rates, without_unknowns(model, linear, 0, expand(expansion, equations->rates.nodes[i])));
   linear->power = linear->stated_power = equations->power;
   linear->kinetic = expand_twice(expansion, equations->kinetic);
   linear->potential = expand_twice(expansion, equations->potential);
@@ -255,63 +265,71 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
                   !fulfils_constraints(&expansion, model, equations, diagnostics);
   if (!singular) {
     find_values(&expansion, model, equations, linear->inertia, linear->acceleration);
-    warn_without_equilibrium(model, linear->acceleration, diagnostics);
+    Node *values = allocate(row_count(linear), sizeof *values), *rates = allocate(equations->rates.count, sizeof *rates);
+    memcpy(values, linear->acceleration, row_count(linear) * sizeof *values);
     expand_all(&expansion, model, equations, linear);
+    for (size_t i = 0; i < equations->rates.count; i++) rates[i] = at_point(&expansion, linear->rates.nodes[i]);
+    warn_without_equilibrium(model, values, rates, diagnostics);
     linear->constraints->count = 0; /* the linear equations obey them by themselves */
   }
   return singular ? NULL : linear;
 }
 
-/* A row of A and B from the gradient of an acceleration; reports where it is not constant. */
-static void fill_row(const struct Model *model, const struct Equations *equations, size_t row,
-                     struct LinearSystem *system, struct Diagnostics *diagnostics) {
-  struct Graph *graph = model->graph;
-  size_t n = equations->count;
-  struct Gradient slopes = gradient_by_kinds(graph, equations->acceleration[row], STATES_AND_INPUTS);
-  Node *a = system->a + (n + row) * system->states, *b = system->b + (n + row) * system->inputs;
-  for (size_t k = 0; k < slopes.count; k++) {
-    const struct Symbol *symbol = graph_symbol_of(graph, slopes.symbols[k]);
-    Node slope = simplify_fraction(graph, slopes.values[k]);
-    Node *elements = symbol->kind == INPUT ? b : symbol->kind == VELOCITY ? a + n : a;
-    elements[symbol->index] = slope;
-    if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
-      report_error(diagnostics, model->solver.line,
-                   "the system is not linear: der(%s) is not linear in %s; expected a method other than 'exact'",
-                   model->velocities.items[row].name, symbol->name);
-  }
+/* Where A has the column of a state. */
+static size_t column_of(const struct Model *model, const struct Symbol *symbol) {
+  size_t n = model->coordinates.count, first = symbol->kind == VELOCITY ? n : symbol->kind == STATE ? 2 * n : 0;
+  return first + (size_t)symbol->index;
 }
 
-static void fill_accelerations(const struct Model *model, const struct Equations *equations,
-                               struct LinearSystem *system, struct Diagnostics *diagnostics) {
+/* Symbols at 0 but parameters and time. */
+static Node *zero_symbols(const struct Model *model) {
   struct Graph *graph = model->graph;
-  size_t n = equations->count;
   Node *zero = allocate(graph->symbol_count, sizeof *zero);
   for (size_t i = 0; i < model->parameters.count; i++)
     zero[graph->vertices[model->parameters.items[i].node].left] = model->parameters.items[i].node;
   zero[graph->vertices[model->time].left] = model->time;
-  for (size_t i = 0; i < n; i++) {
-    fill_row(model, equations, i, system, diagnostics);
-    substitute(graph, &equations->acceleration[i], 1, zero, &system->c[n + i]);
-    if (!graph_is_constant_in_time(graph, system->c[n + i]))
+  return zero;
+}
+
+/* A row of A, B and c from the derivative of the state of this name; reports where it is not linear with constant coefficients. */
+static void fill_row(const struct Model *model, Node derivative, size_t row, const char *name,
+                     struct LinearSystem *system, struct Diagnostics *diagnostics) {
+  struct Graph *graph = model->graph;
+  struct Gradient slopes = gradient_by_kinds(graph, derivative, STATES_AND_INPUTS);
+  Node *a = system->a + row * system->states, *b = system->b + row * system->inputs;
+  for (size_t k = 0; k < slopes.count; k++) {
+    const struct Symbol *symbol = graph_symbol_of(graph, slopes.symbols[k]);
+    Node slope = simplify_fraction(graph, slopes.values[k]);
+    if (symbol->kind == INPUT) b[symbol->index] = slope;
+    else a[column_of(model, symbol)] = slope;
+    if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
       report_error(diagnostics, model->solver.line,
-                   "the system is not linear with constant coefficients: der(%s) depends on time; expected a "
-                   "method other than 'exact'",
-                   model->velocities.items[i].name);
+                   "the system is not linear: der(%s) is not linear in %s; expected a method other than 'exact'", name,
+                   symbol->name);
   }
+  substitute(graph, &derivative, 1, zero_symbols(model), &system->c[row]);
+  if (!graph_is_constant_in_time(graph, system->c[row]))
+    report_error(diagnostics, model->solver.line,
+                 "the system is not linear with constant coefficients: der(%s) depends on time; expected a "
+                 "method other than 'exact'",
+                 name);
 }
 
 struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics) {
-  size_t n = equations->count;
+  size_t n = equations->count, states = 2 * n + equations->rates.count;
   struct LinearSystem *system = allocate(1, sizeof *system);
-  system->states = 2 * n;
+  system->states = states;
   system->inputs = model->inputs.count;
-  system->a = allocate(4 * n * n, sizeof(Node));
-  system->b = allocate(2 * n * system->inputs, sizeof(Node));
-  system->c = allocate(2 * n, sizeof(Node));
-  for (size_t i = 0; i < n; i++) system->a[i * 2 * n + n + i] = ONE;
+  system->a = allocate(states * states, sizeof(Node));
+  system->b = allocate(states * system->inputs, sizeof(Node));
+  system->c = allocate(states, sizeof(Node));
+  for (size_t i = 0; i < n; i++) system->a[i * states + n + i] = ONE;
   int errors = diagnostics->errors;
-  fill_accelerations(model, equations, system, diagnostics);
+  for (size_t i = 0; i < n; i++)
+    fill_row(model, equations->acceleration[i], n + i, model->velocities.items[i].name, system, diagnostics);
+  for (size_t i = 0; i < equations->rates.count; i++)
+    fill_row(model, equations->rates.nodes[i], 2 * n + i, model->states.items[i].name, system, diagnostics);
   return diagnostics->errors == errors ? system : NULL;
 }
 
@@ -332,17 +350,19 @@ static void print_matrix(const struct Model *model, const char *name, const Node
   }
 }
 
-static void print_names(const char *what, const struct VariableList *list, bool more) {
-  printf("%s", what);
-  for (size_t i = 0; i < list->count; i++) printf("%s%s", i > 0 ? ", " : "", list->items[i].name);
-  printf(more ? ", " : "\n");
+static void print_names(const char *what, const struct VariableList *const *lists, size_t count) {
+  const char *separator = what;
+  for (size_t k = 0; k < count; k++)
+    for (size_t i = 0; i < lists[k]->count; i++, separator = ", ") printf("%s%s", separator, lists[k]->items[i].name);
+  printf("\n");
 }
 
 void linear_system_print(const struct Model *model, const struct LinearSystem *system) {
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
-  print_names("states: ", &model->coordinates, true);
-  print_names("", &model->velocities, false);
-  if (system->inputs > 0) print_names("inputs: ", &model->inputs, false);
+  const struct VariableList *const states[] = {&model->coordinates, &model->velocities, &model->states};
+  const struct VariableList *const inputs[] = {&model->inputs};
+  print_names("states: ", states, 3);
+  if (system->inputs > 0) print_names("inputs: ", inputs, 1);
   print_matrix(model, "A", system->a, system->states, system->states, NULL);
   if (system->inputs > 0) print_matrix(model, "B", system->b, system->states, system->inputs, NULL);
   if (model->parameters.count > 0) printf("at");

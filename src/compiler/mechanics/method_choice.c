@@ -13,7 +13,7 @@ static bool may_be_stiff(const struct Model *model, const struct Equations *equa
 }
 
 const struct Method *method_of(const struct Model *model, const struct Equations *equations) {
-  if (model->coordinates.count == 0) return NULL;
+  if (is_motionless(model)) return NULL;
   if (model->solver.method != NULL) return model->solver.method;
   if (model->linearized) return method_named("exact");
   const char *kink = kink_without_series_of(model->graph, equations->residual, row_count(equations));

@@ -15,6 +15,7 @@ static struct NodeList roots_of(const struct Model *model, const struct Equation
   struct NodeList roots = {0};
   for (size_t i = 0; i < row_count(equations); i++) append_node(&roots, equations->residual[i]);
   append_node(&roots, equations->power);
+  append_nodes(&roots, equations->rates.nodes, equations->rates.count);
   for (size_t i = 0; i < model->constraints.count; i++) append_node(&roots, model->constraints.items[i].node);
   for (size_t i = 0; i < switches->contact_count; i++) {
     append_node(&roots, switches->contacts[i].gap);
@@ -290,7 +291,9 @@ static void append_values(const struct Model *model, const struct Equations *equ
                           struct NodeList *list) {
   size_t count = energy_place(counts);
   Node *values = allocate(count, sizeof *values);
-  const Node *seeds = time_seeds(model, true);
+  Node *seeds = time_seeds(model, true);
+  for (size_t i = 0; i < equations->rates.count; i++)
+    seeds[model->graph->vertices[model->states.items[i].node].left] = equations->rates.nodes[i];
   fill_branches(model, switching, counts, seeds, values);
   fill_contacts(model, counts, seeds, values);
   fill_frictions(model, counts, seeds, values);
@@ -324,7 +327,7 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
 }
 
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
-  if (!has_switches(&model->switches) || model->coordinates.count == 0) return NULL;
+  if (!has_switches(&model->switches) || is_motionless(model)) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
   struct NodeList roots = roots_of(model, equations), watched = {0}, values = {0};
   find_energies(model, equations, switching);

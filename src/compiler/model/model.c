@@ -42,14 +42,24 @@ bool start_follows(const struct Model *model, const struct Variable *variable) {
 
 double *start_values(const struct Model *model) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
-                                              &model->velocities};
+                                              &model->velocities, &model->states};
   double *values = allocate(model->graph->symbol_count, sizeof *values);
   values[model->graph->vertices[model->time].left] =
       isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
-  for (size_t list = 0; list < 4; list++)
+  for (size_t list = 0; list < 5; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
   return values;
+}
+
+const struct Variable *work_of(const struct Model *model) {
+  for (size_t i = 0; i < model->states.count; i++)
+    if (model->states.items[i].is_work) return &model->states.items[i];
+  return NULL;
+}
+
+bool is_motionless(const struct Model *model) {
+  return model->coordinates.count + model->states.count == 0;
 }
 
 bool has_fixed_coordinates(const struct Model *model) {

@@ -16,12 +16,14 @@ struct Variable {
   enum VariableType type;
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN where none was given */
-  Node start_expression;                   /* of a coordinate or velocity, whose value is start; ZERO of others */
+  Node start_expression;                   /* of a state, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
+  Node rate;                               /* of a <state>: its time derivative, which may hold accelerations and forces */
   char *force_name;                        /* of a constraint, where its force is not NAME.force; else NULL */
   bool is_of_velocities;                   /* of a constraint, whose force times it is a power then, else an energy */
   Node force_share;                        /* of a joint's constraint: what of its force has this name; ZERO for all */
   bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
+  bool is_work;                            /* of a state: that of <work/>, whose rate is the power of the forces */
   long line;
 };
 
@@ -163,8 +165,6 @@ struct Forces {
   size_t torque_count;
   struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
   bool any;                     /* some force, dissipation or drive was given */
-  /* Where <work/> asks for it, nonConservativeWork, whose rate is the power, and its derivatives, whose rates are the nodes. */
-  struct VariableList works;
 };
 
 /* The symbols that the equations of motion are solved for. */
@@ -192,6 +192,7 @@ struct Model {
   struct Graph *graph;
   Node time;
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
+  struct VariableList states;      /* of first order, behind the velocities: of <state> and of <work/> */
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
   size_t variation_count;          /* of the coordinates, the last ones: derivatives of the others, see variations.h */
@@ -230,6 +231,12 @@ bool start_follows(const struct Model *model, const struct Variable *variable);
 
 /* The start values of all symbols, in the order of the graph's; accelerations are 0. */
 double *start_values(const struct Model *model);
+
+/* The state of <work/>; NULL where none was asked for. */
+const struct Variable *work_of(const struct Model *model);
+
+/* True if nothing moves: there are neither coordinates nor states. */
+bool is_motionless(const struct Model *model);
 
 /* Whether some coordinate is. */
 bool has_fixed_coordinates(const struct Model *model);

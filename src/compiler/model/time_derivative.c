@@ -8,6 +8,8 @@ Node *time_seeds(const struct Model *model, bool with_accelerations) {
   seeds[graph->vertices[model->time].left] = ONE;
   for (size_t i = 0; i < model->inputs.count; i++)
     seeds[graph->vertices[model->inputs.items[i].node].left] = model->given.input_rates[i];
+  for (size_t i = 0; i < model->states.count; i++)
+    seeds[graph->vertices[model->states.items[i].node].left] = model->states.items[i].rate;
   for (size_t i = 0; i < model->coordinates.count; i++) {
     Node *rate = &seeds[graph->vertices[model->velocities.items[i].node].left];
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;

@@ -26,10 +26,11 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   struct Routine *routine = values_begin(values);
   size_t n = program->equations->count;
   append_accelerations(values, program->equations, &program->blocks, false);
-  const struct NodeList *integrands = &program->equations->integrands;
-  values_compute(values, integrands->nodes, integrands->count, false);
+  const struct NodeList *rates = &program->equations->rates;
+  hold_unknowns(values, program->equations, &program->blocks, program->expressions->unknowns);
+  values_compute(values, rates->nodes, rates->count, false);
   for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_STATE, n + i));
-  for (size_t i = 0; i < integrands->count; i++) values_copy(values, target_place(2 * n + i), integrands->nodes[i]);
+  for (size_t i = 0; i < rates->count; i++) values_copy(values, target_place(2 * n + i), rates->nodes[i]);
   return routine;
 }
 
@@ -64,16 +65,20 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
 
 /*
  * The accelerations along the direction of the seed, and of the forces of constraints as many as count reaches, to the
- * targets from first on.
+ * targets from first on. further: nodes that are computed afterwards, and may hold accelerations.
  */
-static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count) {
+static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count,
+                         const Node *further, size_t further_count) {
   const struct Equations *equations = program->equations;
   const Node *along = program->expressions->along;
   size_t row_total = equations->explicit_form ? equations->count : row_count(equations);
   struct NodeList needed = {0};
   for (size_t i = 0; i < row_total; i++)
     if (i < count || (!equations->explicit_form && is_looped(equations, i))) append_node(&needed, along[i]);
-  append_needed_accelerations(program, values, needed.nodes, needed.count);
+  struct NodeList all = {0};
+  append_nodes(&all, needed.nodes, needed.count);
+  append_nodes(&all, further, further_count);
+  append_needed_accelerations(program, values, all.nodes, all.count);
   values_compute(values, needed.nodes, needed.count, false);
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
   for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
@@ -86,12 +91,13 @@ static struct Routine *directional_routine(const struct Program *program, struct
   struct Routine *routine = values_begin(values);
   const struct Expressions *expressions = program->expressions;
   size_t n = program->equations->count;
-  append_along(program, values, n, n);
-  size_t integrands = program->equations->integrands.count;
-  values_compute(values, expressions->integrands_along, integrands, false);
+  size_t rates = program->equations->rates.count;
+  append_along(program, values, n, n, expressions->rates_along, rates);
+  hold_solutions(values, &program->blocks, expressions->unknowns_along);
+  values_compute(values, expressions->rates_along, rates, false);
   for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_SEED_STATE, n + i));
-  for (size_t i = 0; i < integrands; i++)
-    values_copy(values, target_place(2 * n + i), expressions->integrands_along[i]);
+  for (size_t i = 0; i < rates; i++)
+    values_copy(values, target_place(2 * n + i), expressions->rates_along[i]);
   return routine;
 }
 
@@ -182,7 +188,7 @@ static struct Routine *linear_routine(const struct Program *program, struct Valu
 static struct Routine *starts_routine(const struct Program *program, struct Values *values, const Node *nodes) {
   const struct Interface *interface = program->interface;
   struct Routine *routine = values_begin(values);
-  size_t count = 2 * program->equations->count;
+  size_t count = interface->state_count;
   values_compute(values, nodes, count, true);
   for (size_t i = 0; i < count; i++)
     if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
@@ -208,7 +214,7 @@ static struct Routine *accelerations_routine(const struct Program *program, stru
 
 static struct Routine *accelerations_along_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
-  append_along(program, values, 0, row_count(program->equations));
+  append_along(program, values, 0, row_count(program->equations), NULL, 0);
   if (program->blocks.count > 0) append_least_forces_along(program, values);
   return routine;
 }
@@ -237,12 +243,12 @@ static struct Routine *switching_values_routine(const struct Program *program, s
 
 static bool starts_follow(const struct Program *program) {
   bool any = false;
-  for (size_t i = 0; i < 2 * program->equations->count; i++) any |= program->expressions->initial[i] != ZERO;
+  for (size_t i = 0; i < program->interface->state_count; i++) any |= program->expressions->initial[i] != ZERO;
   return any;
 }
 
 static bool moves(const struct Program *program) {
-  return program->equations->count > 0;
+  return program->interface->state_count > 0;
 }
 
 static bool has_weighted_gradient(const struct Program *program) {

@@ -9,54 +9,40 @@
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
-  if (coordinates == 0 && model->outputs.count == 0 && reader->diagnostics->errors == 0)
+  const struct Variable *work = work_of(model);
+  if (is_motionless(model) && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0,
-                 "the system has neither coordinates nor outputs; expected a <coordinate> or an <output>");
+                 "the system has neither coordinates, nor states, nor outputs; expected a <coordinate>, a <state> or an <output>");
   if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
                            model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
-  if (coordinates == 0 && reader->has_solver)
+  if (is_motionless(model) && reader->has_solver)
     report_error(reader->diagnostics, model->solver.line,
-                 "a system without coordinates has nothing to solve; expected no <solver>");
-  if (model->forces.works.count > 0 && !model->forces.any)
-    report_error(reader->diagnostics, model->forces.works.items[0].line,
+                 "a system without coordinates and states has nothing to solve; expected no <solver>");
+  if (work != NULL && !model->forces.any)
+    report_error(reader->diagnostics, work->line,
                  "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && model->forces.works.count > 0 &&
+  if (model->constraints.count > 0 && work != NULL &&
       (model->given.inputs_move || model->given.drive_count > 0))
-    report_error(reader->diagnostics, model->forces.works.items[0].line,
+    report_error(reader->diagnostics, work->line,
                  "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
                  model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
-  if (model->forces.works.count > 0 && model->given.constraint != NULL)
-    report_error(reader->diagnostics, model->forces.works.items[0].line,
+  if (work != NULL && model->given.constraint != NULL)
+    report_error(reader->diagnostics, work->line,
                  "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
                  "<work/>, or a coordinate that is moved so in place of the constraint",
                  model->given.constraint->name);
-}
-
-/* A force of a constraint is found with the accelerations, which the power may not rest on. */
-static void check_work_of_frictions(const struct Reader *reader) {
-  const struct Model *model = reader->model;
-  for (size_t i = 0; i < model->switches.friction_count && model->forces.works.count > 0; i++) {
-    const struct Friction *friction = &model->switches.frictions[i];
-    bool follows = graph_depends_on(model->graph, friction->sliding, ACCELERATION) ||
-                   graph_depends_on(model->graph, friction->sliding_back, ACCELERATION);
-    if (!follows) continue;
-    report_error(reader->diagnostics, model->forces.works.items[0].line,
-                 "<work/> beside the friction '%s', which follows from the force of a contact or constraint; expected "
-                 "no <work/>: totalEnergy tells what the friction takes",
-                 model->constraints.items[friction->constraint].name);
-    return;
-  }
 }
 
 /* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */
 static void warn_without_unit(const struct Reader *reader) {
   const struct Model *model = reader->model;
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
-                                              &model->displacements};
-  for (size_t list = 0; reader->scope->checks_units && list < 4; list++)
+                                              &model->displacements, &model->states};
+  for (size_t list = 0; reader->scope->checks_units && list < 5; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL &&
+          !lists[list]->items[i].is_work &&
           !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that units are not checked where it is used; expected one, or "
@@ -189,7 +175,6 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
 
 void check_system(struct Reader *reader) {
   check_content(reader);
-  check_work_of_frictions(reader);
   if (reader->diagnostics->errors > 0) return;
   warn_without_unit(reader);
   warn_at_start(reader);

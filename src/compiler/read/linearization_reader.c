@@ -15,7 +15,20 @@ char *linearized_path(xmlNodePtr root, const char *path) {
   return path_beside_file(path, of);
 }
 
+/* Removes the state of <work/>: at a point of rest the linear power of the forces is 0. */
+static void remove_work(struct Model *model) {
+  struct Graph *graph = model->graph;
+  size_t kept = 0;
+  for (size_t i = 0; i < model->states.count; i++) {
+    if (model->states.items[i].is_work) continue;
+    graph->symbols[graph->vertices[model->states.items[i].node].left].index = (int)kept;
+    model->states.items[kept++] = model->states.items[i];
+  }
+  model->states.count = kept;
+}
+
 static void begin_point(struct Model *model) {
+  remove_work(model);
   model->linearized = true;
   model->point.values = allocate(model->graph->symbol_count, sizeof *model->point.values);
   model->point.given = allocate(model->graph->symbol_count, sizeof *model->point.given);
@@ -26,10 +39,10 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   const struct Quantity *quantity = scope_find(scope, name);
   bool is_symbol = quantity != NULL && model->graph->vertices[quantity->node].operation == SYMBOL;
   enum SymbolKind kind = is_symbol ? graph_symbol_of(model->graph, quantity->node)->kind : PARAMETER;
-  if (kind != COORDINATE && kind != VELOCITY && kind != INPUT) {
+  if (kind != COORDINATE && kind != VELOCITY && kind != STATE && kind != INPUT) {
     const char *similar = quantity == NULL ? scope_similar_name(scope, name) : NULL;
     if (similar != NULL) report_error(diagnostics, line, "the point names '%s'; did you mean '%s'?", name, similar);
-    else report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity or an input", name);
+    else report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity, a state or an input", name);
     return;
   }
   Node symbol = model->graph->vertices[quantity->node].left;

@@ -9,10 +9,10 @@
 /* The variable of this name by which can be differentiated; NULL for none. */
 static const struct Variable *find(const struct Model *model, const char *name) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
-                                              &model->velocities};
-  for (size_t k = 0; k < 4; k++)
+                                              &model->velocities, &model->states};
+  for (size_t k = 0; k < 5; k++)
     for (size_t i = 0; i < lists[k]->count; i++)
-      if (lists[k]->items[i].type == TYPE_REAL && strcmp(lists[k]->items[i].name, name) == 0)
+      if (lists[k]->items[i].type == TYPE_REAL && !lists[k]->items[i].is_work && strcmp(lists[k]->items[i].name, name) == 0)
         return &lists[k]->items[i];
   return NULL;
 }
@@ -43,8 +43,20 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   model->given.drives[place] = (struct Drive){.given = true, .reaction = reaction};
 }
 
-/* The direction of the motion of neighbours: one node for each symbol; first: of the coordinates for this value. */
-static Node *direction_of(const struct Model *model, const struct Variable *by, size_t count, size_t first) {
+/* The derivative of a state behind the velocities, whose rate is to follow. */
+static void append_state(struct Model *model, size_t of, const struct Variable *by) {
+  struct Variable state = derivative_of(model, &model->states.items[of], by);
+  state.is_work = model->states.items[of].is_work;
+  state.node = graph_symbol(model->graph, STATE, (int)model->states.count, state.name);
+  append_variable(&model->states, state);
+}
+
+/*
+ * The direction of the motion of neighbours: one node for each symbol. first, first_state: of the coordinates and states for this
+ * value, which follow the count and state_count that were there before.
+ */
+static Node *direction_of(const struct Model *model, const struct Variable *by, size_t count, size_t first,
+                          size_t state_count, size_t first_state) {
   const struct Graph *graph = model->graph;
   Node *seeds = allocate(graph->symbol_count, sizeof *seeds);
   seeds[graph->vertices[by->node].left] = ONE;
@@ -53,6 +65,8 @@ static Node *direction_of(const struct Model *model, const struct Variable *by, 
     seeds[graph->vertices[model->velocities.items[i].node].left] = model->velocities.items[first + i].node;
     seeds[graph->vertices[model->unknowns.accelerations[i]].left] = model->unknowns.accelerations[first + i];
   }
+  for (size_t i = 0; i < state_count; i++)
+    seeds[graph->vertices[model->states.items[i].node].left] = model->states.items[first_state + i].node;
   return seeds;
 }
 
@@ -68,14 +82,6 @@ static void append_outputs(struct Model *model, const struct Equations *equation
   }
 }
 
-/* Its rate is the derivative of the power. */
-static void append_work(struct Model *model, const struct Equations *equations, const struct Variable *by,
-                        const Node *seeds) {
-  if (equations->integrands.count == 0) return;
-  struct Variable work = derivative_of(model, &model->forces.works.items[0], by);
-  derivative_along(model->graph, &equations->power, 1, seeds, &work.node);
-  append_variable(&model->forces.works, work);
-}
 
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
   if (equations->explicit_form) return "linearizations";
@@ -109,14 +115,18 @@ static void make_room_for(struct Model *model, size_t total) {
 static void add_variation(struct Model *model, const struct Equations *equations, struct Variable by, size_t outputs,
                           size_t reaction) {
   size_t count = equations->count, first = model->coordinates.count, rows = row_count(equations);
+  size_t states = equations->rates.count, first_state = model->states.count;
   for (size_t i = 0; i < count; i++) append_coordinate(model, i, &by, reaction);
-  Node *seeds = direction_of(model, &by, count, first), *along = allocate(rows, sizeof *along);
+  for (size_t i = 0; i < states; i++) append_state(model, i, &by);
+  Node *seeds = direction_of(model, &by, count, first, states, first_state), *along = allocate(rows, sizeof *along);
   derivative_along(model->graph, equations->acceleration, rows, seeds, along);
   for (size_t i = 0; i < count; i++) model->given.drives[first + i].acceleration = along[i];
   for (size_t j = count; j < rows; j++)
     seeds[model->graph->vertices[model->unknowns.forces[j - count]].left] = along[j];
   append_outputs(model, equations, outputs, &by, seeds);
-  append_work(model, equations, &by, seeds);
+  Node *rates_along = allocate(states, sizeof *rates_along);
+  derivative_along(model->graph, equations->rates.nodes, states, seeds, rates_along);
+  for (size_t i = 0; i < states; i++) model->states.items[first_state + i].rate = rates_along[i];
 }
 
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
@@ -125,7 +135,7 @@ void add_variations(struct Model *model, const struct Equations *equations, cons
   if (reason != NULL) report_error(diagnostics, 0, "--along cannot follow %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
-      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate or a velocity", names[k]);
+      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate, a velocity or a state", names[k]);
     for (size_t j = 0; j < k; j++)
       if (strcmp(names[j], names[k]) == 0) report_error(diagnostics, 0, "--along %s: expected it once", names[k]);
   }

@@ -73,7 +73,7 @@ static void write_nominals(FILE *file, const struct Lagrangian *facts) {
 static void write_patterns(FILE *file, const struct Lagrangian *facts) {
   const struct Sparsity *pattern = &facts->implicit.pattern;
   const struct LuPattern *lu = &facts->implicit.lu_pattern;
-  size_t n = facts->coordinate_count;
+  size_t n = facts->state_count - facts->coordinate_count;
   if (pattern->start == NULL) return;
   write_whole_numbers(file, "jacobian_start", pattern->start, facts->state_count + 1);
   write_whole_numbers(file, "jacobian_row", pattern->row, pattern->count);

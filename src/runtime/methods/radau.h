@@ -27,11 +27,14 @@ struct Complex {
 
 /*
  * The linear systems of a step, (mu - J) x = r for the real or complex mu = eigenvalue / step, J = d f / d state. As
- * q' = v, each is one for q alone: (mu^2 - mu D - K) dq = r_v + (mu - D) r_q, K = da/dq, D = da/dv; then dv = mu dq - r_q.
+ * q' = v, each is one for q and the states z behind the velocities alone, with dv = mu dq - r_q:
+ *
+ *     (mu^2 - mu D - K) dq -        E  dz = r_v + (mu - D) r_q        K, D, E: of the accelerations by q, v, z
+ *        -(mu G + F)    dq + (mu - H) dz = r_z -       G  r_q         F, G, H: of the rates by q, v, z
  */
 struct RadauSystems {
   double *values;                        /* of the Jacobian, in the order of lagrangian.implicit.pattern */
-  size_t *place, *diagonal;              /* of K and D's elements in the matrices, in the same order; of the diagonal */
+  size_t *place, *diagonal;              /* of J's elements in the matrices, in the same order; of the diagonal */
   struct Complex mu[SYSTEM_LIMIT];       /* the first one is real, and so is its matrix */
   double *factors[SYSTEM_LIMIT];         /* by lagrangian.implicit.lu */
   struct Complex *right_side, *solution; /* workspace, states */

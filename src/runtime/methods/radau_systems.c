@@ -10,31 +10,28 @@ static size_t width_of(int j) {
 }
 
 size_t radau_systems_size(void) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
+  size_t rows = lu_rows(), states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   size_t factors = lagrangian.implicit.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.implicit.lu->size(COMPLEX);
-  return count + (count + n) + factors + 2 * COMPLEX * states + 2 * COMPLEX * n;
+  return count + (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
 }
 
-/* Where the elements of K and D stand in a matrix. */
+/* Where the elements of J stand in a matrix: those by velocities where those by their coordinates do. */
 static void find_places(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
-  for (size_t i = 0; i < n; i++) systems->diagonal[i] = lagrangian.implicit.lu->place(i, i);
-  for (size_t column = 0; column < 2 * n; column++) {
-    for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
-      size_t row = (size_t)pattern->row[e];
-      if (row >= n && row < 2 * n)
-        systems->place[e] = lagrangian.implicit.lu->place(row - n, column < n ? column : column - n);
-    }
-  }
+  for (size_t i = 0; i < lu_rows(); i++) systems->diagonal[i] = lagrangian.implicit.lu->place(i, i);
+  for (size_t column = 0; column < lagrangian.state_count; column++)
+    for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
+      if ((size_t)pattern->row[e] >= n)
+        systems->place[e] = lagrangian.implicit.lu->place((size_t)pattern->row[e] - n, column < n ? column : column - n);
 }
 
 void radau_systems_place(struct RadauSystems *systems, double *memory) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
+  size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   systems->values = memory;
   systems->place = (size_t *)(memory + count);
   systems->diagonal = (size_t *)(memory + 2 * count);
-  memory += 2 * count + n;
+  memory += 2 * count + lu_rows();
   for (int j = 0; j < SYSTEM_LIMIT; j++) {
     systems->factors[j] = memory;
     memory += lagrangian.implicit.lu->size(width_of(j));
@@ -50,17 +47,20 @@ bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *syst
          are_finite(systems->values, lagrangian.implicit.pattern.count);
 }
 
-/* mu^2 - mu D - K */
+/* The matrix of the system, see radau.h. */
 static void fill(const struct RadauSystems *systems, size_t width, const double *mu, double *matrix) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
   memset(matrix, 0, lagrangian.implicit.lu->size(width) * sizeof *matrix);
   for (size_t i = 0; i < n; i++) number_add_product(width, matrix + width * systems->diagonal[i], mu, mu);
-  for (size_t column = 0; column < 2 * n; column++) {
+  for (size_t i = n; i < lu_rows(); i++)
+    for (size_t k = 0; k < width; k++) matrix[width * systems->diagonal[i] + k] += mu[k];
+  for (size_t column = 0; column < lagrangian.state_count; column++) {
+    bool is_velocity = column >= n && column < 2 * n;
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
-      if ((size_t)pattern->row[e] < n || (size_t)pattern->row[e] >= 2 * n) continue;
+      if ((size_t)pattern->row[e] < n) continue;
       double *element = matrix + width * systems->place[e];
-      if (column < n) element[0] -= systems->values[e];
+      if (!is_velocity) element[0] -= systems->values[e];
       else
         for (size_t i = 0; i < width; i++) element[i] -= systems->values[e] * mu[i];
     }
@@ -76,16 +76,16 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
   return true;
 }
 
-/* sum += the product of the Jacobian's elements in rows first .. end - 1 with x, columns from .. to - 1 */
-static void add_product(const struct RadauSystems *systems, size_t width, size_t from, size_t to, size_t first,
-                        size_t end, const double *x, double sign, double *sum) {
+/* sum -= the product of the Jacobian's elements by the velocities with x, in the rows behind the coordinates. */
+static void subtract_velocities(const struct RadauSystems *systems, size_t width, const double *x, double *sum) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
-  for (size_t column = from; column < to; column++) {
+  size_t n = lagrangian.coordinate_count;
+  for (size_t column = n; column < 2 * n; column++) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
-      if (row < first || row >= end) continue;
+      if (row < n) continue;
       for (size_t i = 0; i < width; i++)
-        sum[width * (row - first) + i] += sign * systems->values[e] * x[width * (column - from) + i];
+        sum[width * (row - n) + i] -= systems->values[e] * x[width * (column - n) + i];
     }
   }
 }
@@ -93,21 +93,16 @@ static void add_product(const struct RadauSystems *systems, size_t width, size_t
 /* solution = the system's solution for right, both of numbers of this width. */
 static void solve_system(const struct RadauSystems *systems, int j, size_t width, const double *right,
                          double *solution) {
-  size_t n = lagrangian.coordinate_count, states = lagrangian.state_count;
+  size_t n = lagrangian.coordinate_count, rows = lu_rows();
   const double *mu = &systems->mu[j].real;
-  memcpy(solution, right + width * n, width * n * sizeof *solution);
+  memcpy(solution, right + width * n, width * rows * sizeof *solution);
   for (size_t i = 0; i < n; i++) number_add_product(width, solution + width * i, mu, right + width * i);
-  add_product(systems, width, n, 2 * n, n, 2 * n, right, -1.0, solution);
+  subtract_velocities(systems, width, right, solution);
   lagrangian.implicit.lu->solve(width, systems->factors[j], solution, systems->work);
-  double *velocity = solution + width * n, *work = velocity + width * n;
+  double *velocity = solution + width * n;
+  memmove(velocity + width * n, velocity, width * (rows - n) * sizeof *velocity);
   for (size_t i = 0; i < width * n; i++) velocity[i] = -right[i];
   for (size_t i = 0; i < n; i++) number_add_product(width, velocity + width * i, mu, solution + width * i);
-  if (states == 2 * n) return;
-  double step[COMPLEX] = {mu[0], mu[1]};
-  memcpy(work, right + width * 2 * n, width * sizeof *work);
-  add_product(systems, width, 0, 2 * n, 2 * n, states, solution, 1.0, work);
-  number_invert(width, step);
-  number_multiply(width, work, step);
 }
 
 void radau_systems_solve(struct RadauSystems *systems, int j) {

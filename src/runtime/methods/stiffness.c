@@ -77,29 +77,44 @@ double stiffness_promise(const struct Taylor *taylor, int order, double toleranc
   return fmin(multiple_for_fast(fast, order, tolerance), multiple_for_slow(taylor, fast, order, tolerance));
 }
 
-/*
- * The largest sum over a row of the elements in columns from .. from + n - 1, of the accelerations in units of the
- * coordinates' scales.
- */
-static double norm_of_block(const double *jacobian, size_t from, double *sum) {
-  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
+/* Columns or rows of the Jacobian: from first to end - 1. */
+struct Range {
+  size_t first, end;
+};
+
+/* Accelerations count in units of their coordinates' scales, and so do velocities. */
+static double scale_of_state(size_t state) {
   size_t n = lagrangian.coordinate_count;
-  const double *scale = lagrangian.steps.nominal;
-  for (size_t i = 0; i < n; i++) sum[i] = 0.0;
-  for (size_t j = 0; j < n; j++) {
-    for (int e = pattern->start[from + j]; e < pattern->start[from + j + 1]; e++) {
+  return lagrangian.steps.nominal[state >= n && state < 2 * n ? state - n : state];
+}
+
+/* The largest sum over one of the rows of the elements in the columns. */
+static double norm_of_block(const double *jacobian, struct Range rows, struct Range columns, double *sum) {
+  const struct Sparsity *pattern = &lagrangian.implicit.pattern;
+  for (size_t i = rows.first; i < rows.end; i++) sum[i - rows.first] = 0.0;
+  for (size_t j = columns.first; j < columns.end; j++) {
+    for (int e = pattern->start[j]; e < pattern->start[j + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
-      if (row >= n && row < 2 * n) sum[row - n] += fabs(jacobian[e]) * scale[j] / scale[row - n];
+      if (row >= rows.first && row < rows.end)
+        sum[row - rows.first] += fabs(jacobian[e]) * scale_of_state(j) / scale_of_state(row);
     }
   }
   double largest = 0.0;
-  for (size_t i = 0; i < n; i++) largest = fmax(largest, sum[i]);
+  for (size_t i = rows.first; i < rows.end; i++) largest = fmax(largest, sum[i - rows.first]);
   return largest;
 }
 
-/* The modes are roots of rate^2 = damping rate + stiffness. */
+/*
+ * The modes of the coordinates are roots of rate^2 = damping rate + stiffness. States behind the velocities add their own rates, and those
+ * of the circles from the accelerations by them and back by velocities or coordinates.
+ */
 double stiffness_rate(const double *jacobian, double *work) {
   size_t n = lagrangian.coordinate_count;
-  double stiffness = norm_of_block(jacobian, 0, work), damping = norm_of_block(jacobian, n, work);
-  return 0.5 * (damping + sqrt(damping * damping + 4.0 * stiffness));
+  const struct Range q = {0, n}, v = {n, 2 * n}, z = {2 * n, lagrangian.state_count};
+  double stiffness = norm_of_block(jacobian, v, q, work), damping = norm_of_block(jacobian, v, v, work);
+  double rate = 0.5 * (damping + sqrt(damping * damping + 4.0 * stiffness));
+  if (z.first == z.end) return rate;
+  double drive = norm_of_block(jacobian, v, z, work);
+  return rate + norm_of_block(jacobian, z, z, work) + sqrt(drive * norm_of_block(jacobian, z, v, work)) +
+         cbrt(drive * norm_of_block(jacobian, z, q, work));
 }

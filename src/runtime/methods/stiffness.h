@@ -12,7 +12,7 @@ double stiffness_promise(const struct Taylor *taylor, int order, double toleranc
 
 /*
  * A bound of the fastest rate of the system, in 1/s, from the elements of its Jacobian as lagrangian.implicit.jacobian() gives
- * them; coordinate_count numbers of workspace.
+ * them; state_count numbers of workspace.
  */
 double stiffness_rate(const double *jacobian, double *work);
 

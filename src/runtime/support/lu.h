@@ -1,5 +1,5 @@
 /*
- * Matrices with a row and a column for each coordinate, factored as L U, for implicit methods: of real or complex
+ * Matrices with a row and a column for each velocity and each state behind them, factored as L U, for implicit methods: of real or complex
  * numbers (number.h). lagc chooses what is cheaper for a system, lagrangian.implicit.lu, and an FMU links that alone.
  */
 #ifndef LU_H
@@ -7,6 +7,10 @@
 
 #include "lagrangian.h"
 #include "support/number.h"
+
+static inline size_t lu_rows(void) {
+  return lagrangian.state_count - lagrangian.coordinate_count;
+}
 
 struct Lu {
   /* Doubles that a matrix takes, and its factors. */

@@ -4,12 +4,12 @@
 
 /* The pivots follow the n x n numbers. */
 static size_t dense_size(size_t width) {
-  size_t n = lagrangian.coordinate_count;
+  size_t n = lu_rows();
   return width * n * n + n;
 }
 
 static size_t dense_place(size_t row, size_t column) {
-  return row * lagrangian.coordinate_count + column;
+  return row * lu_rows() + column;
 }
 
 /* sum -= a b for count numbers of sum and b */
@@ -39,7 +39,7 @@ static void swap(size_t count, double *a, double *b) {
 }
 
 static bool dense_factor(size_t width, double *matrix, double *work) {
-  size_t n = lagrangian.coordinate_count, *pivots = (size_t *)(matrix + width * n * n);
+  size_t n = lu_rows(), *pivots = (size_t *)(matrix + width * n * n);
   (void)work;
   for (size_t k = 0; k < n; k++) {
     double *row = matrix + width * k * n, *pivot = row + width * k;
@@ -59,7 +59,7 @@ static bool dense_factor(size_t width, double *matrix, double *work) {
 }
 
 static void dense_solve(size_t width, const double *factors, double *x, double *work) {
-  size_t n = lagrangian.coordinate_count;
+  size_t n = lu_rows();
   const size_t *pivots = (const size_t *)(factors + width * n * n);
   (void)work;
   for (size_t k = 0; k < n; k++) swap(width, x + width * k, x + width * pivots[k]);

@@ -7,7 +7,7 @@ static const double smallest_pivot_share = 1e-14;
 
 /* L by rows with the inverse pivots, then U by columns: the same pattern, whose places for the diagonal stay empty. */
 static size_t element_count(void) {
-  return (size_t)lagrangian.implicit.lu_pattern.start[lagrangian.coordinate_count];
+  return (size_t)lagrangian.implicit.lu_pattern.start[lu_rows()];
 }
 
 static size_t sparse_size(size_t width) {
@@ -67,7 +67,7 @@ static bool factor_row(size_t width, size_t i, double *l, double *u, double *row
 }
 
 static bool sparse_factor(size_t width, double *matrix, double *work) {
-  size_t n = lagrangian.coordinate_count;
+  size_t n = lu_rows();
   memset(work, 0, 2 * width * n * sizeof *work);
   for (size_t i = 0; i < n; i++)
     if (!factor_row(width, i, matrix, matrix + width * element_count(), work, work + width * n)) return false;
@@ -76,7 +76,7 @@ static bool sparse_factor(size_t width, double *matrix, double *work) {
 
 static void sparse_solve(size_t width, const double *factors, double *x, double *work) {
   const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
-  size_t n = lagrangian.coordinate_count;
+  size_t n = lu_rows();
   const double *u = factors + width * element_count();
   for (size_t i = 0; i < n; i++) copy_number(width, work + width * (size_t)pattern->place[i], x + width * i);
   for (size_t i = 0; i < n; i++)

@@ -105,6 +105,11 @@ void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
   }
 }
 
+/* True if the forces of the block's constraints are those of least norm where they are not determined. */
+static bool has_least_forces(const struct InertiaBlock *block) {
+  return block->constraint_count > 0 && block->force_count == 0;
+}
+
 /* Factors a large block and solves it for its accelerations. */
 static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                          size_t number, bool with_forces) {
@@ -113,12 +118,28 @@ static void append_block(struct Values *values, const struct Equations *equation
   append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, equations->right_side);
-  if (with_forces && block->constraint_count > 0 && block->force_count == 0)
+  if (with_forces && has_least_forces(block))
     routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
       routine_copy(values->routine, place_in(SPACE_ACCELERATION, block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i));
+}
+
+void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol) {
+  for (size_t b = 0; b < blocks->count; b++) {
+    const struct LoopedBlock *looped = &blocks->items[b];
+    for (size_t i = 0; i < looped->block->count; i++)
+      values_hold(values, symbol[looped->block->coordinates[i]], place_in(SPACE_SIDE, looped->first_side + i));
+  }
+}
+
+void hold_unknowns(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                   const Node *symbol) {
+  if (!rates_use_unknowns(values->graph, equations)) return;
+  for (size_t b = 0; b < blocks->count; b++)
+    if (has_least_forces(blocks->items[b].block)) routine_append(values->routine, LEAST_FORCES, (Place)b, 0, 0, 0);
+  hold_solutions(values, blocks, symbol);
 }
 
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,

@@ -38,6 +38,19 @@ void append_pivot_check(struct Values *values, const struct Pivot *pivot);
 void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                           bool with_forces);
 
+/*
+ * Names what append_solution() has left in the right sides of large blocks: symbol holds a node for each row. The next
+ * solution takes its place.
+ */
+void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol);
+
+/*
+ * Does the same of the unknowns, whose symbols are given, behind append_accelerations(), where the rates of states use them: forces of
+ * constraints are those of least norm.
+ */
+void hold_unknowns(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
+                   const Node *symbol);
+
 /* The elements of a large block, which are computed, to their space. */
 void append_masses(struct Values *values, const struct LoopedBlock *looped);
 

@@ -13,8 +13,8 @@
 /* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
 static Node *create_seeds(struct Graph *graph) {
   static const enum SymbolKind seed_kinds[] = {
-      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
-      [VELOCITY] = SEED_VELOCITY,   [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
+      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,     [VELOCITY] = SEED_VELOCITY,
+      [STATE] = SEED_STATE,         [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
   };
   size_t count = graph->symbol_count;
   Node *seeds = allocate(2 * count, sizeof *seeds);
@@ -147,12 +147,27 @@ static void create_results(struct Expressions *expressions, const Node *seeds) {
 
 static void create_initial(struct Expressions *expressions, const Node *seeds) {
   const struct Interface *interface = expressions->interface;
-  size_t count = 2 * expressions->equations->count;
+  size_t count = interface->state_count;
   expressions->initial = allocate(count, sizeof(Node));
   expressions->initial_along = allocate(count, sizeof(Node));
   for (size_t i = 0; i < count; i++)
     expressions->initial[i] = interface->variables[interface_find(interface, VARIABLE_STATE, i)].start;
   derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
+}
+
+/* Rates of states may hold the accelerations and forces that are found at run time, and so may their derivatives. */
+static void create_rates(struct Expressions *expressions, const Node *seeds) {
+  const struct Model *model = expressions->model;
+  const struct NodeList *rates = &expressions->equations->rates;
+  size_t rows = expressions->equations->count + model->constraints.count;
+  expressions->unknowns = allocate(rows, sizeof(Node));
+  expressions->unknowns_along = allocate(rows, sizeof(Node));
+  for (size_t i = 0; i < rows; i++) {
+    expressions->unknowns[i] = unknown_of_row(model, i);
+    expressions->unknowns_along[i] = replacement_of(model->graph, seeds, expressions->unknowns[i]);
+  }
+  expressions->rates_along = allocate(rates->count, sizeof(Node));
+  derivative_along(model->graph, rates->nodes, rates->count, seeds, expressions->rates_along);
 }
 
 static void create_directional(struct Expressions *expressions, struct Extras extras) {
@@ -165,12 +180,10 @@ static void create_directional(struct Expressions *expressions, struct Extras ex
   if (extras.adjoint)
     expressions->weighted_gradient = weighted_gradient_create(expressions->model, expressions->equations,
                                                               expressions->interface, expressions->result, seeds);
+  create_rates(expressions, seeds);
   without_accelerations(graph, seeds);
   expressions->along = allocate(row_count(expressions->equations), sizeof(Node));
   accelerations_along(graph, expressions->equations, seeds, expressions->along);
-  const struct NodeList *integrands = &expressions->equations->integrands;
-  expressions->integrands_along = allocate(integrands->count, sizeof(Node));
-  derivative_along(graph, integrands->nodes, integrands->count, seeds, expressions->integrands_along);
   const struct Elements *jacobian = &expressions->equations->constraints->jacobian;
   expressions->constraints_along = allocate(jacobian->count, sizeof(Node));
   derivative_along(graph, jacobian->nodes, jacobian->count, seeds, expressions->constraints_along);
@@ -189,9 +202,6 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
     report_error(diagnostics, model->solver.line,
                  "the method 'exact' cannot have events; expected another method for a system that switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
-  if (expressions->equations->integrands.count > 0)
-    report_error(diagnostics, model->solver.line,
-                 "<work/> is not linear in the state; expected a method other than 'exact'");
 }
 
 static void create_jacobian(struct Expressions *expressions, struct Diagnostics *diagnostics) {
@@ -205,7 +215,8 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
         expressions->equations->method->name, JACOBIAN_LIMIT);
   else if (expressions->equations->method->factors)
     expressions->jacobian->factors =
-        lu_pattern_create(model->graph, expressions->jacobian, expressions->equations->count);
+        lu_pattern_create(model->graph, expressions->jacobian, expressions->equations->count,
+                          expressions->equations->count + expressions->equations->rates.count);
 }
 
 /* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
@@ -268,8 +279,8 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.push, equations->count);
   }
-  append_nodes(&targets, equations->integrands.nodes, equations->integrands.count);
-  append_nodes(&targets, expressions->integrands_along, equations->integrands.count);
+  append_nodes(&targets, equations->rates.nodes, equations->rates.count);
+  append_nodes(&targets, expressions->rates_along, equations->rates.count);
   if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);

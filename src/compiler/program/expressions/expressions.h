@@ -52,9 +52,10 @@ struct Expressions {
   Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
   Node *constraints_along;              /* of the elements of the constraints' J */
   struct Corrections corrections;       /* NULL without constraints */
-  Node *integrands_along;               /* of the rates of the states behind the velocities */
+  Node *unknowns, *unknowns_along;      /* of each row: the symbol of its acceleration or force, and of its seed */
+  Node *rates_along;                    /* of the rates of the states behind the velocities */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
-  Node *initial, *initial_along; /* one for each coordinate and velocity: its start where it follows, else ZERO */
+  Node *initial, *initial_along; /* one for each state: its start where it follows, else ZERO */
   Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
   struct WeightedGradient *weighted_gradient; /* NULL unless asked for, and where there is none */
 };

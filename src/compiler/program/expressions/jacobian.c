@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "program/expressions/lu_pattern.h"
 
-enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY };
+enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
 
 struct Element {
   struct Position at;
@@ -27,7 +27,8 @@ static void append(struct ElementList *list, size_t row, size_t column, Node val
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
   const struct Symbol *what = graph_symbol_of(graph, symbol);
-  return what->kind == COORDINATE ? (size_t)what->index : coordinates + (size_t)what->index;
+  size_t first = what->kind == COORDINATE ? 0 : what->kind == VELOCITY ? coordinates : 2 * coordinates;
+  return first + (size_t)what->index;
 }
 
 static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,
@@ -43,7 +44,7 @@ static void append_column(struct ElementList *list, struct Graph *graph, const s
   if (block->is_unrolled) block_solve(graph, block, right);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
-    if (row >= equations->count) row += equations->integrands.count; /* behind all states */
+    if (row >= equations->count) row += equations->rates.count; /* behind all states */
     if (!block->is_unrolled || right[i] != ZERO) append(list, equations->count + row, column, right[i]);
   }
 }
@@ -87,45 +88,83 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   return jacobian;
 }
 
+/* Collects in the graph's cone what the equations of a block rest on. */
+static void collect_block(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block) {
+  Node *residuals = allocate(block->count, sizeof *residuals);
+  for (size_t i = 0; i < block->count; i++) residuals[i] = equations->residual[block->coordinates[i]];
+  cone_collect(graph->cone, graph, residuals, block->count);
+}
+
+static bool is_symbol_of(const struct Graph *graph, Node node, unsigned kinds) {
+  return graph->vertices[node].operation == SYMBOL && (graph->vertices[node].kinds & kinds) != 0;
+}
+
 /* An element of the pattern for each state that the nodes rest on, in all rows of the block. */
 static void append_pattern(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                            const struct InertiaBlock *block) {
-  struct Cone *cone = graph->cone;
-  Node *residuals = allocate(block->count, sizeof *residuals);
-  for (size_t i = 0; i < block->count; i++) residuals[i] = equations->residual[block->coordinates[i]];
-  cone_collect(cone, graph, residuals, block->count);
+  const struct Cone *cone = graph->cone;
+  collect_block(graph, equations, block);
   for (size_t k = 0; k < cone->count && list->count <= JACOBIAN_LIMIT; k++) {
     Node node = cone->nodes[k];
-    bool is_state =
-        graph->vertices[node].operation == SYMBOL && (graph->vertices[node].kinds & (unsigned)STATE_KINDS) != 0;
+    bool is_state = is_symbol_of(graph, node, STATE_KINDS);
     for (size_t i = 0; i < block->count && is_state; i++)
       if (block->coordinates[i] < equations->count)
         append(list, equations->count + block->coordinates[i], column_of(graph, equations->count, node), ONE);
   }
 }
 
-/* The rows behind the velocities. */
-static void append_integrands(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
-  for (size_t i = 0; i < equations->integrands.count; i++)
-    append_gradient(list, graph, equations->count, equations->integrands.nodes[i], 2 * equations->count + i);
+/* Marks the columns of the states that the cone holds. */
+static void mark_columns(const struct Graph *graph, size_t coordinates, bool *is_marked) {
+  const struct Cone *cone = graph->cone;
+  for (size_t k = 0; k < cone->count; k++)
+    if (is_symbol_of(graph, cone->nodes[k], STATE_KINDS)) is_marked[column_of(graph, coordinates, cone->nodes[k])] = true;
 }
 
-/* Where accelerations are found by articulated inertias, directions cost less than a formula for each element. */
+/* The rows of the rates where some hold accelerations or forces, and so all states of the blocks of these. */
+static void append_pattern_of_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
+  size_t n = equations->count, states = 2 * n + equations->rates.count;
+  for (size_t i = 0; i < equations->rates.count; i++) {
+    bool *is_marked = allocate(states, sizeof *is_marked), *has_block = allocate(equations->inertia->block_count, sizeof *has_block);
+    cone_collect(graph->cone, graph, &equations->rates.nodes[i], 1);
+    mark_columns(graph, n, is_marked);
+    for (size_t k = 0; k < graph->cone->count; k++)
+      if (is_symbol_of(graph, graph->cone->nodes[k], 1u << ACCELERATION))
+        has_block[equations->inertia->block_of[graph_symbol_of(graph, graph->cone->nodes[k])->index]] = true;
+    for (size_t b = 0; b < equations->inertia->block_count; b++) {
+      if (!has_block[b]) continue;
+      collect_block(graph, equations, &equations->inertia->blocks[b]);
+      mark_columns(graph, n, is_marked);
+    }
+    for (size_t column = 0; column < states; column++)
+      if (is_marked[column]) append(list, 2 * n + i, column, ONE);
+  }
+}
+
+/* The rows behind the velocities. */
+static void append_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
+  for (size_t i = 0; i < equations->rates.count; i++)
+    append_gradient(list, graph, equations->count, equations->rates.nodes[i], 2 * equations->count + i);
+}
+
+/*
+ * Where accelerations are found by articulated inertias, directions cost less than a formula for each element; where rates of states
+ * hold what is found at run time, directions know it.
+ */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
   struct ElementList list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
   for (size_t i = 0; i < equations->inertia->block_count; i++)
     append_pattern(&list, graph, equations, &equations->inertia->blocks[i]);
-  append_integrands(&list, graph, equations);
+  append_pattern_of_rates(&list, graph, equations);
   if (list.count > JACOBIAN_LIMIT) return NULL;
-  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->integrands.count);
+  struct JacobianExpressions *jacobian = by_columns(&list, 2 * n + equations->rates.count);
   jacobian->value = NULL;
   return jacobian;
 }
 
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
-  if (!equations->explicit_form && inertia_has_trees(equations->inertia))
+  if (!equations->explicit_form && (inertia_has_trees(equations->inertia) || rates_use_unknowns(graph, equations)))
     return pattern_for_directions(graph, equations);
   struct ElementList list = {0};
   size_t n = equations->count;
@@ -134,8 +173,8 @@ struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Eq
     append_gradient(&list, graph, n, equations->acceleration[i], n + i);
   for (size_t i = 0; !equations->explicit_form && i < equations->inertia->block_count; i++)
     append_block(&list, graph, equations, &equations->inertia->blocks[i]);
-  append_integrands(&list, graph, equations);
+  append_rates(&list, graph, equations);
   struct JacobianExpressions *jacobian =
-      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->integrands.count);
+      list.count > JACOBIAN_LIMIT ? NULL : by_columns(&list, 2 * n + equations->rates.count);
   return jacobian;
 }

@@ -4,6 +4,6 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "program/expressions/expressions.h"
 
-/* For so many coordinates; NULL where full matrices are cheaper. */
+/* For so many coordinates, and rows of velocities and states behind them; NULL where full matrices are cheaper. */
 struct Elimination *lu_pattern_create(const struct Graph *graph, const struct JacobianExpressions *jacobian,
-                                      size_t coordinates);
+                                      size_t coordinates, size_t rows);

@@ -88,7 +88,7 @@ static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
 struct SeriesPlan *series_plan_of_motion(struct Graph *graph, const struct Equations *equations) {
   struct SeriesPlan *plan = allocate(1, sizeof *plan);
   append_equations(plan, equations);
-  append_nodes(&plan->targets, equations->integrands.nodes, equations->integrands.count);
+  append_nodes(&plan->targets, equations->rates.nodes, equations->rates.count);
   return finish(plan, graph);
 }
 

@@ -5,7 +5,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-enum { KNOWN_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << INPUT | 1 << PARAMETER | 1 << TIME };
+enum { KNOWN_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE | 1 << INPUT | 1 << PARAMETER | 1 << TIME };
 
 /* Expressions, and what each counts by. */
 struct WeightedSum {
@@ -33,9 +33,9 @@ static struct WeightedSum what_is_read(struct Graph *graph, const struct Equatio
     char *name = format_text("d %s", entry->name);
     append_term(&sum, result[entry->index], graph_symbol(graph, SEED_RESULT, (int)entry->index, name));
   }
-  for (size_t i = 0; i < equations->integrands.count; i++)
-    append_term(&sum, equations->integrands.nodes[i],
-                graph_symbol(graph, SEED_VELOCITY, (int)(equations->count + i), format_text("d integral %zu", i + 1)));
+  for (size_t i = 0; i < equations->rates.count; i++)
+    append_term(&sum, equations->rates.nodes[i],
+                graph_symbol(graph, SEED_STATE, (int)i, format_text("d rate %zu", i + 1)));
   return sum;
 }
 
@@ -64,6 +64,7 @@ static size_t place_of(const struct Model *model, const struct Interface *interf
   switch ((int)symbol->kind) {
   case COORDINATE: return index;
   case VELOCITY: return n + index;
+  case STATE: return 2 * n + index;
   case INPUT: return states + index;
   case PARAMETER: return states + model->inputs.count + index;
   default: return states + model->inputs.count + model->parameters.count + model->switches.mode_count;

@@ -50,11 +50,11 @@ static const int *whole_numbers(const size_t *sizes, size_t count) {
   return numbers;
 }
 
-static struct LuPattern lu_pattern_of(const struct Elimination *factors, size_t coordinates) {
-  int *place = allocate(coordinates, sizeof *place);
-  for (size_t i = 0; i < coordinates; i++) place[factors->order[i]] = (int)i;
-  return (struct LuPattern){place, whole_numbers(factors->start, coordinates + 1),
-                            whole_numbers(factors->column, factors->start[coordinates])};
+static struct LuPattern lu_pattern_of(const struct Elimination *factors, size_t rows) {
+  int *place = allocate(rows, sizeof *place);
+  for (size_t i = 0; i < rows; i++) place[factors->order[i]] = (int)i;
+  return (struct LuPattern){place, whole_numbers(factors->start, rows + 1),
+                            whole_numbers(factors->column, factors->start[rows])};
 }
 
 static struct ImplicitTable implicit_facts_of(const struct Program *program) {
@@ -65,7 +65,7 @@ static struct ImplicitTable implicit_facts_of(const struct Program *program) {
       (struct Sparsity){jacobian->count, whole_numbers(jacobian->start, program->interface->state_count + 1),
                         whole_numbers(jacobian->row, jacobian->count)};
   if (program->lu != NULL && jacobian->factors != NULL)
-    facts.lu_pattern = lu_pattern_of(jacobian->factors, program->equations->count);
+    facts.lu_pattern = lu_pattern_of(jacobian->factors, program->equations->count + program->equations->rates.count);
   return facts;
 }
 

@@ -19,6 +19,7 @@ Place series_coefficient(const struct SeriesBuilder *builder, Node node) {
   case INPUT: return place_in(SPACE_INPUT_ROW, index);
   case COORDINATE: return place_in(SPACE_STATE_ROW, index);
   case VELOCITY: return place_in(SPACE_STATE_ROW, builder->coordinates + index);
+  case STATE: return place_in(SPACE_STATE_ROW, 2 * builder->coordinates + index);
   default: return place_in((enum Space)SPACE_OF_ACCELERATIONS, index);
   }
 }

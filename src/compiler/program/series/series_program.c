@@ -69,8 +69,18 @@ static void append_next(struct SeriesBuilder *builder, Node node) {
     append_next(builder, builder->plan->auxiliary[node]);
 }
 
+static bool has_accelerations(const struct SeriesBuilder *builder, Node node) {
+  return graph_depends_on(builder->graph, node, ACCELERATION);
+}
+
 static void append_nodes_of_order(struct SeriesBuilder *builder) {
   for (size_t i = 0; i < builder->nodes.count; i++) append_next(builder, builder->nodes.nodes[i]);
+}
+
+/* Those that need no accelerations of large blocks, which are not known yet. */
+static void append_nodes_before_blocks(struct SeriesBuilder *builder) {
+  for (size_t i = 0; i < builder->nodes.count; i++)
+    if (!has_accelerations(builder, builder->nodes.nodes[i])) append_next(builder, builder->nodes.nodes[i]);
 }
 
 static Place acceleration_row(size_t coordinate) {
@@ -140,8 +150,8 @@ static void append_states(struct SeriesBuilder *builder, const struct Equations 
     append_state(builder, i, place_in(SPACE_STATE_ROW, n + i));
     append_state(builder, n + i, series_coefficient(builder, equations->acceleration[i]));
   }
-  for (size_t i = 0; i < equations->integrands.count; i++)
-    append_state(builder, 2 * n + i, series_coefficient(builder, equations->integrands.nodes[i]));
+  for (size_t i = 0; i < equations->rates.count; i++)
+    append_state(builder, 2 * n + i, series_coefficient(builder, equations->rates.nodes[i]));
 }
 
 /* Where the spaces of an incomplete routine have gone. */
@@ -234,6 +244,16 @@ static void complete(struct SeriesProgram *program, struct Rows *rows) {
   }
 }
 
+/* Computes what has a row and needs no accelerations of large blocks. */
+static void compute_before_blocks(const struct SeriesBuilder *builder, struct Values *values) {
+  struct NodeList targets = {0};
+  for (size_t i = 0; i < builder->nodes.count; i++) {
+    Node node = builder->nodes.nodes[i];
+    if (builder->has_row[node] && !has_accelerations(builder, node)) append_node(&targets, node);
+  }
+  values_compute(values, targets.nodes, targets.count, false);
+}
+
 /* Computes what has a row, and further nodes. */
 static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further,
                           size_t count) {
@@ -266,15 +286,18 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   struct SeriesProgram *program = allocate(1, sizeof *program);
   struct SeriesBuilder *builder = builder_create(expressions->series, values);
   program->limit = limits_of(builder);
-  append_nodes_of_order(builder);
+  append_nodes_before_blocks(builder);
   for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
+  append_nodes_of_order(builder);
   append_states(builder, equations);
   struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
   complete(program, &rows);
 
   program->start = values_begin(values);
-  compute_first(builder, values, equations->integrands.nodes, equations->integrands.count);
+  compute_before_blocks(builder, values);
   append_accelerations(values, equations, blocks, false);
+  hold_unknowns(values, equations, blocks, expressions->unknowns);
+  compute_first(builder, values, equations->rates.nodes, equations->rates.count);
   copy_first(&rows, values);
   for (size_t i = 0; i < n; i++) routine_copy(program->start, target_place(i), place_in(SPACE_STATE, n + i));
   for (size_t b = 0; b < blocks->count; b++) {
@@ -283,8 +306,8 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
       routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
                    place_in(SPACE_SIDE, looped->first_side + i));
   }
-  for (size_t i = 0; i < equations->integrands.count; i++)
-    values_copy(values, target_place(2 * n + i), equations->integrands.nodes[i]);
+  for (size_t i = 0; i < equations->rates.count; i++)
+    values_copy(values, target_place(2 * n + i), equations->rates.nodes[i]);
   return program;
 }
 

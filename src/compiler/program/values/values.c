@@ -30,12 +30,14 @@ static Place place_of_symbol(const struct Values *values, const struct Symbol *s
   case TIME: return place_in(SPACE_TIME, 0);
   case COORDINATE: return place_in(SPACE_STATE, index);
   case VELOCITY: return place_in(SPACE_STATE, n + index);
+  case STATE: return place_in(SPACE_STATE, 2 * n + index);
   case ACCELERATION: return place_in(SPACE_ACCELERATION, index);
   case INPUT: return place_in(SPACE_INPUT, index);
   case SEED_PARAMETER: return place_in(SPACE_SEED_PARAMETER, index);
   case SEED_TIME: return place_in(SPACE_SEED_TIME, 0);
   case SEED_COORDINATE: return place_in(SPACE_SEED_STATE, index);
   case SEED_VELOCITY: return place_in(SPACE_SEED_STATE, n + index);
+  case SEED_STATE: return place_in(SPACE_SEED_STATE, 2 * n + index);
   case SEED_ACCELERATION: return place_in(SPACE_SEED_ACCELERATION, index);
   case SEED_RESULT: return place_in(SPACE_SEED_RESULT, index);
   case DISPLACEMENT: /* replaced in all that is computed, and without seeds */

@@ -14,6 +14,7 @@
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
+#include "read/names/definitions.h"
 #include "read/shapes/shapes.h"
 #include "read/space/bodies.h"
 #include "read/space/bushing.h"
@@ -227,19 +228,43 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   read_input_rates(reader, node);
 }
 
+/* The name of a state's rate among the named expressions; see parser.c. */
+static void collect_rate(struct Reader *reader, xmlNodePtr node) {
+  const struct Variable *state = &reader->model->states.items[reader->present->number];
+  definitions_add(reader->definitions, format_text("der(%s)", state->name),
+                  &(struct NamedExpression){node, "rate", reader->source, NULL});
+}
+
+static void read_state(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Variable state = common_attributes(reader, node);
+  given_for(reader, node, state.name); /* is there, and read with the start values */
+  state.start = 0.0;                   /* see start_expressions.h */
+  state.nominal = nominal_attribute(reader, node, "nominal");
+  number_attribute(reader, node, "min", &state.minimum);
+  number_attribute(reader, node, "max", &state.maximum);
+  reader->present->number = model->states.count;
+  state.node = scope_symbol(reader->scope, STATE, (int)model->states.count, state.name, state.dimension, state.line);
+  state.line = scope_line(reader->scope, state.line);
+  append_variable(&model->states, state);
+}
+
 static void read_work(struct Reader *reader, xmlNodePtr node) {
-  if (reader->model->forces.works.count > 0) return;
+  struct Model *model = reader->model;
+  if (work_of(model) != NULL) return;
   struct Variable work = variable_create(copy_text("nonConservativeWork"),
                                          copy_text("work of the non-conservative forces"), xmlGetLineNo(node));
   work.start = 0.0;
   work.dimension = unit_of("J");
-  append_variable(&reader->model->forces.works, work);
+  work.is_work = true;
+  work.node = graph_symbol(model->graph, STATE, (int)model->states.count, work.name);
+  append_variable(&model->states, work);
 }
 
 static void read_potential(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   read_energy(reader, node, &model->energies.displaced_potential, &model->energies.potential, "the potential",
-              IN_ENERGY, "J");
+              IN_POTENTIAL, "J");
 }
 
 static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
@@ -292,6 +317,7 @@ static const struct Element elements[] = {
     {"shape", declare_shape, NULL, place_shape, NULL, false},
     {"solver", read_solver, NULL, NULL, NULL, true},
     {"spring", NULL, collect_spring, NULL, read_spring, false},
+    {"state", read_state, collect_rate, read_start_of_state, NULL, false},
     {"stop", declare_stop, NULL, NULL, read_stop, false},
     {"table", read_table, NULL, NULL, NULL, false},
     {"torque", NULL, NULL, NULL, read_torque, false},

@@ -9,12 +9,12 @@
 
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 
-/* What <set> changes: the symbol of a coordinate, velocity or mode. */
+/* What <set> changes: the symbol of a coordinate, velocity, state or mode. */
 static Node target_of(struct Reader *reader, xmlNodePtr node) {
   static const struct {
     const char *attribute;
     enum SymbolKind kind;
-  } targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"mode", MODE}};
+  } targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"state", STATE}, {"mode", MODE}};
   size_t given = 0;
   Node symbol = ZERO;
   for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
@@ -30,7 +30,7 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
       report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name", targets[i].attribute,
                 name != NULL ? name : "", targets[i].attribute);
   }
-  if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate and mode");
+  if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate, state and mode");
   return symbol;
 }
 

@@ -40,6 +40,16 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   return (struct Quantity){.node = value.node, .dimension = value.dimension.known ? unit : dimension_unknown};
 }
 
+/* The time derivative of a state. */
+static struct Quantity read_rate(struct Reader *reader, xmlNodePtr node) {
+  struct Quantity rate = {.node = ZERO};
+  expression_attribute(reader, node, "rate", IN_RATE, &rate);
+  if (definitions_are_waiting(reader->definitions)) return rate;
+  struct Dimension unit = dimension_multiply(unit_attribute(reader, node, "unit"), unit_of("s"), -1.0);
+  require_unit(reader, xmlGetLineNo(node), "the rate", rate, unit);
+  return rate;
+}
+
 struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
                                       const char *name) {
   struct Quantity value = {.node = ZERO};
@@ -49,6 +59,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
   if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
     value = read_spatial(reader, node, name, expression->attribute);
+  else if (is_element(node, "state")) value = read_rate(reader, node);
   else if (is_element(node, "spring")) value = read_spring_value(reader, node, expression->attribute);
   else if (is_element(node, "joint")) value = read_joint_force(reader, node, name);
   else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
@@ -62,7 +73,19 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   return value;
 }
 
+/* name: der(...) of the state. */
+static void keep_rate(struct Reader *reader, const char *name, struct Quantity value) {
+  struct Model *model = reader->model;
+  for (size_t i = 0; i < model->states.count; i++) {
+    struct Variable *state = &model->states.items[i];
+    if (state->is_work || strcmp(name, format_text("der(%s)", state->name)) != 0) continue;
+    state->rate = value.node;
+    scope_set_time_derivative(reader->scope, state->node, value.node);
+  }
+}
+
 void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value) {
+  if (is_element(node, "state")) keep_rate(reader, name, value);
   bool is_parameter = is_element(node, "parameter");
   if (!is_parameter && !is_element(node, "define") && !is_element(node, "input")) return;
   struct Variable variable = {.name = copy_text(name),

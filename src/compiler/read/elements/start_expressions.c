@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "read/context/includes.h"
+#include "read/context/variables.h"
 
 static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *attribute,
                        struct Variable *variable) {
@@ -22,6 +23,11 @@ void read_start_expressions(struct Reader *reader, xmlNodePtr node) {
   read_start(reader, node, given, "velocityStart", &reader->model->velocities.items[index]);
 }
 
+void read_start_of_state(struct Reader *reader, xmlNodePtr node) {
+  struct Variable *state = &reader->model->states.items[reader->present->number];
+  read_start(reader, node, given_for(reader, node, state->name), "start", state);
+}
+
 static void evaluate_start(struct Reader *reader, struct Variable *variable, const double *values) {
   variable->start = values[variable->start_expression];
   if (isfinite(variable->start)) return;
@@ -36,5 +42,10 @@ void evaluate_start_expressions(struct Reader *reader) {
   for (size_t i = 0; i < model->coordinates.count; i++) {
     evaluate_start(reader, &model->coordinates.items[i], values);
     evaluate_start(reader, &model->velocities.items[i], values);
+  }
+  for (size_t i = 0; i < model->states.count; i++) {
+    struct Variable *state = &model->states.items[i];
+    evaluate_start(reader, state, values);
+    if (reader->diagnostics->errors == 0) check_range(reader, state);
   }
 }

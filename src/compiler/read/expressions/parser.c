@@ -25,6 +25,7 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [TIME] = "time",
     [COORDINATE] = "coordinates",
     [VELOCITY] = "velocities",
+    [STATE] = "states",
     [INPUT] = "inputs",
     [ACCELERATION] = "accelerations",
     [DISPLACEMENT] = "displacements",
@@ -248,6 +249,21 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
+/* Whether the present expression waits for the rate of a state in the node. */
+static bool waits_for_rates(struct Parser *parser, Node node) {
+  const struct Graph *graph = parser->graph;
+  bool waits = false;
+  if (!graph_depends_on(graph, node, STATE)) return false;
+  cone_collect(graph->cone, graph, &node, 1);
+  for (size_t i = 0; i < graph->cone->count; i++) {
+    Node symbol = graph->cone->nodes[i];
+    if (graph->vertices[symbol].operation != SYMBOL || !graph_depends_on(graph, symbol, STATE)) continue;
+    const char *rate = format_text("der(%s)", graph_symbol_of(graph, symbol)->name);
+    if (scope_find(parser->scope, rate) == NULL) waits |= definitions_wait_for(parser->scope->definitions, rate);
+  }
+  return waits;
+}
+
 /* Accelerations, forces of reaction, and inputs without derivatives of their own have none that a system knows. */
 static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Place place = parser->place;
@@ -257,6 +273,7 @@ static struct Quantity parse_derivative(struct Parser *parser) {
   struct Quantity value = parse_sum(parser);
   parser->place = place;
   expect_character(parser, ')', "at the end of der(...)");
+  if (!parser->failed && waits_for_rates(parser, value.node)) return nothing;
   Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
     if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))

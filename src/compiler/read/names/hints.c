@@ -102,7 +102,8 @@ static const struct Hint of_elements[] = {
     {"impact", "write <contact gap=\"...\" restitution=\"...\"/>"},
     {"limit", "write <stop coordinate=\"...\" min=\"...\" max=\"...\"/>"},
     {"when", "write <event when=\"...\"> with <set> in it"},
-    {"state", "write <coordinate>, whose velocity is a state too"},
+    {"integrator", "write <state name=\"z\" rate=\"...\"/>"},
+    {"filter", "write <state name=\"z\" rate=\"(u - z)/T\"/>"},
 };
 
 /* The hint for a text that is a word of the list, "" where it is none. */
@@ -152,6 +153,7 @@ const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
   switch (kind) {
   case INPUT: return "; expected it in a <force>";
+  case STATE: return "; expected it in a force, a potential, a rate, an event or an output";
   case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
   case DISPLACEMENT: return "; expected it in positions, angles, energies and forces";
   case REACTION: return "; expected it in an <output>";
