@@ -195,9 +195,8 @@ static void write_lagrangian(FILE *file, const struct Program *program, const st
   if (facts->array_count > 0)
     fputs("    .arrays = arrays,\n    .array_count = sizeof arrays / sizeof *arrays,\n", file);
   if (solver != NULL)
-    fprintf(file,
-            "    .steps.nominal = nominal,\n    .inertia_depends_on = inertia_depends_on,\n    .solver = &solver_%s,\n",
-            solver);
+    fprintf(file, "    .steps.nominal = nominal,\n%s    .solver = &solver_%s,\n",
+            facts->coordinate_count > 0 ? "    .inertia_depends_on = inertia_depends_on,\n" : "", solver);
   write_steps(file, &facts->steps);
   fprintf(file, "    .output_derivative_order = %d,\n", facts->output_derivative_order);
   write_tables(file, program, facts);
