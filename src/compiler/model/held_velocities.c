@@ -21,6 +21,8 @@ void substitute_in_observers(struct Model *model, const Node *replacements) {
     }
   for (size_t i = 0; i < model->outputs.count; i++)
     substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  for (size_t i = 0; i < model->states.count; i++)
+    substitute(graph, &model->states.items[i].rate, 1, replacements, &model->states.items[i].rate);
 }
 
 /* Positive unless friction holds its velocity at 0. */
