@@ -2,8 +2,8 @@
  * What a generated system offers the runtime. lagc writes one `const struct Lagrangian lagrangian` a system;
  * functions that a system does not need are NULL.
  *
- * State vector: coordinates q[n], velocities v[n], and last, where the system asks for it, the work of the
- * non-conservative forces. All quantities are in SI units.
+ * State vector: coordinates q[n], velocities v[n], and last the states of first order, the work of the non-conservative forces
+ * among them. All quantities are in SI units.
  */
 #ifndef LAGRANGIAN_H
 #define LAGRANGIAN_H
@@ -404,6 +404,7 @@ struct Lagrangian {
   size_t work_count; /* of Point.work */
   /* Of the coordinates the last ones, which are derivatives of others by values: an importer may set them at events. */
   size_t variation_count;
+  size_t state_variation_count; /* the same of the states behind the velocities */
   size_t variable_count, array_count;
   const struct ScalarVariable *variables;
   const struct ArrayVariable *arrays; /* ascending; NULL where there are none */

@@ -196,6 +196,7 @@ struct Model {
   struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
   struct VariableList definitions; /* what each <define> stands for, in its node */
   size_t variation_count;          /* of the coordinates, the last ones: derivatives of the others, see variations.h */
+  size_t state_variation_count;    /* the same of the states */
   struct VariableList displacements;
   struct VariableList modes; /* that the author declared; those of switches have no names */
   struct VariableList

@@ -49,6 +49,7 @@ static void append_state(struct Model *model, size_t of, const struct Variable *
   state.is_work = model->states.items[of].is_work;
   state.node = graph_symbol(model->graph, STATE, (int)model->states.count, state.name);
   append_variable(&model->states, state);
+  model->state_variation_count++;
 }
 
 /*

@@ -149,6 +149,8 @@ static void write_counts(FILE *file, const struct Lagrangian *facts) {
           facts->parameter_count, facts->prepared_count, facts->variable_count);
   fprintf(file, "    .work_count = %zu,\n", facts->work_count);
   if (facts->variation_count > 0) fprintf(file, "    .variation_count = %zu,\n", facts->variation_count);
+  if (facts->state_variation_count > 0)
+    fprintf(file, "    .state_variation_count = %zu,\n", facts->state_variation_count);
 }
 
 static void write_tables(FILE *file, const struct Program *program, const struct Lagrangian *facts) {

@@ -95,8 +95,8 @@ static bool is_exchanged(const struct Instance *instance) {
 /* Whether it jumps at events by what the importer knows of it, as nothing here does. */
 static bool is_variation(const struct ScalarVariable *variable) {
   size_t n = lagrangian.coordinate_count, first = n - lagrangian.variation_count, state = variable->index;
-  if (lagrangian.variation_count == 0 || variable->kind != VARIABLE_STATE) return false;
-  return state < 2 * n ? state % n >= first : state > 2 * n;
+  if (variable->kind != VARIABLE_STATE) return false;
+  return state < 2 * n ? state % n >= first : state >= lagrangian.state_count - lagrangian.state_variation_count;
 }
 
 static bool is_variation_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {

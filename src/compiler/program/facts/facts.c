@@ -92,6 +92,7 @@ struct Lagrangian facts_of(const struct Program *program, size_t work_count) {
                              .prepared_count = program->prepared->count + scratch,
                              .work_count = work_count,
                              .variation_count = program->model->variation_count,
+                             .state_variation_count = program->model->state_variation_count,
                              .variable_count = interface->count,
                              .variables = variables_of(interface),
                              .output_derivative_order = interface->output_derivative_order,
