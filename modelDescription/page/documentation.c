@@ -18,7 +18,7 @@ extern const char page_style[], page_script[];
 
 static void write_solver(struct Page *page) {
   const struct Method *method = page->equations->method;
-  if (page->equations->count == 0) return;
+  if (method == NULL) return;
   page_heading(page, "Solver");
   page_element(page, "p", method->sentence);
   if (!isnan(page->model->solver.max_step)) {
@@ -49,6 +49,7 @@ static void write_sections(struct Page *page) {
   write_definitions(page);
   write_starts(page);
   if (page->equations->count > 0) write_mechanics(page);
+  write_rates(page);
   write_outputs(page);
   write_solver(page);
   write_form(page);

@@ -1,5 +1,7 @@
 #include "value_sections.h"
 
+#include "base/memory.h"
+
 /* The author's own names, which the formulas use where they can. */
 void write_definitions(struct Page *page) {
   const struct VariableList *definitions = &page->model->definitions;
@@ -25,9 +27,9 @@ void write_calculated(struct Page *page) {
 
 /* Start values that follow from parameters. */
 void write_starts(struct Page *page) {
-  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities};
+  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities, &page->model->states};
   size_t count = 0;
-  for (size_t list = 0; list < 2; list++)
+  for (size_t list = 0; list < 3; list++)
     for (size_t i = 0; i < lists[list]->count; i++) {
       const struct Variable *state = &lists[list]->items[i];
       if (!start_follows(page->model, state)) continue;
@@ -35,6 +37,18 @@ void write_starts(struct Page *page) {
       if (count <= SHOWN_LIMIT) page_equation(page, state->name, state->start_expression);
     }
   page_rest(page, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
+}
+
+/* The power of the work stands with the mechanics. */
+void write_rates(struct Page *page) {
+  const struct VariableList *states = &page->model->states;
+  size_t shown = 0;
+  for (size_t i = 0; i < page->summary->rate_count; i++) {
+    if (states->items[i].is_work) continue;
+    if (shown++ == 0) page_heading(page, "States");
+    page_equation(page, format_text("der(%s)", states->items[i].name), page->summary->rates[i]);
+  }
+  page_rest(page, states->count, page->summary->rate_count, "states");
 }
 
 void write_outputs(struct Page *page) {

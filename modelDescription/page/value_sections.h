@@ -7,6 +7,7 @@
 void write_calculated(struct Page *page);
 void write_definitions(struct Page *page);
 void write_starts(struct Page *page);
+void write_rates(struct Page *page);
 void write_outputs(struct Page *page);
 
 #endif

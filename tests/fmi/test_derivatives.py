@@ -51,7 +51,7 @@ def test_directional_derivatives_of_accelerations(name, kind, open_fmu):
         np.testing.assert_allclose(ours, expected, rtol=1e-10, atol=1e-10 * np.max(np.abs(expected) + 1))
 
 
-@pytest.mark.parametrize("name", [*fmu.all_names(), "Functions"])
+@pytest.mark.parametrize("name", [*fmu.all_names(), "Functions", "Actuator", "Network"])
 def test_directional_derivatives_by_differences(name, open_fmu):
     """Every unknown by every known, against difference quotients: finds wrong pairs and forgotten terms."""
     is_constrained = fmu.is_constrained(name)

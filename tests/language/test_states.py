@@ -1,5 +1,7 @@
 """<state>: first-order states, beside coordinates and alone, with all methods, against closed forms and SciPy."""
 
+import re
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -37,12 +39,44 @@ PENDULUM = """<system name="{name}">
 """
 
 
+PID = """<system name="Pid"><parameter name="kp" start="2"/><parameter name="Ti" start="0.5" unit="s"/>
+<parameter name="Td" start="0.1" unit="s"/><parameter name="N" start="10"/><parameter name="limit" start="5"/>
+<input name="e"/><state name="I" unit="s" rate="e"/><state name="D" rate="N/Td*(e - D)"/>
+<output name="u">min(limit, max(-limit, kp*(e + I/Ti + N*(e - D))))</output></system>"""
+NETWORK = """<system name="Heat"><constant name="N" value="8"/><parameter name="c" start="2"/><input name="P" start="1"/>
+<for index="i" from="1" to="N"><state name="T[i]" start="i"
+  rate="c*(sum(j, max(1, i - 1), min(N, i + 1), T[j] - T[i])) + if(i > 1, 0, P)"/></for></system>"""
+ROD = """<system name="Rod"><coordinate name="x" velocity="vx" start="1"/><coordinate name="y" velocity="vy"/><parameter name="m" start="1"/>
+<particle name="bob" mass="m" x="x" y="y"/><potential>m*9.81*y</potential><constraint name="rod">(x^2 + y^2 - 1)/2</constraint>
+<state name="pull" rate="rod.force"/><state name="lag" rate="(der(vx) - lag)/0.1"/><force coordinate="x">-0.3*lag</force>
+<output name="felt">pull + der(lag)</output>{solver}</system>"""
+# A mass matrix that is factored at run time.
+COUPLED = """<system name="Coupled">{coordinates}
+<kinetic>(va^2 + vb^2 + vc^2 + vd^2 + ve^2 + (va + vb + vc + vd + ve)^2*(1 + sin(a)^2))/2</kinetic>
+<potential>a^2 + b^2 + c^2 + d^2 + e^2 + a*b*c</potential>
+<state name="s" rate="der(va) + der(vc)*b - s"/><force coordinate="b">s</force></system>""".format(
+    coordinates="".join(f'<coordinate name="{q}" velocity="v{q}" start="{int(q == "a")}"/>' for q in "abcde")
+)
+BALL = """<system name="Ball"><coordinate name="h" velocity="v" start="1"/><particle mass="2" y="h"/><potential>2*9.81*h</potential>
+<contact name="ground" gap="h" restitution="0.5"/>
+<state name="push" rate="ground.force"/><state name="count" rate="0"/><state name="z" start="1" rate="-z"/>
+<event when="v" direction="rising"><set state="count">count + 1</set></event>
+<event when="time - 1" direction="rising"><set state="z">3*z + 1</set></event></system>"""
+BLOCK = """<system name="Block"><coordinate name="x" velocity="v" velocityStart="2"/><particle mass="2" x="x"/>
+<friction name="rub" coordinate="x" force="3"/><force coordinate="x">if(time &lt; 2, 0, 2*(time - 2))</force>
+<state name="heat" rate="rub.force*v"/><state name="worn" rate="abs(rub.force*v) - worn"/></system>"""
+FADING = """<system name="Fading"><parameter name="mu" start="0.5"/><coordinate name="x" velocity="v" velocityStart="20"/><particle mass="2" x="x"/>
+<coordinate name="y" velocity="vy"/><particle mass="2" y="y"/><potential>2*9.81*y</potential><contact name="ground" gap="y"/>
+<state name="hot" rate="brake.force*v/500"/><friction name="brake" coordinate="x" force="mu*ground.force/(1 + hot)"/><work/></system>"""
+
+
 @pytest.fixture(scope="module")
 def systems():
     texts = {f"Lag_{method}": LAG.format(name=f"Lag_{method}", method=method) for method in [*METHODS, "exact"]}
     for method in METHODS:
         texts[f"Filter_{method}"] = PENDULUM.format(name=f"Filter_{method}", method=method, T=0.05)
     texts["Filter_stiff"] = PENDULUM.format(name="Filter_stiff", method="auto", T=1e-5)
+    texts |= {"Pid": PID, "Heat": NETWORK, "Rod": ROD.format(solver=""), "Coupled": COUPLED, "Ball": BALL, "Block": BLOCK, "Fading": FADING}
     build_systems("states", texts, versions=(2, 3))
 
 
@@ -78,3 +112,114 @@ def test_rates_of_accelerations(systems, open_fmu, name, T):
         instance.run(i + 1, 0.5)
         found = [instance.get(n) for n in ("theta", "omega", "filtered", "dose", "tau")]
         np.testing.assert_allclose(found, solution.y[:, i], rtol=2e-7, atol=2e-7)
+
+
+def test_a_controller_without_coordinates(systems, open_fmu):
+    instance = open_fmu("Pid").initialize({"e": 1})
+    t, integral, filtered, u = np.transpose(instance.run(2, 0.05, "I", "D", "u"))
+    np.testing.assert_allclose(integral, t, atol=1e-12)
+    np.testing.assert_allclose(filtered, 1 - np.exp(-100 * t), atol=1e-9)
+    np.testing.assert_allclose(u, np.clip(2 * (1 + t / 0.5 + 10 * np.exp(-100 * t)), -5, 5), atol=1e-8)
+
+
+def test_a_network(systems, open_fmu):
+    n, start = 8, np.arange(1.0, 9)
+    a = np.zeros((n + 1, n + 1))
+    for i in range(n):
+        for j in (i - 1, i + 1):
+            if 0 <= j < n:
+                a[i, j] += 2
+                a[i, i] -= 2
+    a[0, n] = 1
+    instance = open_fmu("Heat").initialize({"P": 1})
+    instance.run(3, 0.5)
+    expected = expm(3 * a) @ [*start, 1]
+    np.testing.assert_allclose([instance.get(f"T[{i + 1}]") for i in range(n)], expected[:n], rtol=1e-9)
+
+
+def rod_rates(t, state):
+    x, y, vx, vy, _, lag = state
+    force, q, v = np.array([-0.3 * lag, -9.81]), np.array([x, y]), np.array([vx, vy])
+    pull = (q @ force + v @ v) / (q @ q)
+    a = force - pull * q
+    return [vx, vy, *a, pull, (a[0] - lag) / 0.1]
+
+
+def test_rates_of_forces_of_constraints(systems, open_fmu):
+    solution = solve_ivp(rod_rates, [0, 2], [1, 0, 0, 0, 0, 0], rtol=1e-12, atol=1e-13)
+    instance = open_fmu("Rod").initialize()
+    instance.run(2, 0.1)
+    found = [instance.get(name) for name in ("x", "y", "vx", "vy", "pull", "lag")]
+    np.testing.assert_allclose(found, solution.y[:, -1], atol=1e-9)
+    assert abs(instance.get("felt") - found[4] - rod_rates(0, found)[5]) < 1e-9
+
+
+def coupled_rates(t, state):
+    q, v, s = state[:5], state[5:10], state[10]
+    total, factor, slope = v.sum(), 1 + np.sin(q[0]) ** 2, np.sin(2 * q[0])
+    force = -2 * q - np.array([q[1] * q[2], q[0] * q[2], q[0] * q[1], 0, 0]) - slope * v[0] * total
+    force[0] += total**2 * slope / 2
+    force[1] += s
+    a = np.linalg.solve(np.eye(5) + factor, force)
+    return [*v, *a, a[0] + a[2] * q[1] - s]
+
+
+def test_rates_of_accelerations_of_a_large_block(systems, open_fmu):
+    solution = solve_ivp(coupled_rates, [0, 5], [1] + [0] * 10, rtol=1e-12, atol=1e-13)
+    instance = open_fmu("Coupled").initialize()
+    instance.run(5, 0.5)
+    np.testing.assert_allclose([instance.get(name) for name in "abcdes"], solution.y[[0, 1, 2, 3, 4, 10], -1], atol=1e-9)
+
+
+def test_events_set_states(systems, open_fmu):
+    """The ball rests from t0 + 2 t0 on, t0 = sqrt(2/g), and its weight is felt from then on; z is reset at 1 s."""
+    instance = open_fmu("Ball").initialize()
+    instance.run(2, 0.01)
+    rest = 3 * np.sqrt(2 / 9.81)
+    assert abs(instance.get("push") - 2 * 9.81 * (2 - rest)) < 1e-6
+    assert abs(instance.get("z") - (3 * np.exp(-1) + 1) * np.exp(-1)) < 1e-9
+    assert instance.get("count") == int(instance.get("count")) > 10
+
+
+def test_heat_of_friction(systems, open_fmu):
+    """All of the kinetic energy of 4 J, while it slides to rest in 4/3 s; from 3.5 s on it slides by the force."""
+    instance = open_fmu("Block").initialize()
+    instance.run(1.5, 0.1)
+    assert abs(instance.get("heat") - 4) < 1e-9
+    instance.run(6, 0.1)
+    assert abs(instance.get("heat") - (4 + 3 * 2.5**3 / 6)) < 1e-8
+
+
+def test_a_brake_that_fades(systems, open_fmu):
+    """Its heat is its work, which <work/> counts too, by the force of a contact."""
+    def rates(t, y):
+        force = 0.5 * 2 * 9.81 / (1 + y[1])
+        return [-force / 2, force * y[0] / 500]
+
+    solution = solve_ivp(rates, [0, 3], [20, 0], rtol=1e-11, atol=1e-12)
+    instance = open_fmu("Fading").initialize()
+    instance.run(3, 0.1)
+    np.testing.assert_allclose([instance.get("v"), instance.get("hot")], solution.y[:, -1], rtol=1e-8)
+    assert abs(instance.get("nonConservativeWork") + 500 * solution.y[1, -1]) < 1e-6
+    assert abs(instance.get("v") ** 2 - 400 - instance.get("nonConservativeWork")) < 1e-6
+
+
+MESSAGES = {
+    "circle": ('<state name="a" rate="der(b)"/><state name="b" rate="der(a)"/>', r"1: .*circle: der\(a\) -> der\(b\) -> der\(a\)"),
+    "itself": ('<state name="a" rate="der(a)"/>', r"circle: der\(a\) -> der\(a\)"),
+    "no rate": ('<state name="a"/>', "<state> needs the attribute 'rate'"),
+    "unit": ('<state name="a" unit="m" rate="b"/><parameter name="b" unit="m" start="1"/>', "the rate has the unit m, expected m/s"),
+    "position": ('<coordinate name="x" velocity="v"/><state name="a" rate="v"/><particle mass="1" x="x + a"/>', "cannot depend on states, but 'a' does"),
+    "acceleration": ('<coordinate name="x" velocity="v"/><state name="a" rate="der(v)"/><particle mass="1" x="x"/><force coordinate="x">der(a)</force>', r"cannot depend on accelerations, but der\(...\) does"),
+    "range": ('<state name="a" rate="1" start="3" max="2"/>', "'a': start 3 is outside min and max"),
+    "set": ('<state name="a" rate="1"/><event when="a - 1"><set state="b">0</set></event>', "there is no state of this name"),
+}
+
+
+@pytest.mark.parametrize("case", MESSAGES)
+def test_messages(case, tmp_path):
+    text, message = MESSAGES[case]
+    (tmp_path / "system.xml").write_text(f'<system name="Bad">{text}</system>')
+    result = lagc(tmp_path / "system.xml", "-o", tmp_path / "out")
+    assert result.returncode == 1 and re.search(message, result.stderr), result.stderr
+    assert not (tmp_path / "out").exists()

@@ -83,6 +83,7 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
       .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = smaller(equations->count, SHOWN_LIMIT),
       .reaction_count = smaller(model->reactions.count, SHOWN_LIMIT),
+      .rate_count = smaller(model->states.count, SHOWN_LIMIT),
       .output_count = smaller(model->outputs.count, SHOWN_LIMIT)};
   summary->inertial = allocate(summary->motion_count, sizeof(Node));
   summary->right_side = allocate(summary->motion_count, sizeof(Node));
@@ -95,6 +96,12 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));
   for (size_t i = 0; i < summary->reaction_count; i++)
     summary->reactions[i] = readable(model, &names, equations->reactions[i]);
+  summary->rates = allocate(summary->rate_count, sizeof(Node));
+  for (size_t i = 0; i < summary->rate_count; i++) {
+    const struct Variable *state = &model->states.items[i];
+    bool is_as_written = !model->linearized && !state->is_work;
+    summary->rates[i] = readable(model, &names, is_as_written ? state->rate : equations->rates.nodes[i]);
+  }
   for (size_t i = 0; i < summary->output_count; i++)
     summary->outputs[i] = readable(model, &names, equations->outputs[i]);
   return summary;

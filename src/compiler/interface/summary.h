@@ -13,8 +13,9 @@ struct Summary {
   bool is_autonomous;             /* L does not depend on time explicitly */
   Node *inertial, *right_side;    /* M a = right side, of the first equations */
   Node *reactions;                /* of the first forces of reaction */
+  Node *rates;                    /* of the first states, which may hold accelerations and forces */
   Node *outputs;                  /* of the first outputs */
-  size_t motion_count, reaction_count, output_count; /* how many are shown */
+  size_t motion_count, reaction_count, rate_count, output_count; /* how many are shown */
 };
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations);
