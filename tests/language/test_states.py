@@ -2,12 +2,15 @@
 
 import re
 
+import fmpy
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
+import fmi3
 import fmu
+from ensemble_runs import alone, ensemble, starts, states
 from fmu import build_systems, lagc
 
 METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
@@ -223,3 +226,53 @@ def test_messages(case, tmp_path):
     result = lagc(tmp_path / "system.xml", "-o", tmp_path / "out")
     assert result.returncode == 1 and re.search(message, result.stderr), result.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name, ranges", [("Filter_taylor", {"theta": (0.5, 2), "tau": (-1, 1)}), ("Block", {"v": (1, 3)}), ("Ball", {"h": (0.5, 1.5), "z": (0, 2)}),
+                                          ("Coupled", {"a": (0.5, 1), "s": (-1, 1)}), ("Rod", {"lag": (-1, 1)})])  # fmt: skip
+def test_many_runs_at_once(systems, name, ranges):
+    rows = starts(ranges, 9)
+    asked = states(name)
+    values, is_left = ensemble(name, ranges, asked, [0, 1, 2]).run(rows)
+    assert not is_left.any()
+    for row, value in zip(rows, values):
+        expected = alone(name, dict(zip(ranges, row)), asked, 2, 2)
+        np.testing.assert_allclose(value, expected, rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["Filter_auto", "Filter_radau", "Rod", "Ball", "Block", "Pid"])
+def test_a_saved_state_goes_on_with_the_same_bits(systems, open_fmu, name):
+    instance, names = open_fmu(name).initialize(), states(name)
+    instance.run(0.7, 0.1)
+    saved = instance.fmu.getFMUstate()
+    first = instance.run(1.6, 0.1, *names)
+    instance.fmu.setFMUstate(saved)
+    instance.time = 0.7
+    assert instance.run(1.6, 0.1, *names) == first
+    instance.free_state(saved)
+
+
+@pytest.mark.parametrize("name", ["Filter_auto", "Block", "Pid", "Rod"])
+def test_model_exchange(systems, name):
+    """By CVode of FMPy, in both versions, and by co-simulation of FMI 3."""
+    asked = states(name)
+    exact = alone(name, {}, asked, 2)[-1]
+    for archive in (fmu.archive(name), fmi3.archive(name)):
+        result = fmpy.simulate_fmu(str(archive), fmi_type="ModelExchange", stop_time=2, output=asked, relative_tolerance=1e-9)
+        np.testing.assert_allclose(list(result[-1])[1:], exact, rtol=2e-5, atol=2e-5)
+    result = fmpy.simulate_fmu(str(fmi3.archive(name)), stop_time=2, output=asked, relative_tolerance=1e-10)
+    np.testing.assert_allclose(list(result[-1])[1:], exact, rtol=1e-8, atol=1e-8)
+
+
+def test_derivatives_of_the_motion(open_fmu):
+    """--along: the derivatives of all states by a parameter, as states of their own, against differences of runs."""
+    build_systems("states-along", {"Filter_along": PENDULUM.format(name="Filter_along", method="taylor", T=0.3)}, "--along", "T", "--along", "tau")
+    instance, h = open_fmu("Filter_along").initialize(), 1e-4
+    instance.run(2, 0.5)
+
+    def end(T, tau):
+        return solve_ivp(pendulum_rates(T), [0, 2], [2, 0, 0, 0, tau], rtol=1e-12, atol=1e-13).y[:, -1]
+
+    for by, ends in (("T", [end(0.3 + s * h, 0) for s in (1, -1)]), ("tau", [end(0.3, s * h) for s in (1, -1)])):
+        found = [instance.get(f"{name}.by.{by}") for name in ("theta", "omega", "filtered", "dose", "tau")]
+        np.testing.assert_allclose(found, (ends[0] - ends[1]) / (2 * h), rtol=1e-5, atol=1e-5)
