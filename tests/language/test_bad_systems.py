@@ -517,7 +517,7 @@ def test_old_output_goes_when_the_system_breaks(tmp_path):
         (["system.xml", "-o", "out", "--solver", "euler"], "euler.*expected taylor, erk, bdf, radau, auto or exact"),
         (["system.xml", "-o", "out", "-D", "N=3"], "no <constant> of this name"),
         (["--linearize", "system.xml", "--at", "alpha=1"], "'alpha'"),
-        (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity or an input"),
+        (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity, a state or an input"),
         (["--linearize", "system.xml", "--at", "theta"], "expected name=value"),
         (["system.xml"], "usage"),
         (["system.xml", "-o"], "usage"),

@@ -30,7 +30,7 @@ SHOWN = dict(l="mm", m="g", w="cm", n="rpm", tau="N.mm", theta="deg", omega="deg
 
 @pytest.fixture(scope="module")
 def archives():
-    fmu.build_systems("shown", {"Shown": SYSTEM}, versions=[2, 3])
+    fmu.build_systems("shown", {"Shown": SYSTEM}, "--arrays", versions=[2, 3])
     second = fmu.archive("Shown")
     return [second, second.parent.parent / "fmi3" / second.name]
 
