@@ -27,7 +27,8 @@ void write_calculated(struct Page *page) {
 
 /* Start values that follow from parameters. */
 void write_starts(struct Page *page) {
-  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities, &page->model->states};
+  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities,
+                                              &page->model->states};
   size_t count = 0;
   for (size_t list = 0; list < 3; list++)
     for (size_t i = 0; i < lists[list]->count; i++) {

@@ -230,7 +230,7 @@ static const char *total_energy_description(const struct Model *model) {
   bool has_work = work_of(model) != NULL;
   if (changes || (model->forces.any && !has_work)) return "kinetic and potential energy";
   return has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
-                                         : "kinetic and potential energy; constant";
+                  : "kinetic and potential energy; constant";
 }
 
 /* Higher derivatives than the first are read from Taylor series, which end at a kink. */

@@ -19,7 +19,8 @@ struct Equations {
   Node *right_side, *residual, *acceleration;
   /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
   bool explicit_form;
-  struct NodeList rates; /* of the model's states behind the velocities; they hold no accelerations of unrolled blocks */
+  struct NodeList
+      rates; /* of the model's states behind the velocities; they hold no accelerations of unrolled blocks */
   /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
   Node power;
   Node stated_power;                            /* the same, which may hold the acceleration symbols */

@@ -183,7 +183,8 @@ static bool can_be_linearized(const struct Model *model, const struct Equations 
     report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
   else if (is_motionless(model))
     report_error(diagnostics, 0,
-                 "the system has neither coordinates nor states, and nothing to linearise; expected a <coordinate> or a <state>");
+                 "the system has neither coordinates nor states, and nothing to linearise; expected a <coordinate> or "
+                 "a <state>");
   return !depends_on_time && !is_motionless(model);
 }
 
@@ -265,7 +266,8 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
                   !fulfils_constraints(&expansion, model, equations, diagnostics);
   if (!singular) {
     find_values(&expansion, model, equations, linear->inertia, linear->acceleration);
-    Node *values = allocate(row_count(linear), sizeof *values), *rates = allocate(equations->rates.count, sizeof *rates);
+    Node *values = allocate(row_count(linear), sizeof *values),
+         *rates = allocate(equations->rates.count, sizeof *rates);
     memcpy(values, linear->acceleration, row_count(linear) * sizeof *values);
     expand_all(&expansion, model, equations, linear);
     for (size_t i = 0; i < equations->rates.count; i++) rates[i] = at_point(&expansion, linear->rates.nodes[i]);

@@ -18,12 +18,12 @@ struct Variable {
   double start, minimum, maximum, nominal; /* NAN where none was given */
   Node start_expression;                   /* of a state, whose value is start; ZERO of others */
   Node node;                               /* the symbol, or the value of an output */
-  Node rate;                               /* of a <state>: its time derivative, which may hold accelerations and forces */
-  char *force_name;                        /* of a constraint, where its force is not NAME.force; else NULL */
-  bool is_of_velocities;                   /* of a constraint, whose force times it is a power then, else an energy */
-  Node force_share;                        /* of a joint's constraint: what of its force has this name; ZERO for all */
-  bool is_fixed;                           /* of a coordinate: constraints move neither its start nor its velocity's */
-  bool is_work;                            /* of a state: that of <work/>, whose rate is the power of the forces */
+  Node rate;             /* of a <state>: its time derivative, which may hold accelerations and forces */
+  char *force_name;      /* of a constraint, where its force is not NAME.force; else NULL */
+  bool is_of_velocities; /* of a constraint, whose force times it is a power then, else an energy */
+  Node force_share;      /* of a joint's constraint: what of its force has this name; ZERO for all */
+  bool is_fixed;         /* of a coordinate: constraints move neither its start nor its velocity's */
+  bool is_work;          /* of a state: that of <work/>, whose rate is the power of the forces */
   long line;
 };
 

@@ -96,8 +96,7 @@ static struct Routine *directional_routine(const struct Program *program, struct
   hold_solutions(values, &program->blocks, expressions->unknowns_along);
   values_compute(values, expressions->rates_along, rates, false);
   for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_SEED_STATE, n + i));
-  for (size_t i = 0; i < rates; i++)
-    values_copy(values, target_place(2 * n + i), expressions->rates_along[i]);
+  for (size_t i = 0; i < rates; i++) values_copy(values, target_place(2 * n + i), expressions->rates_along[i]);
   return routine;
 }
 

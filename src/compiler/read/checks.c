@@ -12,7 +12,8 @@ static void check_content(const struct Reader *reader) {
   const struct Variable *work = work_of(model);
   if (is_motionless(model) && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0,
-                 "the system has neither coordinates, nor states, nor outputs; expected a <coordinate>, a <state> or an <output>");
+                 "the system has neither coordinates, nor states, nor outputs; expected a <coordinate>, a <state> or "
+                 "an <output>");
   if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
                            model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
@@ -20,12 +21,10 @@ static void check_content(const struct Reader *reader) {
     report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates and states has nothing to solve; expected no <solver>");
   if (work != NULL && !model->forces.any)
-    report_error(reader->diagnostics, work->line,
-                 "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && work != NULL &&
-      (model->given.inputs_move || model->given.drive_count > 0))
-    report_error(reader->diagnostics, work->line,
-                 "<work/> beside the constraint '%s' and %s; expected no <work/>", model->constraints.items[0].name,
+    report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
+  if (model->constraints.count > 0 && work != NULL && (model->given.inputs_move || model->given.drive_count > 0))
+    report_error(reader->diagnostics, work->line, "<work/> beside the constraint '%s' and %s; expected no <work/>",
+                 model->constraints.items[0].name,
                  model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
   if (work != NULL && model->given.constraint != NULL)
     report_error(reader->diagnostics, work->line,
@@ -42,8 +41,7 @@ static void warn_without_unit(const struct Reader *reader) {
   for (size_t list = 0; reader->scope->checks_units && list < 5; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL &&
-          !lists[list]->items[i].is_work &&
-          !(lists[list] == &model->inputs && is_input_rate(model, i)))
+          !lists[list]->items[i].is_work && !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that units are not checked where it is used; expected one, or "
                        "unit=\"1\"",

@@ -42,7 +42,9 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   if (kind != COORDINATE && kind != VELOCITY && kind != STATE && kind != INPUT) {
     const char *similar = quantity == NULL ? scope_similar_name(scope, name) : NULL;
     if (similar != NULL) report_error(diagnostics, line, "the point names '%s'; did you mean '%s'?", name, similar);
-    else report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity, a state or an input", name);
+    else
+      report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity, a state or an input",
+                   name);
     return;
   }
   Node symbol = model->graph->vertices[quantity->node].left;

@@ -12,7 +12,8 @@ static const struct Variable *find(const struct Model *model, const char *name) 
                                               &model->velocities, &model->states};
   for (size_t k = 0; k < 5; k++)
     for (size_t i = 0; i < lists[k]->count; i++)
-      if (lists[k]->items[i].type == TYPE_REAL && !lists[k]->items[i].is_work && strcmp(lists[k]->items[i].name, name) == 0)
+      if (lists[k]->items[i].type == TYPE_REAL && !lists[k]->items[i].is_work &&
+          strcmp(lists[k]->items[i].name, name) == 0)
         return &lists[k]->items[i];
   return NULL;
 }
@@ -83,7 +84,6 @@ static void append_outputs(struct Model *model, const struct Equations *equation
   }
 }
 
-
 static const char *why_not(const struct Model *model, const struct Equations *equations) {
   if (equations->explicit_form) return "linearizations";
   if (model->mechanism.stillness_count > 0) return "coordinates without mass";
@@ -136,7 +136,8 @@ void add_variations(struct Model *model, const struct Equations *equations, cons
   if (reason != NULL) report_error(diagnostics, 0, "--along cannot follow %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
-      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate, a velocity or a state", names[k]);
+      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate, a velocity or a state",
+                   names[k]);
     for (size_t j = 0; j < k; j++)
       if (strcmp(names[j], names[k]) == 0) report_error(diagnostics, 0, "--along %s: expected it once", names[k]);
   }

@@ -23,7 +23,8 @@ static void declare(FILE *file, bool is_used, const char *name, const char *sour
 void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine) {
   size_t n = program->equations->count;
   declare(file, reads(routine, SPACE_STATE, 0, n), "q", "point->state");
-  declare(file, reads(routine, SPACE_STATE, n, program->interface->state_count), "v", format_text("point->state + %zu", n));
+  declare(file, reads(routine, SPACE_STATE, n, program->interface->state_count), "v",
+          format_text("point->state + %zu", n));
   declare(file, routine_uses(routine, SPACE_INPUT), "u", "point->input");
   declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
   declare(file, routine_uses(routine, SPACE_PREPARED), "c", "point->prepared");

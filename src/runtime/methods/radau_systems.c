@@ -23,7 +23,8 @@ static void find_places(struct RadauSystems *systems) {
   for (size_t column = 0; column < lagrangian.state_count; column++)
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
       if ((size_t)pattern->row[e] >= n)
-        systems->place[e] = lagrangian.implicit.lu->place((size_t)pattern->row[e] - n, column < n ? column : column - n);
+        systems->place[e] =
+            lagrangian.implicit.lu->place((size_t)pattern->row[e] - n, column < n ? column : column - n);
 }
 
 void radau_systems_place(struct RadauSystems *systems, double *memory) {
@@ -84,8 +85,7 @@ static void subtract_velocities(const struct RadauSystems *systems, size_t width
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       size_t row = (size_t)pattern->row[e];
       if (row < n) continue;
-      for (size_t i = 0; i < width; i++)
-        sum[width * (row - n) + i] -= systems->values[e] * x[width * (column - n) + i];
+      for (size_t i = 0; i < width; i++) sum[width * (row - n) + i] -= systems->values[e] * x[width * (column - n) + i];
     }
   }
 }

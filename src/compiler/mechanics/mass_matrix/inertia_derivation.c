@@ -172,8 +172,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   if (!is_right || border->count > 0) inertia = is_right ? create_bordered(model, &elements, border, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of drives rests on accelerations, which its derivatives need as expressions. */
-  bool power_has_accelerations =
-      (model->given.drive_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
+  bool power_has_accelerations = (model->given.drive_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
   bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];

@@ -118,8 +118,7 @@ static void append_block(struct Values *values, const struct Equations *equation
   append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, equations->right_side);
-  if (with_forces && has_least_forces(block))
-    routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
+  if (with_forces && has_least_forces(block)) routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
       routine_copy(values->routine, place_in(SPACE_ACCELERATION, block->coordinates[i]),

@@ -13,8 +13,9 @@
 /* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
 static Node *create_seeds(struct Graph *graph) {
   static const enum SymbolKind seed_kinds[] = {
-      [PARAMETER] = SEED_PARAMETER, [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,     [VELOCITY] = SEED_VELOCITY,
-      [STATE] = SEED_STATE,         [INPUT] = SEED_INPUT, [ACCELERATION] = SEED_ACCELERATION,
+      [PARAMETER] = SEED_PARAMETER,       [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
+      [VELOCITY] = SEED_VELOCITY,         [STATE] = SEED_STATE, [INPUT] = SEED_INPUT,
+      [ACCELERATION] = SEED_ACCELERATION,
   };
   size_t count = graph->symbol_count;
   Node *seeds = allocate(2 * count, sizeof *seeds);

@@ -55,8 +55,8 @@ struct Expressions {
   Node *unknowns, *unknowns_along;      /* of each row: the symbol of its acceleration or force, and of its seed */
   Node *rates_along;                    /* of the rates of the states behind the velocities */
   struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
-  Node *initial, *initial_along; /* one for each state: its start where it follows, else ZERO */
-  Node *result, *result_along;   /* one for each result; along is ZERO unless it is an output */
+  Node *initial, *initial_along;        /* one for each state: its start where it follows, else ZERO */
+  Node *result, *result_along;          /* one for each result; along is ZERO unless it is an output */
   struct WeightedGradient *weighted_gradient; /* NULL unless asked for, and where there is none */
 };
 

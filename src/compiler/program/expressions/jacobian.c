@@ -117,14 +117,16 @@ static void append_pattern(struct ElementList *list, struct Graph *graph, const 
 static void mark_columns(const struct Graph *graph, size_t coordinates, bool *is_marked) {
   const struct Cone *cone = graph->cone;
   for (size_t k = 0; k < cone->count; k++)
-    if (is_symbol_of(graph, cone->nodes[k], STATE_KINDS)) is_marked[column_of(graph, coordinates, cone->nodes[k])] = true;
+    if (is_symbol_of(graph, cone->nodes[k], STATE_KINDS))
+      is_marked[column_of(graph, coordinates, cone->nodes[k])] = true;
 }
 
 /* The rows of the rates where some hold accelerations or forces, and so all states of the blocks of these. */
 static void append_pattern_of_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
   size_t n = equations->count, states = 2 * n + equations->rates.count;
   for (size_t i = 0; i < equations->rates.count; i++) {
-    bool *is_marked = allocate(states, sizeof *is_marked), *has_block = allocate(equations->inertia->block_count, sizeof *has_block);
+    bool *is_marked = allocate(states, sizeof *is_marked),
+         *has_block = allocate(equations->inertia->block_count, sizeof *has_block);
     cone_collect(graph->cone, graph, &equations->rates.nodes[i], 1);
     mark_columns(graph, n, is_marked);
     for (size_t k = 0; k < graph->cone->count; k++)
