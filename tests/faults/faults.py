@@ -185,7 +185,7 @@ PLACES = [
     ("smallest_pivot = 1e-14;", "smallest_pivot = 0.0;", ctest("test_mass_matrix")),
     ("smallest_pivot = 1e-14;", "smallest_pivot = 1e-6;", ctest("test_mass_matrix")),
     ("if (column[a - 1] > column[b - 1]) a--;", "if (column[a - 1] >= column[b - 1]) a--;", ctest("test_mass_matrix")),
-    ("instance->prepared_is_stale = instance->solver_is_stale = true;\n  instance->told_early_reading", "instance->solver_is_stale = true;\n  instance->told_early_reading",
+    ("instance->prepared_is_stale = instance->solver_is_stale = true;\n  instance->told_impossible_start", "instance->solver_is_stale = true;\n  instance->told_impossible_start",
      pytest("test_state", f"restored_parameters and {PENDULUM}", "SimplePendulum")),
     ('if (header.version != VERSION) return "they come from another version";', "", pytest("test_up_to_date", "another_version")),
     ("if (fixed.kind != (int32_t)instance->kind) return", "if (false) return",

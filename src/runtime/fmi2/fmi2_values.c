@@ -14,37 +14,15 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
   return are_right ? instance : NULL;
 }
 
-static bool may_be_read_early(const struct ScalarVariable *variable) {
-  return is_unknown(variable) || variable->kind == VARIABLE_INPUT || variable->kind == VARIABLE_STATE;
-}
-
-/*
- * In initialization mode the standard allows outputs and initial unknowns alone to be read. Importers such as libcosim
- * read all variables then, and some end at any status but the best; they get the values, and the log tells it once. It does
- * not tell of inputs and states, which MasterSim and CasADi read before they set them.
- */
-static void tell_early_reading(struct Instance *instance, const fmi2ValueReference vr[], size_t nvr) {
-  if (instance->situation->phase != PHASE_INITIALIZATION || instance->told_early_reading) return;
-  for (size_t i = 0; i < nvr && !instance->told_early_reading; i++) {
-    if (vr[i] >= lagrangian.variable_count || may_be_read_early(&lagrangian.variables[vr[i]])) continue;
-    log_message(instance, STATUS_WARNING,
-                "'%s' was read in initialization mode; expected only outputs and InitialUnknowns to be read then",
-                lagrangian.variables[vr[i]].name);
-    instance->told_early_reading = true;
-  }
-}
-
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  tell_early_reading(instance, vr, nvr);
   return status_of(values_get(instance, vr, nvr, value));
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  tell_early_reading(instance, vr, nvr);
   return status_of(values_get_whole(instance, vr, nvr, value, TYPE_INTEGER));
 }
 
@@ -57,7 +35,6 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  tell_early_reading(instance, vr, nvr);
   return status_of(values_get_whole(instance, vr, nvr, value, TYPE_BOOLEAN));
 }
 

@@ -43,8 +43,7 @@ void instance_reset(struct Instance *instance) {
   initial_state_follow(instance);
   instance->situation->changed = CHANGED_VALUES;
   instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->told_early_reading = instance->told_impossible_start = false;
-  instance->told_other_forces = instance->told_other_impulses = false;
+  instance->told_impossible_start = instance->told_other_forces = instance->told_other_impulses = false;
   instance->told_singularity = 0;
 }
 

@@ -90,7 +90,6 @@ struct Instance {
   bool prepared_is_stale;
   bool modes_stay;            /* before the start too: those of the start are being found, or shown */
   bool solver_is_stale;       /* the situation was replaced: what the solver keeps outside of it no longer counts */
-  bool told_early_reading;    /* that a variable was read before it should be, since the last reset */
   bool told_impossible_start; /* that there is no start, since the last reset */
   bool told_other_forces;     /* that forces of contacts may not be the only ones, since the last reset */
   bool told_other_impulses;   /* that an impact has other outcomes, since the last reset */
