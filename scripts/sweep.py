@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT))
 from scripts.ensembles import words
 from scripts.problem import Problem
 from scripts.sweep_words import sweep_words
-from scripts.sweeping import sweep
+from scripts.sweeping import report, sweep
 
 
 def compile_ensemble(source, lanes):
@@ -51,7 +51,7 @@ def main():
     try:
         if not path.exists():
             raise Problem(f"there is no {path}")
-        sweep(path, ROOT / "build" / "results", arguments, ROOT / "build" / "libsweep_runs.so", compile_ensemble)
+        report(lambda: sweep(path, ROOT / "build" / "results", arguments, ROOT / "build" / "libsweep_runs.so", compile_ensemble))
     except Problem as problem:
         sys.exit(f"scripts/sweep: {problem}")
 

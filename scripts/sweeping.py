@@ -7,10 +7,13 @@ until all are there, so that the same command goes on after a kill. Also a modul
 
 import hashlib
 import json
+import math
 import os
 import shutil
 import sys
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from contextlib import nullcontext
+from numbers import Integral, Real
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +131,11 @@ class Parts:
         writer.close()
         replace(temporary, output)
         shutil.rmtree(self.folder)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *problem):
         if self.lock is not None:
             os.close(self.lock)
 
@@ -179,18 +187,27 @@ def simulate_in_threads(*words):
     executor = ThreadPoolExecutor(os.cpu_count())
     try:
         return simulate(executor, 2 * os.cpu_count(), *words)
-    except KeyboardInterrupt:
-        print("interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
-        os._exit(130)  # runs that have begun may take long
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)  # runs that have begun may take long
 
 
-def simulate_with_dask(address, *words):
-    import cloudpickle
-    from distributed import Client
-
+def client_of(address):
+    """Of the Dask cluster with this scheduler."""
+    try:
+        import cloudpickle
+        from distributed import Client
+    except ModuleNotFoundError as missing:
+        raise Problem(f"{missing.name} is not installed; a sweep on a Dask cluster needs it: pip install distributed") from None
+    try:
+        client = Client(address)
+    except (OSError, ValueError) as problem:
+        raise Problem(f"no Dask scheduler answers at '{address}': {problem}; expected an address such as tcp://HOST:8786") from None
     cloudpickle.register_pickle_by_value(sweep_worker)  # a cluster's workers need not have this module
-    with Client(address) as client:
-        return simulate(client.get_executor(pure=False, retries=3), IN_FLIGHT * max(1, sum(client.nthreads().values())), *words)
+    return client
+
+
+def simulate_with_dask(client, *words):
+    return simulate(client.get_executor(pure=False, retries=3), IN_FLIGHT * max(1, sum(client.nthreads().values())), *words)
 
 
 def print_summary(output):
@@ -215,33 +232,56 @@ def print_summary(output):
     print(f"result  {output.resolve()}")
 
 
-def sweep(path, output, arguments, runner, compile_ensemble):
+def check_words(words):
+    """Raises a Problem for the first number that is out of its range."""
+    for name, least, expected in (("random", 1, "a whole number of runs"), ("seed", 0, "a whole number that is not negative")):
+        value = getattr(words, name)
+        if value is not None and not (isinstance(value, Integral) and value >= least):
+            raise Problem(f"{name} is {value!r}; expected {expected}")
+    for name in ("stop_time", "step", "tolerance"):
+        value = getattr(words, name)
+        if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
+            raise Problem(f"{name} is {value!r}; expected a positive number")
+
+
+def report(run):
+    """Calls run(), which returns the path of a sweep's file, for a command line, and prints a summary."""
+    try:
+        output = run()
+    except KeyboardInterrupt:
+        print("interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
+        os._exit(130)  # runs that have begun may take long
+    print_summary(output)
+
+
+def sweep(path, folder, words, runner, compile_ensemble):
     """
-    Of an FMU, to a Parquet file, by the words of sweep_words.py. runner: sweep_runs.c as a shared library; compile_ensemble(source, lanes): the
-    library of ensembles.py, or None.
+    Of an FMU, to a Parquet file, by the words of sweep_words.py; returns its path. runner: sweep_runs.c as a shared library;
+    compile_ensemble(source, lanes): the library of ensembles.py, or None.
     """
+    check_words(words)
     description = described(path)
     if description.fmiVersion != "2.0":
         raise Problem(f"{path} is of FMI {description.fmiVersion}; expected one of FMI 2.0")
-    names = [known_name(name, description) for name, _ in arguments.vary]
+    names = [known_name(name, description) for name, _ in words.vary]
     if len(set(names)) < len(names):
         raise Problem("a variable varies twice")
-    rows = points(arguments.vary, arguments.random, arguments.seed)
+    rows = points(words.vary, words.random, words.seed)
     experiment = description.defaultExperiment
-    stop = arguments.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
-    steps = max(1, round(stop / arguments.step)) if arguments.step else 1
-    settings = {"stop": stop, "steps": steps, "tolerance": arguments.tolerance}
-    output = arguments.output or Path(output) / f"{description.modelName}-sweep.parquet"
+    stop = words.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
+    steps = max(1, round(stop / words.step)) if words.step else 1
+    settings = {"stop": stop, "steps": steps, "tolerance": words.tolerance}
+    output = Path(words.output or Path(folder) / f"{description.modelName}-sweep.parquet")
     archive = Path(path).read_bytes()
     ensemble = None
-    if len(rows) >= LANES_FROM and not arguments.scheduler:  # a cluster's workers may have other processors
+    if len(rows) >= LANES_FROM and not words.scheduler:  # a cluster's workers may have other processors
         ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:
-        parts = Parts(output, plan)
-        words = archive, Path(runner).read_bytes(), rows, names, settings, parts
-        count = simulate_with_dask(arguments.scheduler, *words) if arguments.scheduler else simulate_in_threads(*words, ensemble)
-        parts.join(output, count)
+        with client_of(words.scheduler) if words.scheduler else nullcontext() as client, Parts(output, plan) as parts:
+            task = archive, Path(runner).read_bytes(), rows, names, settings, parts
+            count = simulate_with_dask(client, *task) if client else simulate_in_threads(*task, ensemble)
+            parts.join(output, count)
     except OSError as problem:
         raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command goes on with them") from None
-    print_summary(output)
+    return output

@@ -163,6 +163,52 @@ def test_a_sweep_in_lanes(command, tmp_path):
     assert len(set(runs["runTime"][1:])) < 10  # runs in lanes have equal shares of the time
 
 
+FUNCTIONS = """
+import lagrange_fmu, numpy, pyarrow.parquet
+def columns(**words):
+    table = pyarrow.parquet.read_table(lagrange_fmu.sweep(FMU, stop_time=2, **words)).to_pydict()
+    return table["l"], table["theta"], table["theta_end"]
+l, start, end = map(numpy.array, columns(vary={"l": (0.5, 2, 2), "theta0": numpy.linspace(0.1, 0.3, 3)}, output="runs.parquet"))
+assert l.tolist() == [0.5] * 3 + [2] * 3
+numpy.testing.assert_allclose(end, start * numpy.cos(2 * numpy.sqrt(9.81 / l)), rtol=1e-9)
+l, start, end = map(numpy.array, columns(vary={"l": (0.5, 2), "theta": [0.1, 0.2]}, random=50, seed=3))
+assert len(l) == 50 and 0.5 <= min(l) < max(l) <= 2 and set(start) == {0.1, 0.2}
+numpy.testing.assert_allclose(end, start * numpy.cos(2 * numpy.sqrt(9.81 / l)), rtol=1e-9, atol=1e-12)
+print(lagrange_fmu.live(FMU), lagrange_fmu.live(FMU, "here.html"))
+print("<contact" in lagrange_fmu.words("restitution"), len(lagrange_fmu.words()) > 5 * len(lagrange_fmu.words("restitution")))
+print(set(lagrange_fmu.__all__) <= set(dir(lagrange_fmu)), lagrange_fmu.build.__name__, lagrange_fmu.__version__)
+"""
+
+
+def test_commands_as_functions(tmp_path):
+    """A sweep of a linear pendulum, theta = theta0 cos(sqrt(g/l) t), over a grid and a sample; a page; the reference."""
+    folder = package.assemble(tmp_path / "package")
+    script = FUNCTIONS.replace("FMU", repr(str(fmu.archive("SimplePendulumLinear"))))
+    printed = succeed(package.python(folder, "-c", script, cwd=tmp_path)).splitlines()
+    assert printed[-3:] == ["SimplePendulumLinear.html here.html", "True True", "True build 1"]
+    assert (tmp_path / "here.html").read_bytes() == (tmp_path / "SimplePendulumLinear.html").read_bytes()
+    assert (tmp_path / "runs.parquet").exists() and (tmp_path / "SimplePendulumLinear-sweep.parquet").exists()
+
+
+INTERRUPTED = """
+import os, signal, sys
+class Interrupt:
+    def find_spec(self, name, *where):
+        if name == MODULE:
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Interrupt())
+from lagrange_fmu.__main__ import main
+main()
+"""
+
+
+@pytest.mark.parametrize("module", ["lagrange_fmu.command", "shtab", "lagrange_fmu.commands.words", "lagrange_fmu.running", "fmpy", "numpy"])
+def test_an_interrupt_while_modules_are_imported(module, tmp_path):
+    folder = package.assemble(tmp_path / "package")
+    result = package.python(folder, "-c", INTERRUPTED.replace("MODULE", repr(module)), "run", fmu.archive("SimplePendulum"), cwd=tmp_path)
+    assert result.returncode == 130 and "Traceback" not in result.stderr and list(tmp_path.glob("*.csv")) == []
+
+
 def test_completion(command, tmp_path):
     """What bash is given completes commands, words and files."""
     (tmp_path / "completion").write_text(succeed(command("--print-completion", "bash", cwd=tmp_path)))
@@ -265,14 +311,15 @@ except lagrange_fmu.Problem as problem:
 IN_SENTENCES = """
 import sys, lagrange_fmu
 FMU = PENDULUM
-blocked = ("sympy", "scipy", "scipy.integrate", "pandas")
+blocked = ("sympy", "scipy", "scipy.integrate", "pandas", "distributed", "pyarrow")
 sys.modules |= dict.fromkeys(blocked)
-for call in (lambda: lagrange_fmu.from_sympy(None, "A.xml", {}), lambda: lagrange_fmu.fit(FMU, "data.csv", "l"), lambda: lagrange_fmu.simulate(FMU, stop_time=0.1).to_pandas()):
+for call in (lambda: lagrange_fmu.from_sympy(None, "A.xml", {}), lambda: lagrange_fmu.fit(FMU, "data.csv", "l"), lambda: lagrange_fmu.simulate(FMU, stop_time=0.1).to_pandas(),
+             lambda: lagrange_fmu.sweep(FMU, {"l": [1, 2]})):
     try:
         call()
     except lagrange_fmu.Problem as problem:
         print(problem)
-for name in blocked:
+for name in set(blocked) - {"distributed"}:
     del sys.modules[name]
 calls = [
     lambda: lagrange_fmu.simulate(FMU, output="totalEnergi"),
@@ -285,6 +332,17 @@ calls = [
     lambda: lagrange_fmu.simulate(FMU, stop_time=-1),
     lambda: lagrange_fmu.linearize(FMU, [1]),
     lambda: lagrange_fmu.fit(FMU, "data.csv", vary=[1]),
+    lambda: lagrange_fmu.sweep(FMU, {"l": [1, 2]}, scheduler="tcp://127.0.0.1:1"),
+    lambda: lagrange_fmu.sweep(FMU, ["l"]),
+    lambda: lagrange_fmu.sweep(FMU, {"l": 2}),
+    lambda: lagrange_fmu.sweep(FMU, {"l": "1:2:3"}),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2)}),
+    lambda: lagrange_fmu.sweep(FMU, {"q": (1, 2, 3)}),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2)}, random=-1),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, seed=-1),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, stop_time="2"),
+    lambda: lagrange_fmu.live(FMU, edit=True),
+    lambda: lagrange_fmu.words("restitutoin"),
 ]
 for call in calls:
     try:
@@ -297,6 +355,7 @@ SENTENCES = [
     "sympy is not installed; it comes with pip install sympy",
     "derivatives of motions and fits need SciPy; install it with",
     "pandas is not installed; it comes with pip install pandas",
+    "pyarrow is not installed; it comes with pip install pyarrow",
     "'totalEnergi' is not a variable of SimplePendulum; did you mean 'totalEnergy'?",
     "'start' is not an option of this simulation; expected one of these: start_values, output, input, ",
     "'stop_tmie' is not an option of this simulation; did you mean 'stop_time'?",
@@ -307,6 +366,17 @@ SENTENCES = [
     "the simulation is from 0 s to -1 s by ",
     "at is a list; expected a dict of numbers by name",
     "vary has 1; expected names of variables",
+    "distributed is not installed; a sweep on a Dask cluster needs it: pip install distributed",
+    "vary is ['l']; expected a dict of ranges or values by name, ",
+    "vary has 2 for 'l'; expected (FROM, TO, COUNT), or a list of finite numbers",
+    "vary has '1:2:3' for 'l'; expected (FROM, TO, COUNT), or a list of finite numbers",
+    "vary has (1, 2) for 'l'; expected (FROM, TO, COUNT), (FROM, TO) with random=RUNS, ",
+    "'q' has no start value in SimplePendulum; these have one: ",
+    "random is -1; expected a whole number of runs",
+    "seed is -1; expected a whole number that is not negative",
+    "stop_time is '2'; expected a positive number",
+    f"{fmu.archive('SimplePendulum')} is an FMU; to edit it expected the system.xml that it was made of",
+    "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
     "('time', 'totalEnergy')",
 ]
 

@@ -171,6 +171,9 @@ def test_the_energy_has_an_error_only_where_it_has_a_law(tmp_path):
     (["SimplePendulum", "--vary", "l=1:2"], "'l' has no COUNT"),
     (["SimplePendulum", "--vary", "l"], "is not NAME=FROM:TO:COUNT"),
     (["SimplePendulum", "--vary", "l=1:2:3", "--vary", "l=3"], "varies twice"),
+    (["SimplePendulum", "--vary", "l=1:2", "--random", "-5"], "random is -5; expected a whole number of runs"),
+    (["SimplePendulum", "--vary", "l=1:2:3", "--step", "-1"], "step is -1.0; expected a positive number"),
+    (["SimplePendulum", "--vary", "l=1:2:3", "--scheduler", "nowhere"], "no Dask scheduler answers at 'nowhere'"),
 ])  # fmt: skip
 def test_bad_words(words, message, tmp_path):
     result = subprocess.run(command(tmp_path / "x", *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})

@@ -108,7 +108,7 @@ import os, sys
 from ctypes import CDLL
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from lagrange_fmu.commands.sweep import compile_ensemble
+from lagrange_fmu.sweeps import compile_ensemble
 for path in sys.argv[2:]:
     with TemporaryDirectory() as folder:
         CDLL(str(compile_ensemble(Path(folder), Path(path).read_text(), int(sys.argv[1]))), mode=os.RTLD_NOW).ensemble_serves

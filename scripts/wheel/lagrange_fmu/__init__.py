@@ -11,12 +11,10 @@ What goes wrong is a Problem, whose text names the thing and the remedy; what is
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .building import build, check, new
 from .problem import Problem
 from .variables import instead, names_of, numbers_by_name
 
@@ -24,13 +22,32 @@ if TYPE_CHECKING:
     import numpy as np
 
     from .adjoint import Gradient
+    from .building import build, check, new
     from .fitting import Fit
     from .linearization import Linearization
     from .results import Result
     from .variational import Sensitivities
 
-__version__ = version("lagrange-fmu")
-__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "new", "run", "sensitivities", "simulate"]
+    __version__: str
+
+__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "live", "new", "run", "sensitivities", "simulate", "sweep", "words"]
+
+
+def __getattr__(name: str) -> Any:
+    """Imports these at their first use, so that the command soon takes interrupts."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("lagrange-fmu")
+    if name in ("build", "check", "new"):
+        from . import building
+
+        return getattr(building, name)
+    raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, "__version__"})
 
 
 def simulate(
@@ -158,6 +175,49 @@ def run(
     from .running import run
 
     return run(system, start_values, folder, **words)
+
+
+def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False) -> Path:
+    """
+    Writes the page in which the FMU of a system runs, in any browser and without a network, and returns its path: `output`, else NAME.html in the
+    current folder. With `edit` the system can be changed in the page; it is NAME-edit.html then.
+    """
+    from .pages import live
+
+    return live(system, output, edit)
+
+
+def sweep(
+    system: str | PathLike[str],
+    vary: Mapping[str, tuple[float, ...] | Sequence[float] | np.ndarray],
+    *,
+    random: int | None = None,
+    seed: int = 0,
+    stop_time: float | None = None,
+    step: float | None = None,
+    tolerance: float | None = None,
+    scheduler: str | None = None,
+    output: str | PathLike[str] | None = None,
+) -> Path:
+    """
+    Simulates from a grid or a random sample of start values and parameters, on all cores, and returns the path of a Parquet file with a run in each row:
+    `output`, else NAME-sweep.parquet in the current folder. Finished runs of a sweep that is interrupted are kept beside it, and the same call goes on with them.
+
+    vary: by name a range, which is a tuple (FROM, TO, COUNT), or a list or an array of values; several make a grid
+    random: the number of runs of a random sample in place of the grid, from ranges (FROM, TO) and among values; seed: of the sample
+    stop_time, step: in s; tolerance: relative. Else to the end of the FMU's experiment, in one step, and the FMU's tolerance
+    scheduler: the address of a Dask cluster, which runs them in place of this machine's cores
+    """
+    from .sweeps import sweep
+
+    return sweep(system, vary, random=random, seed=seed, stop_time=stop_time, step=step, tolerance=tolerance, scheduler=scheduler, output=output)
+
+
+def words(word: str | None = None) -> str:
+    """What the reference of the language says about an element, attribute or function; all of it without a word."""
+    from .reference import words
+
+    return words(word)
 
 
 def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:

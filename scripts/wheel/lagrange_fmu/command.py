@@ -15,6 +15,7 @@ from .variables import instead, near_file, nearest
 
 
 FILES = ("system", "input")  # the words of commands that name files
+MODULES = {name: import_module(f".commands.{name}", __package__) for name in COMMANDS}
 
 
 class Words(argparse.ArgumentParser):
@@ -54,8 +55,7 @@ def parser():
     shtab.add_argument_to(words, help="prints what a shell completes the command's words by")
     words.set_defaults(run=lambda arguments: words.print_help())
     commands = words.add_subparsers(metavar="COMMAND")
-    for name in COMMANDS:
-        module = import_module(f".commands.{name}", __package__)
+    for name, module in MODULES.items():
         text = module.__doc__.strip()
         command = commands.add_parser(name, help=text, description=text)
         command.set_defaults(run=module.run)
@@ -67,9 +67,9 @@ def parser():
 
 
 def main(words=None):
-    arguments = parser().parse_args(words)
     warnings.showwarning = lambda message, *where: print(message, file=sys.stderr)
     try:
+        arguments = parser().parse_args(words)
         arguments.run(arguments)
     except Problem as problem:
         sys.exit(f"lagrange-fmu: {problem}")

@@ -1,46 +1,17 @@
 """Shows the reference of the language; with a word, such as stop or inertia, what it says about that."""
 
 import pydoc
-import re
 import sys
-from pathlib import Path
-
-from ..problem import Problem
-from ..variables import nearest
-
-REFERENCE = Path(__file__).resolve().parent.parent / "reference.md"
 
 
 def arguments(parser):
     parser.add_argument("word", nargs="?", metavar="WORD", help="an element, attribute or function")
 
 
-def about(word, text):
-    """The headings, each with its paragraphs and tables' rows that have the word; an example follows what it is one of."""
-    found, heading, shown, follows = [], None, None, False
-    for block in re.split(r"\n{2,}(?![^`]*\n```(?:\n|$))", text):
-        if block.startswith("#"):
-            heading, _, block = block.partition("\n")
-        has = re.search(rf"(?<!\w){re.escape(word)}(?!\w)", block)
-        if has or (follows and block.startswith("```")):
-            if heading != shown:
-                found.append(heading)
-                shown = heading
-            lines = block.split("\n")
-            rows = [line for line in lines if not line.startswith("|") or re.search(rf"(?<!\w){re.escape(word)}(?!\w)", line)]
-            found.append("\n".join(rows))
-        follows = bool(has)
-    return "\n\n".join(found)
-
-
 def run(arguments):
-    text = REFERENCE.read_text(encoding="utf-8")
-    if arguments.word:
-        text = about(arguments.word.strip("<>/"), text)
-        if not text:
-            near = nearest(arguments.word, dict.fromkeys(re.findall(r"[A-Za-z]\w{2,}", REFERENCE.read_text(encoding="utf-8"))))
-            remedy = f"did you mean '{near}'?" if near else "lagrange-fmu words shows all of it"
-            raise Problem(f"the reference says nothing about '{arguments.word}'; {remedy}")
+    from ..reference import words
+
+    text = words(arguments.word)
     if sys.stdout.isatty():
         pydoc.pager(text)
     else:

@@ -1,0 +1,29 @@
+"""Pages in which the FMU of a system runs."""
+
+from pathlib import Path
+
+from .building import origin_of, system_file
+from .caching import keep_what_zig_compiles
+from .live_page.editor import write_editor
+from .live_page.page import write_page
+from .problem import Problem
+from .running import fmu_of, is_fmu
+
+LABORATORY = Path(__file__).parent / "live_page" / "laboratory.wasm"
+
+
+def editor(system, output=None):
+    """Writes the page in which the system can be changed; returns its path."""
+    if is_fmu(system):
+        raise Problem(f"{system} is an FMU; to edit it expected the system.xml that it was made of")
+    file = system_file(system)
+    name = file.parent.resolve().name if file.name == "system.xml" else file.stem
+    return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"))
+
+
+def live(system, output=None, edit=False):
+    if edit:
+        return editor(system, output)
+    keep_what_zig_compiles()
+    with fmu_of(system) as fmu:
+        return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system))

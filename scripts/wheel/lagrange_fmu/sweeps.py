@@ -1,0 +1,98 @@
+"""Sweeps of systems that need not be built yet, and the libraries that zig compiles for them."""
+
+import math
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import SimpleNamespace
+
+from . import caching
+from .building import runtime_key, take_or_compile
+from .problem import Problem
+from .running import fmu_of
+from .runtime.scripts.cross import zig
+
+PACKAGE = Path(__file__).parent
+RUNTIME = PACKAGE / "runtime"
+HOW = (PACKAGE / "ensembles.py", Path(__file__))  # what tells how the libraries are compiled
+
+
+def compiled(place, name, key, what, words_for):
+    """The library that zig makes by words_for(library), in a folder of its own in the place; compiled when it is needed first."""
+    library = place / name / name
+
+    def compile_library():
+        library.parent.mkdir()
+        zig("cc", *words_for(library), cache=place / "cache")
+
+    take_or_compile(caching.key_of(runtime_key(), *(file.read_bytes() for file in HOW), *key), library.parent, what, compile_library)
+    return library
+
+
+def runner(place):
+    """What calls the FMU."""
+    words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", RUNTIME / "include", RUNTIME / "scripts" / "sweep_runs.c"]
+    return compiled(place, "sweep_runs", ["sweep"], "the library that runs sweeps cannot be compiled", lambda library: [*words, "-o", library])
+
+
+def ensemble_runtime(place):
+    """What runs in lanes have of the runtime of FMUs, as an object: all in one piece, once for all systems."""
+    from .ensembles import includes, runtime_sources
+
+    source, runtime = place / "ensemble_runtime.c", RUNTIME / "src" / "runtime"
+    source.write_text("".join(f'#include "{file.relative_to(runtime).as_posix()}"\n' for file in runtime_sources(RUNTIME)), encoding="utf-8")
+    words = ["-std=c11", "-O2", "-ffp-contract=off", "-fPIC", "-fvisibility=hidden", "-c", *includes(RUNTIME), source]
+    what = "the runtime of many runs at once cannot be compiled"
+    return compiled(place, "ensemble_runtime.o", ["ensemble_runtime"], what, lambda library: [*words, "-o", library])
+
+
+def compile_ensemble(place, source, lanes):
+    """What runs many at once; not on Windows, where nobody has tried it."""
+    from .ensembles import words
+
+    if os.name == "nt":
+        return None
+    rest = [*sorted((RUNTIME / "src" / "ensemble").rglob("*.c")), ensemble_runtime(place), "-lm"]
+    what = "the FMU's equations cannot be compiled for many runs at once"
+    return compiled(place, "ensemble", ["ensemble", source, lanes], what, lambda library: [*words(RUNTIME, lanes, source, place, library), *rest])
+
+
+def sweeping():
+    """The module, which needs pyarrow."""
+    try:
+        from . import sweeping
+    except ModuleNotFoundError as missing:
+        raise Problem(f"{missing.name} is not installed; it comes with pip install pyarrow") from None
+    return sweeping
+
+
+def sweep_by_words(system, words):
+    """By the words of sweep_words.py; returns the path of the Parquet file."""
+    sweep = sweeping().sweep
+    with fmu_of(system) as fmu, tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        return sweep(fmu, ".", words, runner(place), lambda source, lanes: compile_ensemble(place, source, lanes))
+
+
+def variation(name, values, random):
+    """As sweep_words.py has it: a range as a tuple FROM, TO, COUNT, whose COUNT may be None; or a list of values."""
+    try:
+        numbers = [] if isinstance(values, str) else [float(value) for value in values]
+    except (TypeError, ValueError):
+        numbers = []
+    if not numbers or not all(map(math.isfinite, numbers)):
+        raise Problem(f"vary has {values!r} for '{name}'; expected (FROM, TO, COUNT), or a list of finite numbers")
+    if not isinstance(values, tuple):
+        return name, numbers
+    if len(numbers) == 2 and random is not None:
+        return name, (*numbers, None)
+    if len(numbers) != 3 or numbers[2] < 1 or numbers[2] % 1 != 0:
+        raise Problem(f"vary has {values!r} for '{name}'; expected (FROM, TO, COUNT), (FROM, TO) with random=RUNS, or a list of values")
+    return name, (*numbers[:2], int(numbers[2]))
+
+
+def sweep(system, vary, **words):
+    if not isinstance(vary, Mapping) or not vary:
+        raise Problem(f"vary is {vary!r}; expected a dict of ranges or values by name, such as {{'l': (0.5, 2, 50), 'm': [1, 2]}}")
+    return sweep_by_words(system, SimpleNamespace(vary=[variation(name, values, words["random"]) for name, values in vary.items()], **words))
