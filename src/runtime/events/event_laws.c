@@ -5,7 +5,6 @@
 #include "events/branches.h"
 #include "events/exchange.h"
 #include "events/passing.h"
-#include "events/settle.h"
 #include "events/settlement.h"
 
 static bool holds_at_times(const char *constraint) {
@@ -17,7 +16,7 @@ static bool holds_at_times(const char *constraint) {
 }
 
 const struct EventLaws event_laws = {.work_count = settlement_work_count,
-                                     .settle = settle,
+                                     .settle = exchange_settle,
                                      .guess = branches_guess,
                                      .start = events_start,
                                      .part_contacts = events_part_contacts,

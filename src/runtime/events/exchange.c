@@ -6,9 +6,13 @@
 
 #include "evaluation/evaluate.h"
 #include "events/indicators.h"
+#include "events/settle.h"
 #include "events/settlement.h"
 
 enum { APPROACH_LIMIT = 20 };
+
+/* Expressions of events that an importer has passed at once, one after another. */
+enum { LATE_LIMIT = 8 };
 
 /* A little further than to the zero itself, where rounding may leave a state beyond it. */
 static const double surplus = 64.0 * DBL_EPSILON;
@@ -104,4 +108,98 @@ bool exchange_is_due(struct Instance *instance) {
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++)
     due |= (indicator_sign(instance, i) < 0.0 ? -value[i] : value[i]) < 0.0;
   return due;
+}
+
+/*
+ * Events that look both ways. An importer is beyond the zero of their expression when it asks, and what turns the motion back there
+ * would pass the zero again on the way back. The motion is taken back to the zero by its Taylor polynomial of second order, goes
+ * through the event as in co-simulation, and forward again for the same time. Both errors are of third order in the lateness.
+ */
+
+/* Whether an event looks both ways, and the importer came to the present state by integration. */
+static bool may_turn_back(const struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool looks_both_ways = false;
+  for (size_t i = 0; i < switches->event_count; i++) looks_both_ways |= switches->events[i].passage == PASSAGE_BOTH;
+  return looks_both_ways && switches->has_sides && instance->situation->changed != CHANGED_VALUES;
+}
+
+/* In s: how long ago an expression was 0 that has left its side; 0 for none. */
+static double lateness_of(const struct Settlement *settlement, size_t branch) {
+  const struct BranchFacts *facts = &settlement->switches->branches[branch];
+  double side = mode_of(settlement, facts->mode), value = settlement->value[branch];
+  double rate = settlement->value[branch_rate_place(settlement->switches, branch)];
+  return facts->is_side && side * value < 0.0 && side * rate < 0.0 ? value / rate : 0.0;
+}
+
+/* The expression that was passed first; branch_count for none. */
+static size_t find_late_branch(const struct Settlement *settlement) {
+  size_t passed = settlement->switches->branch_count;
+  double longest = 0.0;
+  for (size_t i = 0; i < settlement->switches->branch_count; i++) {
+    double lateness = lateness_of(settlement, i);
+    if (!(lateness > longest)) continue;
+    longest = lateness;
+    passed = i;
+  }
+  return passed;
+}
+
+/* Moves the state by a time, with the accelerations that were evaluated last. */
+static void move_by(struct Settlement *settlement, double duration) {
+  const double *acceleration = settlement_accelerations(settlement);
+  double *position = settlement->state, *velocity = position + lagrangian.coordinate_count;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
+    position[i] += duration * (velocity[i] + 0.5 * duration * acceleration[i]);
+    velocity[i] += duration * acceleration[i];
+  }
+  settlement->time += duration;
+}
+
+/* Moves the state back to the zero of a branch. False where that is not found. */
+static bool go_to_zero(struct Settlement *settlement, size_t branch) {
+  for (int i = 0; i < APPROACH_LIMIT; i++) {
+    double rate = settlement->value[branch_rate_place(settlement->switches, branch)];
+    double duration = -settlement->value[branch] / rate;
+    if (!isfinite(duration)) return false;
+    if (fabs(duration) <= 4.0 * DBL_EPSILON * fabs(settlement->time) || settlement->value[branch] == 0.0) return true;
+    move_by(settlement, duration);
+    if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
+  }
+  return false;
+}
+
+/* Goes through the event at the first zero that was passed. *passes where there was one. NULL, or the reason why it cannot. */
+static const char *pass_late(struct Instance *instance, bool *passes, bool *changed) {
+  double time = instance->situation->time, *state = instance->event_state, *before = state + lagrangian.state_count;
+  size_t size = lagrangian.state_count * sizeof *state;
+  *passes = false;
+  memcpy(state, instance->state, size);
+  struct Settlement settlement = settlement_at(instance, time, state, IN_EXCHANGE);
+  if (evaluate_prepare(instance) != STATUS_DONE || !settlement_values(&settlement, state, settlement.value))
+    return NULL;
+  size_t branch = find_late_branch(&settlement);
+  if (branch == lagrangian.switches->branch_count || !go_to_zero(&settlement, branch)) return NULL;
+  double zero = settlement.time;
+  memcpy(before, state, size);
+  const char *problem = settle(instance, zero, state, AT_EVENT, branch, passes);
+  *changed |= *passes;
+  if (problem != NULL || memcmp(before, state, size) == 0) return problem;
+  settlement = settlement_at(instance, zero, state, IN_EXCHANGE);
+  if (evaluate_prepare(instance) != STATUS_DONE || !settlement_values(&settlement, state, settlement.value))
+    return "there are no accelerations behind an event";
+  move_by(&settlement, time - zero);
+  memcpy(instance->state, state, size);
+  return NULL;
+}
+
+const char *exchange_settle(struct Instance *instance, bool *changed) {
+  const char *problem = NULL;
+  bool passes = may_turn_back(instance), others;
+  *changed = false;
+  for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes, changed);
+  if (problem != NULL) return problem;
+  problem = settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, &others);
+  *changed |= others;
+  return problem;
 }

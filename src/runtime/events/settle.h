@@ -8,7 +8,11 @@
 
 #include "instance/event_laws.h"
 
-/* As in struct EventLaws. */
+/*
+ * Brings the modes into agreement with the state at a time, with impacts and events, which change the state. indicator is the one
+ * whose sign changed, for AT_EVENT. changed tells whether anything did. NULL, or the reason why the motion cannot go on, after
+ * logging what is to blame.
+ */
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed);
 

@@ -75,8 +75,7 @@ struct Settlement settlement_at(struct Instance *instance, double time, double *
   return settlement;
 }
 
-/* As the last evaluation left them. */
-static const double *accelerations_of(const struct Settlement *settlement) {
+const double *settlement_accelerations(const struct Settlement *settlement) {
   return lagrangian.constraints.accelerations != NULL ? settlement->acceleration
                                                       : settlement->derivative + lagrangian.coordinate_count;
 }
@@ -88,7 +87,7 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
     instance->singular = lagrangian.constraints.accelerations(&point, settlement->acceleration);
   else instance->singular = lagrangian.derivatives(&point, settlement->derivative);
   if (instance->singular != 0) return false;
-  settlement->switches->switching_values(&point, accelerations_of(settlement), value);
+  settlement->switches->switching_values(&point, settlement_accelerations(settlement), value);
   return true;
 }
 
@@ -113,7 +112,7 @@ static bool values_rounded(struct Settlement *settlement, bool otherwise, double
 static void take_roundings(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double *rounding = settlement->rounding;
-  indicator_roundings(settlement->instance, settlement->time, settlement->state, accelerations_of(settlement),
+  indicator_roundings(settlement->instance, settlement->time, settlement->state, settlement_accelerations(settlement),
                       rounding);
   for (size_t i = 0; i < switches->branch_count; i++) add_noise(settlement, i, rounding[i]);
   for (size_t i = 0; i < switches->contact_count; i++)

@@ -110,6 +110,9 @@ bool settlement_evaluate(struct Settlement *settlement);
 /* The values at a state, without what rounding may make of them. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
 
+/* The accelerations as the last evaluation left them. */
+const double *settlement_accelerations(const struct Settlement *settlement);
+
 /* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
 bool settlement_push(struct Settlement *settlement);
 

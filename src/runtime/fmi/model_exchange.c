@@ -79,6 +79,8 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 
 void exchange_enter_event_mode(struct Instance *instance) {
   if (instance->situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
+  /* What is set from here on may jump; what was set on the way follows a continuous course. */
+  if (instance->situation->phase == PHASE_CONTINUOUS_TIME) instance->situation->changed = CHANGED_NOTHING;
   instance->situation->phase = PHASE_EVENT;
 }
 
@@ -114,9 +116,8 @@ bool exchange_complete_step(struct Instance *instance) {
 static enum Status settle_modes(struct Instance *instance, bool *changed) {
   const struct EventLaws *laws = lagrangian.event_laws;
   if (laws == NULL) return STATUS_DONE;
-  const char *problem = instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed)
-                                                             : laws->settle(instance, instance->situation->time,
-                                                                            instance->state, IN_EXCHANGE, 0, changed);
+  const char *problem =
+      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed) : laws->settle(instance, changed);
   return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
 }
 

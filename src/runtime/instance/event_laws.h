@@ -37,12 +37,11 @@ struct EventLaws {
   /* Numbers of workspace that an instance needs. */
   size_t (*work_count)(void);
   /*
-   * Brings the modes into agreement with the state at a time, with impacts and events, which change the state. indicator is
-   * the one whose sign changed, for AT_EVENT. changed tells whether anything did. NULL, or the reason why the motion cannot
-   * go on, after logging what is to blame.
+   * Brings the modes into agreement with the state that an importer has integrated to, with impacts and events, which change
+   * the state. changed tells whether anything did. NULL, or the reason why the motion cannot go on, after logging what is to
+   * blame.
    */
-  const char *(*settle)(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
-                        bool *changed);
+  const char *(*settle)(struct Instance *instance, bool *changed);
   /* Sets the modes to what start values say, as long as these may be set: no contact is closed, and all friction slides. */
   void (*guess)(struct Instance *instance);
   /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
