@@ -1,14 +1,17 @@
 """Derivatives of motions, and fits to measurements, of the package: against closed forms, and data that were made with known values and noise."""
 
 import math
+import pickle
 import re
 import subprocess
+import warnings
 from xml.etree import ElementTree
 
 import mpmath
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.stats import truncnorm
 
 import fmu
 import package
@@ -27,12 +30,18 @@ WALLED = """<system name="Walled"><parameter name="l" start="1" unit="m"/><param
 OFF = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('"PendulumCartesian"', '"Off"').replace('start="-1"', 'start="0.72"').replace('name="y"', 'name="y" start="-0.96"')
 NOTED = """<system name="Noted"><parameter name="w" start="1"/><coordinate name="x" velocity="v" start="1"/><mode name="fastest" start="0"/><particle mass="1" x="x"/>
   <potential>w^2*x^2/2</potential><event when="x" direction="falling"><set mode="fastest">v</set></event></system>"""
+SUM = """<system name="Sum"><parameter name="p" start="1" unit="N"/><parameter name="r" start="0" unit="N"/><parameter name="tiny" start="0" unit="1"/>
+  <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><force coordinate="x">p + r + tiny*1e9</force></system>"""
+LEAST = """<system name="Least"><parameter name="p" start="1" unit="N" min="0"/><coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><force coordinate="x">p</force></system>"""
+DISK = """<system name="Disk"><parameter name="T" start="2" unit="N.m"/><coordinate name="phi" velocity="w" unit="rad"/><kinetic>w^2/2</kinetic><force coordinate="phi">T</force></system>"""
+RUBBED = """<system name="Rubbed"><parameter name="F" start="1" unit="N" min="0"/><parameter name="d" start="0.2" unit="N.s2/m2" min="0"/><input name="u" unit="N"/>
+  <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><friction name="rub" coordinate="x" force="F"/><force coordinate="x">u - d*v*abs(v)</force></system>"""
 RELEASED = WALLED.replace('"Walled"', '"Released"').replace('unit="m"/><particle', 'unit="m" start="-0.7*l"/><particle')
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Noted": NOTED, "Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
+    build_systems("fitted", {"Sum": SUM, "Least": LEAST, "Disk": DISK, "Rubbed": RUBBED, "Noted": NOTED, "Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
@@ -276,6 +285,122 @@ def test_what_data_do_not_tell(lagrange_fmu):
     assert found.values["k"] / found.values["m"] == pytest.approx(61 / 1.7, rel=1e-3)
 
 
+def line(rows=41, slope=5.0, noise=1e-3, seed=0):
+    """Of a body of 1 kg that a force of 5 N sets in motion: x = F t^2/2."""
+    times = np.linspace(0, 2, rows)
+    x = slope * times**2 / 2 + noise * np.random.default_rng(seed).standard_normal(rows)
+    return np.rec.fromarrays([times, x], names="time,x").view(np.ndarray)
+
+
+def test_only_a_sum_is_known(lagrange_fmu):
+    """Of two forces; alone, one has the deviation sigma/|t^2/2| of a straight line, whatever its unit."""
+    data = line()
+    both = lagrange_fmu.fit(fmu.archive("Sum"), data, ["p", "r", "tiny"], noise={"x": 1e-3})
+    assert {frozenset(shares) for shares in both.untold} <= {frozenset(pair) for pair in (("p", "r"), ("p", "tiny"), ("r", "tiny"))} and len(both.untold) == 2
+    assert all(np.isinf(deviation) for deviation in both.deviations.values())
+    alone = lagrange_fmu.fit(fmu.archive("Sum"), data, ["p"], noise={"x": 1e-3})
+    expected = 1e-3 / np.linalg.norm(data["time"] ** 2 / 2)
+    assert alone.deviations["p"] == pytest.approx(expected, rel=1e-6)
+    tiny = lagrange_fmu.fit(fmu.archive("Sum"), data, ["tiny"], noise={"x": 1e-3})
+    assert tiny.deviations["tiny"] == pytest.approx(1e-9 * expected, rel=1e-6)
+
+
+def test_fewer_numbers_than_values(lagrange_fmu):
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), measured(np.random.default_rng(0), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})[[0, 20]], ["m", "k", "d", "x"])
+    assert all(np.isinf(deviation) for deviation in found.deviations.values()) and "the deviations are unknown" in str(found)
+
+
+def test_far_above_the_noise(lagrange_fmu):
+    """Is told, and deviations count with what remains."""
+    with pytest.warns(UserWarning, match="the residual of x is [0-9.]+ times its stated noise"):
+        found = lagrange_fmu.fit(fmu.archive("Sum"), line(), ["p"], noise={"x": 1e-5})
+    assert "misfit: the residual of x" in str(found)
+    assert found.deviations["p"] == pytest.approx(1e-3 / np.linalg.norm(line()["time"] ** 2 / 2), rel=0.4)
+
+
+def test_at_a_limit(lagrange_fmu):
+    """A value that the data would have below its least has an end on the other side: that of the normal law which the limit cuts."""
+    data = line(slope=-1e-4)
+    found = lagrange_fmu.fit(fmu.archive("Least"), data, ["p"], noise={"x": 1e-3})
+    squares = data["time"] ** 2 / 2
+    mean, deviation = data["x"] @ squares / (squares @ squares), 1e-3 / np.linalg.norm(squares)
+    end = truncnorm(-mean / deviation, np.inf, loc=mean, scale=deviation).ppf(0.95)
+    assert mean < 0 and found.at_limit == ("p",) and found.values["p"] == 0
+    assert found.intervals["p"] == pytest.approx((0, end), rel=1e-2) and found.deviations["p"] == pytest.approx(deviation, rel=1e-6)
+
+
+def test_outliers(lagrange_fmu):
+    data = line()
+    data["x"][::8] += 0.5
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        off = {loss: abs(lagrange_fmu.fit(fmu.archive("Sum"), data, ["p"], start_values={"r": 2.0}, noise={"x": 1e-3}, loss=loss).values["p"] - 3) for loss in ("linear", "cauchy")}
+    assert off["cauchy"] < 3e-3 < 3e-2 < off["linear"]
+    for loss, noise, why in (("cubic", {"x": 1.0}, "expected one of linear, soft_l1, huber, cauchy"), ("huber", {}, "expected the noise")):
+        with pytest.raises(lagrange_fmu.Problem, match=why):
+            lagrange_fmu.fit(fmu.archive("Sum"), data, ["p"], noise=noise, loss=loss)
+
+
+def test_angles_that_wrap(lagrange_fmu):
+    """A disk that turns three times, within -pi and pi."""
+    times = np.linspace(0, 4, 81)
+    angle = 0.5 * 2.4 * times**2
+    data = np.rec.fromarrays([times, np.angle(np.exp(1j * angle))], names="time,phi").view(np.ndarray)
+    found = lagrange_fmu.fit(fmu.archive("Disk"), data, ["T"])
+    assert found.values["T"] == pytest.approx(2.4, rel=1e-7) and "'phi' jumps by a turn" in str(found)
+
+
+@pytest.mark.parametrize("start", [0.0, 2.0])
+def test_friction_without_derivatives(lagrange_fmu, start):
+    """Of a block at rest or on its way beside a quadratic drag, driven by a measured force: the search ends, and its values are those of the data."""
+    times = np.linspace(0, 3, 61)
+    force = 4 * np.sin(3 * times)
+    speed, speeds, span, steps = start, [start], 1e-5, 5000
+    for u in np.interp(np.arange(60 * steps) * span, times, force).reshape(60, steps):
+        for push in u:  # friction of 1.2 N takes what it can of the speed
+            speed += span * (push - 0.3 * speed * abs(speed))
+            speed = np.sign(speed) * max(abs(speed) - span * 1.2, 0.0)
+        speeds.append(speed)
+    data = np.rec.fromarrays([times, speeds, force], names="time,v,u").view(np.ndarray)
+    found = lagrange_fmu.fit(fmu.archive("Rubbed"), data, ["F", "d", "v"], start_values={"v": start, "F": 0.8, "d": 0.1})
+    assert found.is_finished and [found.values[name] for name in ("F", "d")] == pytest.approx([1.2, 0.3], rel=2e-3)
+
+
+def test_what_was_found_is_kept(lagrange_fmu, monkeypatch):
+    """A trial that fails is a rejected step; Ctrl-C ends the search with the best values."""
+    from lagrange_fmu.sensitivity import Motion
+    from lagrange_fmu.variational import SteppedMotion
+
+    follow, count = Motion.over, []
+
+    def over(self, *arguments):
+        count.append(1)
+        if len(count) == 2:
+            raise lagrange_fmu.Problem("no way on")
+        return follow(self, *arguments)
+
+    def fail(self, *arguments):
+        raise lagrange_fmu.Problem("no way on")
+
+    data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
+    with monkeypatch.context() as patch:
+        patch.setattr(Motion, "over", over)
+        patch.setattr(SteppedMotion, "over", fail)
+        found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"])
+    assert found.is_finished and found.values["k"] == pytest.approx(61, abs=0.3) and "1 of " in str(found)
+
+    def stop(self, *arguments):
+        count.append(1)
+        if len(count) == 3:
+            raise KeyboardInterrupt
+        return follow(self, *arguments)
+
+    count.clear()
+    monkeypatch.setattr(Motion, "over", stop)
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"])
+    assert not found.is_finished and "stopped after 3 motions" in repr(found) and 50 < found.values["k"] < 70
+
+
 def test_command(tmp_path):
     """A page with a picture, and a system that lagc reads with the new values; comments stay."""
     folder = package.assemble(tmp_path / "package")
@@ -292,7 +417,7 @@ def test_command(tmp_path):
 
 
 def test_the_fitted_system(lagrange_fmu, tmp_path):
-    from lagrange_fmu.fitting import Fit
+    from lagrange_fmu.fit_result import Fit
 
     (tmp_path / "system.xml").write_text(OSCILLATOR)
     fit = Fit({"k": 61.5, "v": -2.0, "x": 0.25}, {}, {}, None, [], [], [], {}, "Oscillator", tmp_path / "system.xml", ["k", "v", "x"])
@@ -302,3 +427,11 @@ def test_the_fitted_system(lagrange_fmu, tmp_path):
     subprocess.run([fmu.LAGC, tmp_path / "fitted.xml", "-o", tmp_path / "out"], check=True)
     starts = {v.get("name"): v[0].get("start") for v in ElementTree.parse(tmp_path / "out" / "modelDescription.xml").iterfind("ModelVariables/ScalarVariable")}
     assert [starts[name] for name in ("k", "v", "x", "m")] == ["61.5", "-2", "0.25", "2"]
+
+
+def test_pickled_motions(lagrange_fmu):
+    """Keep what they are drawn from, as parts of them do."""
+    motion = lagrange_fmu.simulate(fmu.archive("Oscillator"), {"x": 0.2}, stop_time=0.5)
+    for part in (motion, motion[3:]):
+        back = pickle.loads(pickle.dumps(part))
+        assert (back == part).all() and back.description.modelName == "Oscillator" and back.motion.start["x"] == 0.2

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from .adjoint import Gradient
     from .building import build, check, new
-    from .fitting import Fit
+    from .fit_result import Fit
     from .linearization import Linearization
     from .results import Result
     from .variational import Sensitivities
@@ -151,18 +151,20 @@ def fit(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     noise: Mapping[str, float] | None = None,
     each: Sequence[str] = (),
+    loss: str = "linear",
 ) -> Fit:
     """
     Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
     inputs in its first line, perhaps with units; or a structured array of these; or several experiments; NaN, or nothing, is what was not measured. Least squares from the start values on, with the exact
     derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
     is not given all columns count the same. `each` has start values, parameters or inputs which are found for each experiment by itself, beginning where
-    these were measured first. The Fit has values, deviations, intervals of 95 %, and what the data do not tell; it can
-    write_page() and write_system().
+    these were measured first. `loss` "soft_l1", "huber" or "cauchy" counts residuals beyond the noise less than by their squares, for data with outliers. The Fit has values, deviations,
+    intervals of 95 %, what the data do not determine and remarks, such as of a misfit; it can write_page() and write_system(). A motion that cannot be computed is a
+    rejected step. Where there are no exact derivatives, differences are taken. Ctrl-C ends the search with the best values so far.
     """
     from .fitting import fit
 
-    return fit(system, data, names_of(vary, "vary"), numbers_by_name(start_values), dict(bounds or {}), numbers_by_name(noise, "noise"), names_of(each, "each"))
+    return fit(system, data, names_of(vary, "vary"), numbers_by_name(start_values), dict(bounds or {}), numbers_by_name(noise, "noise"), names_of(each, "each"), loss)
 
 
 def run(

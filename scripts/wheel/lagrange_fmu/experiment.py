@@ -41,6 +41,25 @@ class Experiment:
             raise Problem(f"the noise is {', '.join(f'{name}={noise[name]:g}' for name in self.measured if name in noise)}; expected positive numbers")
         self.values = np.stack([self.data[name] for name in self.measured], axis=1)
         self.is_measured = np.isfinite(self.values)
+        self.wraps = {}  # of measured angles that do, the time of the first jump
+        for i, name in enumerate(self.measured):
+            if point.units.get(name) == "rad":
+                self._unwrap(i, name)
+
+    def _unwrap(self, i, name):
+        """Removes the jumps of an angle that lies within a turn, unless they are as frequent as steps: that is a motion of few rows."""
+        rows = self.is_measured[:, i]
+        values, times = self.values[rows, i], self.data["time"][rows]
+        jumps = np.flatnonzero(abs(np.diff(values)) > np.pi)
+        if len(jumps) and np.ptp(values) < 2 * np.pi + 0.1 and 2 * len(jumps) < len(values) - 1:
+            self.values[rows, i], self.wraps[name] = np.unwrap(values), float(times[jumps[0] + 1])
+
+    def unwrapped(self):
+        """The data, of which angles do not wrap."""
+        data = np.array(self.data)
+        for name in self.wraps:
+            data[name] = self.values[:, self.measured.index(name)]
+        return data
 
     def _check_columns(self, point):
         read = [*dict.fromkeys([*point.outputs, *point.states, *point.derivatives])]
@@ -57,8 +76,12 @@ class Experiment:
                 raise Problem(f"the input '{name}' of the data has rows without a value; expected one in each, since the motion needs it")
 
     def off(self, found):
-        """By how much a motion, n x measured, misses the data, in units of the noise; 0 of what was not measured."""
-        return np.where(self.is_measured, (found - self.values) / self.noise, 0.0)
+        """By how much a motion, n x measured, misses the data, in units of the noise; 0 of what was not measured. Angles that wrap are known but for whole turns."""
+        off = found - self.values
+        for name in self.wraps:
+            i = self.measured.index(name)
+            off[:, i] -= 2 * np.pi * np.round(off[self.is_measured[:, i], i][0] / (2 * np.pi))
+        return np.where(self.is_measured, off / self.noise, 0.0)
 
     @property
     def signals(self):

@@ -1,149 +1,92 @@
 """Parameters and start values from measurements, by least squares with the derivatives of the motion."""
 
-import base64
-import html
-import io
-from dataclasses import dataclass
-from pathlib import Path
-from xml.etree import ElementTree
+import warnings
+from contextlib import ExitStack
 
 import numpy as np
+from fmpy.fmi1 import FMICallException
 
 from .building import system_file
 from .experiment import Experiment, check_noise
+from .fit_result import Fit
 from .problem import Problem
 from .running import is_fmu
 from .sensitivity import check_names, check_once  # first, since it tells where SciPy is missing
-from .variational import followed, motion
+from .variational import DifferencedMotion, followed, motion, stepped
 
 from scipy.optimize import least_squares  # isort: skip
-from scipy.stats import t as student  # isort: skip
 
-UNTOLD = 1e-7  # of the largest singular value: a direction of values which the data do not tell
+from .estimates import CORRELATED, correlation_of_rows, estimate, is_misfit, loss_of, without_undetermined  # isort: skip
+
 TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True)
-class Fit:
-    """Values by name in SI units, and how well the data tell them."""
-
-    values: dict
-    deviations: dict  # standard deviations; infinite for what the data do not tell
-    intervals: dict  # of 95 %, (low, high)
-    correlation: np.ndarray  # in the order of the values
-    untold: list  # directions, as shares by name: values may change so together, and the motion stays
-    data: list  # of each experiment the structured array
-    motions: list  # likewise: measured names and the fitted motion at these times
-    rms: dict  # of the residuals, by measured name
-    name: str
-    system: object  # its file; None of an FMU
-    shared: list  # the names of the values that all experiments have
-
-    def __str__(self):
-        width = max(map(len, self.values))
-        lines = [f"{name.ljust(width)}  {value:.9g} +- {self.deviations[name]:.3g}" for name, value in self.values.items()]
-        lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
-        lines += [f"not told by the data: {' and '.join(shares)}{' together' if len(shares) > 1 else ''}" for shares in self.untold]
-        return "\n".join(lines)
-
-    def write_system(self, path):
-        """The system with the fitted values as its start values, but for those that each experiment has of its own."""
-        if self.system is None:
-            raise Problem("an FMU does not hold its system; fit the system itself to have it written")
-        tree = ElementTree.parse(self.system, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
-        for name in self.shared:
-            element, attribute = _start_of(tree, name)
-            if element is None:
-                raise Problem(f"{self.system} does not name '{name}' outside of <for> and <include>; expected a <parameter>, <input> or <coordinate>")
-            element.set(attribute, repr(float(self.values[name])))
-        tree.write(path, encoding="unicode")
-        return Path(path)
-
-    def write_page(self, path):
-        """Data, fit and residuals, and the table of values."""
-        rows = "".join(
-            f"<tr><td>{html.escape(name)}</td><td>{value:.9g}</td><td>{self.deviations[name]:.3g}</td><td>{low:.6g} ... {high:.6g}</td></tr>"
-            for (name, value), (low, high) in zip(self.values.items(), self.intervals.values())
-        )
-        untold = "".join(f"<p>The data do not tell {html.escape(' and '.join(shares))} apart.</p>" for shares in self.untold)
-        text = f"""<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Fit of {html.escape(self.name)}</title>
-<style>:root{{color-scheme:light dark}}body{{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}}td,th{{padding:.2rem 1rem .2rem 0;text-align:left}}img{{max-width:100%;background:#fff}}</style>
-</head><body><h1>Fit of {html.escape(self.name)}</h1><table><tr><th>name</th><th>value</th><th>standard deviation</th><th>95 % interval</th></tr>{rows}</table>{untold}
-<img alt="data, fit and residuals" src="data:image/png;base64,{_picture(self)}"></body></html>"""
-        Path(path).write_text(text, encoding="utf-8")
-        return Path(path)
-
-
-def _start_of(tree, name):
-    """The element that gives a start value, and its attribute."""
-    for element in tree.getroot():
-        if element.tag in ("parameter", "input", "coordinate") and element.get("name") == name:
-            return element, "start"
-        if element.tag == "coordinate" and element.get("velocity") == name:
-            return element, "velocityStart"
-    return None, None
-
-
-def _picture(fit):
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    names = list(fit.rms)
-    figure, axes = pyplot.subplots(2, len(names), figsize=(5 * len(names), 6), squeeze=False, sharex="col", layout="constrained", height_ratios=(2, 1))
-    for data, (measured, motion) in zip(fit.data, fit.motions):
-        for i, name in enumerate(measured):
-            above, below = axes[:, names.index(name)]
-            above.plot(data["time"], data[name], ".", markersize=3, color="tab:gray", label="data")
-            above.plot(data["time"], motion[:, i], color="tab:blue", label="fit")
-            below.plot(data["time"], data[name] - motion[:, i], ".", markersize=3, color="tab:red")
-            above.set_title(name)
-            below.set(xlabel="time in s", ylabel="data - fit")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles[:2], labels[:2], loc="outside upper right", ncols=2)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=110)
-    pyplot.close(figure)
-    return base64.b64encode(buffer.getvalue()).decode()
+EXACT, DIFFERENCED = 1e-6, 1e-4  # relative errors of slopes: by the variational equations, and by differences
+FAILURES = (Problem, FMICallException, np.linalg.LinAlgError)
 
 
 class _Fitted(Experiment):
-    """With the motion that is to meet it, and the places of what this is differentiated by among all values that are sought."""
+    """With the motion that is to meet it, and the indices of what this is differentiated by among all values that are sought."""
 
-    def __init__(self, data, point, by, places, noise):
+    def __init__(self, data, point, by, places, noise, stepper):
+        """stepper(): the Point in co-simulation, for motions without derivatives."""
         super().__init__(data, point, noise)
         check_names(point, self.measured, by)
-        self.motion, self.by, self.places = motion(point, self.measured, by, TOLERANCE), by, places
+        self.point, self.by, self.places, self.stepper = point, by, places, stepper
+        self.motion, self.why = motion(point, self.measured, by, TOLERANCE), None  # why derivatives are by differences
 
     def run(self, values):
-        """Residuals in units of the noise, and their derivatives by all values."""
-        found, slopes = self.motion.over(self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks())
-        self.found = found
+        """Follows the motion; where that has no derivatives, without them from now on."""
+        arguments = self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks()
+        if self.why is None:
+            try:
+                self.found, self.slopes = _finite(*self.motion.over(*arguments))
+                return
+            except FAILURES as problem:
+                self.point.messages.clear()
+                why, plain = str(problem), DifferencedMotion(self.stepper(), self.measured, self.by, TOLERANCE)
+        else:
+            why, plain = self.why, self.motion
+        (self.found,), self.slopes = _finite(plain.values(*arguments)), None
+        self.motion, self.why = plain, why
+
+    def residuals(self):
+        """In units of the noise."""
+        return self.off(self.found)[self.is_measured]
+
+    def slopes_of(self, values):
+        """The derivatives of the residuals by all values, where it was run last."""
+        if self.slopes is None:
+            self.slopes = self.motion.slopes(self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks(), self.found)
         everywhere = np.zeros((np.count_nonzero(self.is_measured), len(values)))
-        everywhere[:, self.places] = (slopes / self.noise[:, None])[self.is_measured]
-        return self.off(found)[self.is_measured], everywhere
+        everywhere[:, self.places] = (self.slopes / self.noise[:, None])[self.is_measured]
+        return everywhere
 
     def first(self, name):
         """What was measured first; None of what was not measured."""
         return next(value for value in self.data[name] if np.isfinite(value)) if name in self.measured else None
 
 
-class _Search:
-    """All experiments at values, which the search asks for residuals and for derivatives one after the other."""
+def _finite(*arrays):
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise Problem("the motion has values that are not finite")
+    return arrays
 
-    def __init__(self, point, sets, vary, each, noise):
+
+class _Search:
+    """All experiments at values, which the search asks for residuals, and where these are less for derivatives; a motion that cannot be computed has no residuals."""
+
+    def __init__(self, point, sets, vary, each, noise, stepper):
         self.names = [*vary, *(f"{name} of experiment {number}" for number in range(1, len(sets) + 1) for name in each)]
         self.kinds = [*vary, *(name for _ in sets for name in each)]  # as the FMU names them
-        self.experiments, self.at = [], None
+        self.experiments, self.at, self.best, self.failed, self.count = [], None, None, 0, 0
         for number, data in enumerate(sets):
             own = len(vary) + number * len(each)
-            self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise))
+            self.experiments.append(_Fitted(data, point, [*vary, *each], [*range(len(vary)), *range(own, own + len(each))], noise, stepper))
         check_noise(noise, self.experiments)
         self.begin = dict(zip(self.names, point.given(self.kinds, point.start())))
         for experiment in self.experiments:
             measured = {self.names[place]: experiment.first(self.kinds[place]) for place in experiment.places[len(vary) :]}
             self.begin |= {name: value for name, value in measured.items() if value is not None}
+        self.size = sum(np.count_nonzero(experiment.is_measured) for experiment in self.experiments)
 
     def bounds(self, point, given):
         """Low ones and high ones; where it begins is within them."""
@@ -153,21 +96,50 @@ class _Search:
                 raise Problem(f"'{name}' begins at {value:g}, and its bounds are {low:g} and {high:g}; expected a start value between them")
         return np.array(limits, dtype=float).T
 
-    def run(self, values):
-        if self.at is None or (self.at != values).any():
-            parts = [experiment.run(values) for experiment in self.experiments]
-            self.at, self.residuals, self.slopes = values.copy(), np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
-
     def residuals_at(self, values):
-        self.run(values)
-        return self.residuals
+        """NaN, by which the search takes a shorter step, where the motion cannot be computed."""
+        self.count, self.at = self.count + 1, None
+        try:
+            for experiment in self.experiments:
+                experiment.run(values)
+        except FAILURES as problem:
+            if self.best is None:
+                raise Problem(f"the motion from the values to begin with cannot be computed: {problem}") from None
+            self.failed += 1
+            return np.full(self.size, np.nan)
+        self.at = values.copy()
+        return np.concatenate([experiment.residuals() for experiment in self.experiments])
 
     def slopes_at(self, values):
-        self.run(values)
-        return self.slopes
+        """Keeps what it finds: the search asks for it where residuals are the least so far."""
+        if self.at is None or (self.at != values).any():
+            self.residuals_at(values)
+        slopes = np.concatenate([experiment.slopes_of(values) for experiment in self.experiments])
+        self.best = values.copy(), slopes, [experiment.found for experiment in self.experiments]
+        return without_undetermined(slopes, self.accuracy)
+
+    @property
+    def accuracy(self):
+        """Of the slopes, relative."""
+        return DIFFERENCED if any(experiment.why for experiment in self.experiments) else EXACT
+
+    def minimize(self, limits, loss):
+        """To the least squares. Returns why it ended before; None where it did not."""
+        begin = [*self.begin.values()]
+        try:
+            found = least_squares(self.residuals_at, begin, self.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12, loss=loss)
+        except KeyboardInterrupt:
+            why = f"stopped after {self.count} motions; the values are the best so far"
+        except Problem as problem:
+            why = f"ended after {self.count} motions, and the values are the best so far, since no derivatives are found: {problem}"
+        else:
+            return None if found.status > 0 else f"ended after {self.count} motions without convergence; the values are the best so far"
+        if self.best is None:
+            raise
+        return why
 
 
-def fit(system, data, vary, start_values, bounds, noise, each):
+def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
     sets = list(data) if isinstance(data, (list, tuple)) else [data]
     vary, each = list(vary), list(each)
     if not vary and not each:
@@ -178,43 +150,83 @@ def fit(system, data, vary, start_values, bounds, noise, each):
     for name in bounds:
         if name not in (*vary, *each):
             raise Problem(f"'{name}' has bounds and does not vary; expected bounds of {', '.join([*vary, *each])}")
-    with followed(system, dict(start_values), [*vary, *each]) as point:
-        search = _Search(point, sets, vary, each, noise)
+    rho = loss_of(loss)
+    if loss != "linear" and not noise:
+        raise Problem(f"the loss '{loss}' counts what is beyond the noise, which is not given; expected the noise of what was measured")
+    with ExitStack() as stack:
+        point = stack.enter_context(followed(system, dict(start_values), [*vary, *each]))
+        steppers = []
+
+        def stepper():
+            if not steppers:
+                steppers.append(stack.enter_context(stepped(system, dict(start_values))))
+            return steppers[0]
+
+        search = _Search(point, sets, vary, each, noise, stepper)
         limits = search.bounds(point, bounds)
-        found = least_squares(search.residuals_at, [*search.begin.values()], search.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12)
-        search.run(found.x)
-        return _result(found.x, search, vary, system, point.name, bool(noise))
+        why = search.minimize(limits, rho)
+        return _result(search, limits, vary, system, point.name, bool(noise), rho, why)
 
 
-def _result(values, search, shared, system, name, noise_is_known):
-    slopes, residuals, names = search.slopes, search.residuals, search.names
-    freedom = max(1, len(residuals) - len(values))
-    variance = 1.0 if noise_is_known else residuals @ residuals / freedom
-    scale = np.where(values != 0, abs(values), 1.0)
-    _, singular, directions = np.linalg.svd(slopes * scale, full_matrices=False)
-    is_told = singular > UNTOLD * singular.max() if singular.max() > 0 else np.zeros(len(singular), bool)
-    untold = [{names[k]: share for k, share in enumerate(direction) if abs(share) > 0.1} for direction in directions[~is_told]]
-    inner = directions[is_told] / singular[is_told, None]
-    covariance = variance * (inner.T @ inner) * np.outer(scale, scale)
-    deviations = np.sqrt(np.diag(covariance))
-    for shares in untold:
-        deviations[[names.index(name) for name in shares]] = np.inf
-    length = np.where(np.isfinite(deviations) & (deviations > 0), deviations, 1.0)
-    width = student.ppf(0.975, freedom) * deviations
-    rms = {}
-    for experiment in search.experiments:
+def _result(search, limits, shared, system, name, noise_is_known, rho, why):
+    values, slopes, motions = search.best
+    experiments, names = search.experiments, search.names
+    off = [experiment.off(found) for experiment, found in zip(experiments, motions)]
+    residuals = np.concatenate([part[experiment.is_measured] for part, experiment in zip(off, experiments)])
+    found = estimate(values, limits, slopes, residuals, search.accuracy, noise_is_known, rho)
+    columns = {}  # of each measured name the residuals of each experiment, in units of the noise, and the noise
+    for experiment, part in zip(experiments, off):
         for i, measured in enumerate(experiment.measured):
-            rms.setdefault(measured, []).append((experiment.found - experiment.values)[experiment.is_measured[:, i], i])
+            columns.setdefault(measured, (experiment.noise[i], []))[1].append(part[experiment.is_measured[:, i], i])
+    rms = {measured: float(noise * np.sqrt(np.mean(np.concatenate(parts) ** 2))) for measured, (noise, parts) in columns.items()}
+    misfits = _misfits(columns, rms) if noise_is_known else []
+    if misfits:
+        warnings.warn("; ".join(misfits), stacklevel=4)
+    ended = [] if why is None else [why]
     return Fit(
-        dict(zip(names, values.tolist())),
-        dict(zip(names, deviations.tolist())),
-        dict(zip(names, zip((values - width).tolist(), (values + width).tolist()))),
-        covariance / np.outer(length, length),
-        untold,
-        [experiment.data for experiment in search.experiments],
-        [(experiment.measured, experiment.found) for experiment in search.experiments],
-        {measured: float(np.sqrt(np.mean(np.concatenate(parts) ** 2))) for measured, parts in rms.items()},
+        dict(zip(names, found.values.tolist())),
+        dict(zip(names, found.deviations.tolist())),
+        dict(zip(names, map(tuple, found.intervals.tolist()))),
+        found.correlation,
+        [{names[k]: float(change) for k, change in enumerate(direction) if change} for direction in found.undetermined],
+        [experiment.unwrapped() for experiment in experiments],
+        [(experiment.measured, motion) for experiment, motion in zip(experiments, motions)],
+        rms,
         name,
         None if is_fmu(system) else system_file(system),
         shared,
+        tuple(names[k] for k in np.flatnonzero(found.at_limit)),
+        tuple([*ended, *_remarks(search, found), *misfits, *_correlated(columns)]),
+        why is None,
     )
+
+
+def _misfits(columns, rms):
+    found = []
+    for name, (noise, parts) in columns.items():
+        all_of = np.concatenate(parts)
+        if is_misfit(all_of @ all_of, len(all_of)):
+            found.append(f"misfit: the residual of {name} is {rms[name] / noise:.3g} times its stated noise; the model misses something, or the noise is more. Deviations count with what remains")
+    return found
+
+
+def _correlated(columns):
+    found = {name: correlation_of_rows(parts) for name, (_, parts) in columns.items()}
+    return [
+        f"residuals of {name} depend on those of the row before (correlation {share:.2f}), which deviations take for independent; they are too small by a factor of about {np.sqrt((1 + share) / (1 - share)):.2g}"
+        for name, share in found.items()
+        if share > CORRELATED
+    ]
+
+
+def _remarks(search, found):
+    if not found.freedom:
+        yield "there are no more measured numbers than determined values, so that the noise and the deviations are unknown"
+    if search.failed:
+        yield f"{search.failed} of {search.count} motions could not be computed, and the search went around their values"
+    reasons = [experiment.why for experiment in search.experiments if experiment.why]
+    if reasons:
+        yield f"derivatives of {len(reasons)} of {len(search.experiments)} motions are by differences, since there are no exact ones: {reasons[0]}"
+    for experiment in search.experiments:
+        for name, time in experiment.wraps.items():
+            yield f"'{name}' jumps by a turn at {time:g} s, which was taken for an angle that wraps"

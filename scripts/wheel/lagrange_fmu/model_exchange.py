@@ -140,20 +140,20 @@ def _check_abilities(fmu, description, adjoint):
 
 
 @contextmanager
-def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False, messages=None):
+def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False, messages=None, in_steps=False):
     """
     The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
     as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables, of FMI 3.0 where
-    it is to stop at events. messages: those of another one, to which what it logs is appended.
+    it is to stop at events; or in co-simulation without derivatives, in_steps. messages: those of another one, to which what it logs is appended.
     """
     messages = [] if messages is None else messages
     words = ADJOINT if adjoint else words_for(by)
     with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=words) as fmu:
         description = described(fmu)
-        if not stops_at_events:
+        if not (stops_at_events or in_steps):
             _check_abilities(fmu, description, adjoint)
         check_start(values, description)
-        with _opened(fmu, description, bool(by), messages) as model:
+        with _opened(fmu, description, in_steps or bool(by), messages) as model:
             try:
                 yield Point(model, description, values, by, messages)
             except FMICallException as problem:

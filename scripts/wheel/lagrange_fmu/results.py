@@ -43,6 +43,14 @@ class Result(np.ndarray):
     def __array_finalize__(self, source: Any) -> None:
         self.description, self.motion = (getattr(source, name, None) for name in ("description", "motion"))
 
+    def __reduce__(self) -> Any:
+        function, arguments, state = super().__reduce__()
+        return function, arguments, (state, self.description, self.motion)
+
+    def __setstate__(self, state: Any) -> None:
+        super().__setstate__(state[0])
+        self.description, self.motion = state[1:]
+
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
         return found.view(np.ndarray) if isinstance(key, str) else found

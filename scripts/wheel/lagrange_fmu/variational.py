@@ -20,6 +20,9 @@ from .running import is_fmu
 from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 
 CHECKED = 1e-6  # relative, to which rates are right at the start
+DIFFERENCE = 1e-4  # of a value, at first
+LEAST_CHANGE, LARGEST_CHANGE = 1e-5, 1e-2  # of a motion, by which differences change it
+FURTHEST, TRIALS = 10.0, 8  # values, by which differences go away from a value at most; steps that are tried
 LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
 
 
@@ -142,3 +145,75 @@ def sensitivities(system, of, by, times, start_values, tolerance):
     values, derivatives = (part[-len(times) :] for part in found)
     named = {(name, other): derivatives[:, i, k] for i, name in enumerate(of) for k, other in enumerate(by)}
     return Sensitivities(times, dict(zip(of, values.T)), named)
+
+
+@contextmanager
+def stepped(system, values):
+    """The Point of a system or an FMU in co-simulation, without derivatives."""
+    with opened(system, values, what="be followed", in_steps=True) as point:
+        yield point
+
+
+class SteppedMotion(SeriesMotion):
+    """Likewise, without derivatives."""
+
+    def __init__(self, point, of, tolerance):
+        super().__init__(point, of, [], tolerance)
+
+    def start(self, values):
+        self.point.start(values=values)
+
+
+class DifferencedMotion:
+    """Motions in the FMU's own solver through whatever happens, and their derivatives by differences of second order, or first at a limit."""
+
+    def __init__(self, point, of, by, tolerance):
+        self.point, self.by = point, by
+        self.series = SteppedMotion(point, of, tolerance)
+        self.steps = {}
+
+    def values(self, times, values, inputs=None, kinks=()):
+        """At these times: n x of."""
+        try:
+            return self.series.over(times, values, inputs, kinks)[0]
+        except FMICallException as problem:
+            why = "; ".join(self.point.messages) or str(problem)
+            self.point.messages.clear()
+            raise Problem(f"the motion cannot be computed: {why}") from None
+
+    def slopes(self, times, values, inputs, kinks, found):
+        """n x of x by; found: the motion at the values."""
+        size = np.max(np.abs(found - found[0]), axis=0)
+        size = np.where(size > 0, size, np.maximum(np.max(np.abs(found), axis=0), 1e-300))
+
+        def beside(name, step):
+            value = values[name] + step
+            low, high = self.point.limits[name]
+            try:
+                return self.values(times, values | {name: value}, inputs, kinks) if low <= value <= high else None
+            except Problem:
+                return None
+
+        return np.stack([self._slope(lambda step: beside(name, step), name, values[name], found, size) for name in self.by], axis=-1)
+
+    def _slope(self, beside, name, value, found, size):
+        """In a step that changes the motion by well more than the tolerance, and by well less than its size."""
+        step = self.steps.get(name, DIFFERENCE * (abs(value) or 1.0))
+        for _ in range(TRIALS):
+            ends = {end: motion for end in (step, -step) if (motion := beside(end)) is not None}
+            if not ends:
+                step *= 0.1
+                continue
+            self.steps[name] = step
+            above, below = ends.get(step, found), ends.get(-step, found)
+            change = np.max(np.abs(above - below) / size)
+            slope = (above - below) / (step * len(ends))
+            if change > LARGEST_CHANGE:
+                step *= 0.1
+            elif change < LEAST_CHANGE and step < FURTHEST * (abs(value) or 1.0):
+                step *= 10.0
+            else:
+                return slope
+        if not ends:
+            raise Problem(f"from no value of '{name}' beside {value:g} the motion can be computed")
+        return slope

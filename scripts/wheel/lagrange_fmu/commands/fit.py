@@ -1,6 +1,8 @@
 """Finds parameters and start values with which the motion meets measurements; tells how sure they are, and writes a page and the system with the new values."""
 
 import argparse
+import sys
+import warnings
 from pathlib import Path
 
 from .run import start_value
@@ -24,16 +26,20 @@ def arguments(parser):
     parser.add_argument("--bounds", nargs="+", action="extend", default=[], type=bounds, metavar="NAME=LOW:HIGH", help="in place of the variables' min and max")
     parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="values to begin with, or to keep")
     parser.add_argument("--noise", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="standard deviations of measured variables")
+    parser.add_argument("--loss", default="linear", metavar="LOSS", help="soft_l1, huber or cauchy for data with outliers, in place of squares")
     parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="for NAME-fit.html and NAME-fit.xml")
 
 
 def run(arguments):
     from ..fitting import fit
 
-    found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), dict(arguments.bounds), dict(arguments.noise), arguments.each)
+    warnings.filterwarnings("ignore", "misfit: ")  # which is printed with the values
+    found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), dict(arguments.bounds), dict(arguments.noise), arguments.each, arguments.loss)
     print(found)
     folder = Path(arguments.output)
     folder.mkdir(parents=True, exist_ok=True)
     print(found.write_page(folder / f"{found.name}-fit.html").resolve())
     if found.system is not None and found.system.suffix == ".xml":
         print(found.write_system(folder / f"{found.name}-fit.xml").resolve())
+    if not found.is_finished:
+        sys.exit(130)

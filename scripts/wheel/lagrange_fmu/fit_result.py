@@ -1,0 +1,115 @@
+"""What a fit found, in print and as a page."""
+
+import base64
+import html
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from .problem import Problem
+
+
+@dataclass(frozen=True, repr=False)
+class Fit:
+    """Values by name in SI units, and how well the data determine them."""
+
+    values: dict
+    deviations: dict  # standard deviations; infinite for what the data do not determine
+    intervals: dict  # of 95 %, (low, high), within the limits
+    correlation: np.ndarray  # in the order of the values
+    untold: list  # undetermined directions, as changes by name: values may change so together, and the motion stays
+    data: list  # of each experiment the structured array
+    motions: list  # likewise: measured names and the fitted motion at these times
+    rms: dict  # of the residuals, by measured name
+    name: str
+    system: object  # its file; None of an FMU
+    shared: list  # the names of the values that all experiments have
+    at_limit: tuple = ()  # names of values at their limits
+    remarks: tuple = ()  # what to know before the values are used, a sentence each
+    is_finished: bool = True  # False where the search was stopped
+
+    def __str__(self):
+        width = max(map(len, self.values))
+        lines = [f"{name.ljust(width)}  {self._in_words(name)}" for name in self.values]
+        lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
+        return "\n".join([*lines, *map(in_words, self.untold), *self.remarks])
+
+    __repr__ = __str__
+
+    def _in_words(self, name):
+        value, deviation, (low, high) = self.values[name], self.deviations[name], self.intervals[name]
+        if not np.isfinite(deviation):
+            return f"{value:.9g} is not determined"
+        end = f"at most {high:.3g}" if value == low else f"at least {low:.3g}"
+        return f"{value:.9g} at its limit, {end}" if name in self.at_limit else f"{value:.9g} +- {deviation:.3g}"
+
+    def write_system(self, path):
+        """The system with the fitted values as its start values, but for those that each experiment has of its own."""
+        if self.system is None:
+            raise Problem("an FMU does not hold its system; fit the system itself to have it written")
+        tree = ElementTree.parse(self.system, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
+        for name in self.shared:
+            element, attribute = _start_of(tree, name)
+            if element is None:
+                raise Problem(f"{self.system} does not name '{name}' outside of <for> and <include>; expected a <parameter>, <input> or <coordinate>")
+            element.set(attribute, repr(float(self.values[name])))
+        tree.write(path, encoding="unicode")
+        return Path(path)
+
+    def write_page(self, path):
+        """Data, fit and residuals, and the table of values."""
+        rows = "".join(
+            f"<tr><td>{html.escape(name)}</td><td>{self._in_words(name)}</td><td>{low:.6g} ... {high:.6g}</td></tr>" for name, (low, high) in self.intervals.items()
+        )
+        remarks = "".join(f"<p>{html.escape(remark)}</p>" for remark in [*map(in_words, self.untold), *self.remarks])
+        text = f"""<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Fit of {html.escape(self.name)}</title>
+<style>:root{{color-scheme:light dark}}body{{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}}td,th{{padding:.2rem 1rem .2rem 0;text-align:left}}img{{max-width:100%;background:#fff}}</style>
+</head><body><h1>Fit of {html.escape(self.name)}</h1><table><tr><th>name</th><th>value and standard deviation</th><th>95 % interval</th></tr>{rows}</table>{remarks}
+<img alt="data, fit and residuals" src="data:image/png;base64,{_picture(self)}"></body></html>"""
+        Path(path).write_text(text, encoding="utf-8")
+        return Path(path)
+
+
+def in_words(direction):
+    """A sentence on an undetermined direction."""
+    if len(direction) == 1:
+        return f"not determined by the data: {next(iter(direction))}, which does not change what was measured"
+    changes = ", ".join(f"{name} by {change:.4g}" for name, change in direction.items())
+    return f"not determined by the data: {' and '.join(direction)}, which may change together ({changes}) and leave what was measured"
+
+
+def _start_of(tree, name):
+    """The element that gives a start value, and its attribute."""
+    for element in tree.getroot():
+        if element.tag in ("parameter", "input", "coordinate") and element.get("name") == name:
+            return element, "start"
+        if element.tag == "coordinate" and element.get("velocity") == name:
+            return element, "velocityStart"
+    return None, None
+
+
+def _picture(fit):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    names = list(fit.rms)
+    figure, axes = pyplot.subplots(2, len(names), figsize=(5 * len(names), 6), squeeze=False, sharex="col", layout="constrained", height_ratios=(2, 1))
+    for data, (measured, motion) in zip(fit.data, fit.motions):
+        for i, name in enumerate(measured):
+            above, below = axes[:, names.index(name)]
+            above.plot(data["time"], data[name], ".", markersize=3, color="tab:gray", label="data")
+            above.plot(data["time"], motion[:, i], color="tab:blue", label="fit")
+            below.plot(data["time"], data[name] - motion[:, i], ".", markersize=3, color="tab:red")
+            above.set_title(name)
+            below.set(xlabel="time in s", ylabel="data - fit")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles[:2], labels[:2], loc="outside upper right", ncols=2)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=110)
+    pyplot.close(figure)
+    return base64.b64encode(buffer.getvalue()).decode()
