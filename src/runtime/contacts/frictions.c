@@ -7,6 +7,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "contacts/impact_outcomes.h"
 #include "contacts/planes.h"
@@ -309,8 +310,61 @@ const char *frictions_check(struct Settlement *settlement) {
   return NULL;
 }
 
+/* Evaluates value[] as if the force of one constraint were the only one, and no acceleration. */
+static void values_of_force(struct Settlement *settlement, size_t constraint, double force, double *value) {
+  size_t n = lagrangian.coordinate_count;
+  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
+  memset(settlement->acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement->acceleration);
+  settlement->acceleration[n + constraint] = force;
+  settlement->switches->switching_values(&point, settlement->acceleration, value);
+}
+
+/* True if the force of a friction, and the indicator of a branch if there is one, depend on the force of a constraint. */
+static bool follows_from(struct Settlement *settlement, size_t friction, size_t branch, size_t constraint) {
+  const double *without = settlement->value, *with = settlement->other_noise;
+  size_t place = friction_place(settlement->switches, friction, weaker_force(settlement, friction));
+  values_of_force(settlement, constraint, 0.0, settlement->value);
+  values_of_force(settlement, constraint, 1.0, settlement->other_noise);
+  bool turns = branch == settlement->switches->branch_count || with[branch] != without[branch];
+  return turns && with[place] != without[place];
+}
+
+/* True if there are accelerations once the friction sticks. */
+static bool moves_without_sliding(struct Settlement *settlement, size_t friction) {
+  double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
+  *mode = 0.0;
+  settlement->instance->prepared_is_stale = true;
+  bool moves = evaluate_prepare(settlement->instance) == STATUS_DONE &&
+               settlement_values(settlement, settlement->state, settlement->other_noise);
+  *mode = kept;
+  settlement->instance->prepared_is_stale = true;
+  return moves;
+}
+
+bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t friction = 0, constraint = 0, pairs = switches->friction_count * lagrangian.constraints.count;
+  bool jams = false;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  for (size_t pair = 0; pair < pairs && !jams; pair++) {
+    friction = pair / lagrangian.constraints.count;
+    constraint = pair % lagrangian.constraints.count;
+    jams = mode_of(settlement, switches->frictions[friction].mode) != 0.0 &&
+           follows_from(settlement, friction, branch, constraint) &&
+           sliding_speed(settlement, friction) > resting_speed(settlement);
+  }
+  if (!jams || (branch == switches->branch_count && !moves_without_sliding(settlement, friction))) return false;
+  log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+              "time %g: the force of the %s '%s' has no solution there, as the friction '%s', which follows from it, "
+              "slides, and both jam each other (Painleve's paradox); expected less friction, or another load",
+              settlement->time, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
+              switches->frictions[friction].name);
+  return true;
+}
+
 const struct FrictionLaws friction_laws = {.act = frictions_act,
                                            .tell = frictions_tell,
                                            .blame = frictions_blame,
                                            .check = frictions_check,
+                                           .explain_jam = frictions_explain_jam,
                                            .has_other_impulses = impact_has_others};

@@ -20,6 +20,12 @@ const char *frictions_refuse(const struct Settlement *settlement, size_t frictio
 /* Logs that something is not found there, with the friction that switched most. */
 void frictions_blame(const struct Settlement *settlement, const char *missing);
 
+/*
+ * Logs a friction that slides and jams the constraint whose force it follows from; false where none does. branch: the one that
+ * switches without end by that force; branch_count where there are no accelerations.
+ */
+bool frictions_explain_jam(struct Settlement *settlement, size_t branch);
+
 /* Of the rate of a velocity, what is left of it at most where friction holds that. */
 extern const double friction_held_share;
 

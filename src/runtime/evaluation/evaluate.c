@@ -12,6 +12,15 @@ const char *evaluate_name(enum VariableKind kind, size_t index) {
   return "";
 }
 
+const char *evaluate_kind(size_t constraint) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  for (size_t i = 0; switches != NULL && i < switches->contact_count; i++)
+    if (switches->contacts[i].constraint == constraint) return "contact";
+  for (size_t i = 0; switches != NULL && i < switches->friction_count; i++)
+    if (switches->frictions[i].constraint == constraint) return "friction";
+  return "constraint";
+}
+
 void log_singularity(const struct Instance *instance, enum Status status, double time) {
   if (instance->singular == 0) {
     log_message(

@@ -28,6 +28,9 @@ static inline double largest_scale(const double *state, size_t first) {
 /* The name of the variable of a kind with this index; "" for none. */
 const char *evaluate_name(enum VariableKind kind, size_t index);
 
+/* The element that a constraint is of, in messages: "constraint", "contact" or "friction". */
+const char *evaluate_kind(size_t constraint);
+
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);
 

@@ -12,6 +12,8 @@ enum { FLIP_LIMIT = 8 };
 
 static const char without_end[] = "a mode changes back and forth there without end";
 
+static const char jammed[] = "a friction and a constraint jam each other";
+
 /* In s: an importer who is back at the zero sooner would get no further. */
 static const double soonest_return = 1e-6;
 
@@ -83,10 +85,12 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
 }
 
 /* Where neither side of a zero leads away from it. */
-static const char *refuse_branch(const struct Settlement *settlement, size_t branch) {
+static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
+  const struct FrictionLaws *laws = settlement->switches->friction_laws;
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
   bool turns = strcmp(facts->function, "min") == 0 || strcmp(facts->function, "max") == 0;
   bool may_be_corner = turns && settlement->switches->contact_laws != NULL;
+  if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
   log_message(
       settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
       "time %g: %s, line %ld of system.xml, jumps back and forth there: on either side of its jump the motion leads "
@@ -113,7 +117,7 @@ const char *branches_switch(struct Settlement *settlement, bool sides, bool *swi
   return NULL;
 }
 
-const char *branches_check(const struct Settlement *settlement) {
+const char *branches_check(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (settlement->occasion != IN_EXCHANGE || settlement->jumped || settlement->set_mode) return NULL;
   for (size_t i = 0; i < switches->branch_count; i++) {

@@ -8,7 +8,7 @@
 const char *branches_switch(struct Settlement *settlement, bool sides, bool *switched);
 
 /* NULL, or the reason why an importer would come to a zero again and again: both sides of it lead back to it. */
-const char *branches_check(const struct Settlement *settlement);
+const char *branches_check(struct Settlement *settlement);
 
 /* As the signs of the start values say. False where there are no accelerations. */
 bool branches_begin(struct Settlement *settlement);

@@ -10,7 +10,8 @@
 
 enum { ROUND_LIMIT = 2000 };
 
-static const char no_accelerations[] = "there are no accelerations at an event";
+static const char no_accelerations[] = "there are no accelerations at an event",
+                  no_first_accelerations[] = "there are no accelerations";
 
 static const char *act_by_contacts(struct Settlement *settlement, bool *again) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
@@ -82,7 +83,7 @@ static const char *settle_in_rounds(struct Settlement *settlement) {
 static const char *begin_settlement(struct Settlement *settlement) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
   if (settlement->occasion != AT_START) return continuity_begin(settlement);
-  if (!branches_begin(settlement)) return "there are no accelerations";
+  if (!branches_begin(settlement)) return no_first_accelerations;
   if (laws == NULL) return NULL;
   if (!laws->lift_start(settlement) || !branches_begin(settlement)) return constraints_not_kept;
   return laws->check_gaps(settlement);
@@ -128,6 +129,15 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
   return laws->explain(&settlement);
 }
 
+/* Logs a friction that jams a constraint, as where it makes the equations of motion singular; false where none does. */
+static bool explain_jam(struct Settlement *settlement) {
+  const struct FrictionLaws *laws = settlement->switches->friction_laws;
+  int singular = settlement->instance->singular;
+  bool jams = singular != 0 && laws != NULL && laws->explain_jam(settlement, settlement->switches->branch_count);
+  settlement->instance->singular = jams ? 0 : singular;
+  return jams;
+}
+
 /* What has no accelerations by its own mass matrix is told as that. */
 static void blame_frictions(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -141,7 +151,10 @@ const char *settle(struct Instance *instance, double time, double *state, enum O
   settlement.indicator = indicator;
   const char *problem = begin_settlement(&settlement);
   if (problem == NULL) problem = settle_in_rounds(&settlement);
-  if (problem == no_accelerations && !settle_explain(instance, time, state)) blame_frictions(&settlement);
+  bool lacks = problem == no_accelerations || problem == no_first_accelerations;
+  bool is_explained = lacks && explain_jam(&settlement);
+  if (problem == no_accelerations && !is_explained && !settle_explain(instance, time, state))
+    blame_frictions(&settlement);
   if (problem == NULL) problem = branches_check(&settlement);
   if (problem == NULL) problem = push(&settlement);
   if (problem == NULL) problem = continuity_check(&settlement);

@@ -250,9 +250,9 @@ static void log_redundant(const struct Instance *instance, const struct Work *wo
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* one of an open contact has no slope */
       log_message(instance, STATUS_DONE,
-                  "time %g: the constraint '%s' follows from the others; of all forces that carry the load, theirs are "
+                  "time %g: the %s '%s' follows from the others; of all forces that carry the load, theirs are "
                   "the smallest",
-                  instance->situation->time, lagrangian.constraints.names[j]);
+                  instance->situation->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what) {
@@ -261,14 +261,14 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
     log_singularity(instance, STATUS_ERROR, instance->situation->time);
     return false;
   }
-  const char *name = lagrangian.constraints.names[constraint];
+  const char *name = lagrangian.constraints.names[constraint], *kind = evaluate_kind(constraint);
   if (!isfinite(work.lack[constraint]))
-    refuse_call(instance, "the constraint '%s' has no finite value at these start values; expected others", name);
+    refuse_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
   else
     refuse_call(instance,
-                "no %s near the start values fulfil the constraint '%s' with the others: it is %g where 0 is expected; "
+                "no %s near the start values fulfil the %s '%s' with the others: it is %g where 0 is expected; "
                 "expected start values nearer to a solution, fewer of them fixed, or parameters for which there is one",
-                what, name, -work.lack[constraint]);
+                what, kind, name, -work.lack[constraint]);
   return false;
 }
 
@@ -297,9 +297,9 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
 static bool refuse_vanishing(struct Instance *instance, size_t constraint) {
   refuse_call(
       instance,
-      "the constraint '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
+      "the %s '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
       "motion; expected it without a square, a root or abs of the whole, or a start away from a singular position",
-      lagrangian.constraints.names[constraint]);
+      evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
   return false;
 }
 
@@ -351,9 +351,10 @@ static bool has_jumped(struct Instance *instance) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     if (lagrangian.constraints.inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
-                "time %g: the constraint '%s' is %g where 0 is expected: it depends on %s, and the coordinates cannot "
+                "time %g: the %s '%s' is %g where 0 is expected: it depends on %s, and the coordinates cannot "
                 "follow a jump; expected inputs that move as their derivatives tell",
-                time, lagrangian.constraints.names[j], -work.lack[j], lagrangian.constraints.inputs[j]);
+                time, evaluate_kind(j), lagrangian.constraints.names[j], -work.lack[j],
+                lagrangian.constraints.inputs[j]);
     return true;
   }
   return false;
@@ -364,9 +365,10 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, time);
   else
     log_message(instance, STATUS_DISCARD,
-                "time %g: after a parameter or an input was set, no %s near the present ones fulfil the constraint "
+                "time %g: after a parameter or an input was set, no %s near the present ones fulfil the %s "
                 "'%s' with the others: it is %g where 0 is expected; expected values for which there are some",
-                time, what, lagrangian.constraints.names[constraint], -work_of(instance).lack[constraint]);
+                time, what, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
+                -work_of(instance).lack[constraint]);
 }
 
 static bool follow_change(struct Instance *instance) {

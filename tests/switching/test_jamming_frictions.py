@@ -1,0 +1,57 @@
+"""Worm gears whose friction follows from the force of the gear: where both jam, the message names both, and Painleve's paradox."""
+
+import fmpy
+import pytest
+from fmpy.fmi1 import FMICallException
+
+import fmu
+from fmu import build_systems
+
+# With f = -gear.force, w > 0 and U on the worm: worm*w' = U + f - c |f|, and wheel*w'/10 = -10 f. So k f - c |f| = -U with
+# k = 1 + 100 worm/wheel, which has no solution for U < 0 and c >= k, as the left side is never above 0 then.
+WORM = """<system name="{name}">
+  <coordinate name="a" velocity="w" unit="rad" velocityStart="1"/><coordinate name="b" velocity="v" unit="rad" velocityStart="0.1"/>
+  <kinetic>{worm}*w^2/2 + v^2/2</kinetic>
+  <constraint name="gear" unit="rad">a - 10*b</constraint>
+  <friction name="teeth" coordinate="a" force="2*abs(gear.force)"/>
+  <force coordinate="a">{load}</force>
+  <solver method="{method}"/>
+</system>
+"""
+AT_ONCE, LATER = "-24", "if(time &lt; 0.5, 0, -24)"
+JAMS = {
+    "WormAtOnce": (0.001, AT_ONCE, "taylor"),
+    "WormLocks": (0.01, AT_ONCE, "taylor"),  # c = k: the equations are singular
+    "WormLater": (0.001, LATER, "taylor"),
+    "WormLocksLater": (0.01, LATER, "bdf"),
+    "WormRadau": (0.001, LATER, "radau"),
+}
+# Here k = 3: while w > 0, f = 24/(k - c) = 24, and w' = -100 f stops w = 1 after 1/2400 s; then it turns back with f = 24/(k + c).
+TURNS = (0.02, AT_ONCE, "taylor")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    systems = JAMS | {"WormTurns": TURNS}
+    texts = {name: WORM.format(name=name, worm=worm, load=load, method=method) for name, (worm, load, method) in systems.items()}
+    build_systems("jamming-frictions", texts)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("name", JAMS)
+def test_a_worm_that_jams(name, kind):
+    messages = []
+    log = lambda *words: messages.append(words[-1].decode())
+    with pytest.raises(FMICallException):
+        fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=1, output_interval=0.1, fmi_type=kind, logger=log)
+    time = 0 if JAMS[name][1] == AT_ONCE else 0.5
+    expected = f"time {time}: the force of the constraint 'gear' has no solution there, as the friction 'teeth', which follows from it, slides"
+    found = [message for message in messages if message.startswith(expected)]
+    assert found and found[0].endswith("both jam each other (Painleve's paradox); expected less friction, or another load"), messages
+    assert not any("mass matrix" in message or "in place of sign" in message for message in messages)
+
+
+def test_a_worm_that_turns():
+    result = fmpy.simulate_fmu(str(fmu.archive("WormTurns")), stop_time=1, output_interval=0.1, output=["w", "gear.force"])
+    assert -result["gear.force"][1:] == pytest.approx(24 / 5, abs=1e-9)
+    assert result["w"][-1] == pytest.approx(-100 * 24 / 5 * (1 - 1 / 2400), rel=1e-9)
