@@ -141,7 +141,8 @@ struct Guide {
 struct BranchFacts {
   size_t mode;          /* the sign of the indicator: -1, 0 or 1 */
   const char *function; /* that has the pieces, in messages */
-  long line;            /* of system.xml; 0 where it is not known */
+  const char *file;     /* in which it stands, without its folder */
+  long line;            /* 0 where it is not known */
   bool is_side;         /* of an event's expression: what comes to 0 and rests there keeps it */
   bool holds_energy;    /* the state decides by it on the kinetic or potential energy, which must not jump there */
 };

@@ -213,7 +213,7 @@ INCLUDED = " (included as 'part' on line 3 of system.xml)"
     ("<potentail>1</potentail>", "parts/part.xml:2: <potentail> is not an element of <system>; did you mean 'potential'?" + INCLUDED),
     ("<include file='../system.xml' as='again'/>", "files include each other in a circle: system.xml -> parts/part.xml -> parts/../system.xml"),
     ("<include file='nothing.xml' as='again'/>", "parts/part.xml:2: the file 'parts/nothing.xml' cannot be read: No such file or directory"),
-    ("<coordinate name='x' velocity='v'/>", "system.xml:3: the coordinate 'part.x' has no inertia"),
+    ("<coordinate name='x' velocity='v'/>", "parts/part.xml:2: the coordinate 'part.x' has no inertia"),
 ])  # fmt: skip
 def test_mistakes_in_a_part(inside, message, tmp_path):
     result = compile_all(tmp_path, {"system.xml": AROUND.format(""), "parts/part.xml": f"<system name='P'>\n{inside}\n</system>"})

@@ -74,7 +74,7 @@ def test_a_number_of_steps_that_the_author_sets(method, open_fmu):
     for _ in range(3):
         instance.step(0.001)
     assert instance.get("x") == pytest.approx(math.cos(0.3), abs=1e-2)
-    with instance.fails(2, "as many steps as maxSteps of <solver> in system.xml allows within one communication step"):
+    with instance.fails(2, "as many steps as maxSteps of <solver> allows within one communication step"):
         instance.step(100.0)
 
 

@@ -10,6 +10,9 @@
 /* What a message says of a very long text has room before and behind what it leaves out. */
 enum { HEAD_LENGTH = 600, TAIL_LENGTH = 400 };
 
+/* As many of the last lines are compared with a new one. */
+enum { RECENT_LINES = 64 };
+
 static bool continues_letter(char byte) {
   return ((unsigned char)byte & 0xC0u) == 0x80u;
 }
@@ -26,12 +29,31 @@ static void print_text(const char *text) {
   fprintf(stderr, "%.*s ... %s", (int)head, text, tail);
 }
 
-static void print_message(const struct Diagnostics *diagnostics, long line, const char *kind, const char *text) {
-  fprintf(stderr, "%s:", diagnostics->file);
-  if (line > 0) fprintf(stderr, "%ld:", line);
+long note_line(const struct Diagnostics *diagnostics, long line) {
+  struct FileLines *noted = diagnostics->noted;
+  if (noted == NULL || line <= 0 || strcmp(diagnostics->file, noted->own) == 0) return line;
+  for (size_t i = noted->count; i > 0 && noted->count - i < RECENT_LINES; i--)
+    if (noted->items[i - 1].file == diagnostics->file && noted->items[i - 1].line == line) return -(long)i;
+  noted->items = make_room(noted->items, noted->count, sizeof *noted->items);
+  noted->items[noted->count++] = (struct FileLine){diagnostics->file, diagnostics->origin, line};
+  return -(long)noted->count;
+}
+
+struct FileLine noted_line(const struct FileLines *noted, long line) {
+  return line < 0 ? noted->items[-line - 1] : (struct FileLine){.file = noted->own, .line = line};
+}
+
+static struct FileLine file_line(const struct Diagnostics *diagnostics, long line) {
+  if (line < 0) return noted_line(diagnostics->noted, line);
+  return (struct FileLine){diagnostics->file, diagnostics->origin, line};
+}
+
+static void print_message(const struct FileLine *place, const char *kind, const char *text) {
+  fprintf(stderr, "%s:", place->file);
+  if (place->line > 0) fprintf(stderr, "%ld:", place->line);
   fprintf(stderr, " %s", kind);
   print_text(text);
-  fprintf(stderr, "%s\n", diagnostics->origin != NULL ? diagnostics->origin : "");
+  fprintf(stderr, "%s\n", place->origin != NULL ? place->origin : "");
 }
 
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
@@ -53,8 +75,9 @@ static bool note_told(struct Diagnostics *diagnostics, char *error) {
 
 /* What is read in several places, as the stiffness of a spring, is wrong in each. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
-  char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", diagnostics->file, line, text);
-  if (note_told(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(diagnostics, line, "", text);
+  struct FileLine place = file_line(diagnostics, line);
+  char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", place.file, place.line, text);
+  if (note_told(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&place, "", text);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
 }
@@ -62,6 +85,7 @@ void report_error_of(struct Diagnostics *diagnostics, long line, const char *for
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  print_message(diagnostics, line, "warning: ", format_arguments(format, arguments));
+  struct FileLine place = file_line(diagnostics, line);
+  print_message(&place, "warning: ", format_arguments(format, arguments));
   va_end(arguments);
 }

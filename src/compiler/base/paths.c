@@ -11,6 +11,11 @@ char *canonical_path(const char *path) {
   return copy;
 }
 
+const char *file_name(const char *path) {
+  const char *end = last_separator(path);
+  return end != NULL ? end + 1 : path;
+}
+
 char *path_beside_file(const char *present, const char *named) {
   const char *end = last_separator(present);
   if (is_absolute(named) || end == NULL) return copy_text(named);

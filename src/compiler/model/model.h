@@ -188,6 +188,7 @@ struct Experiment {
 
 struct Model {
   char *name, *description;
+  const struct FileLines *lines; /* that stand for those of included files */
   struct Origin origin;
   struct Graph *graph;
   Node time;

@@ -76,7 +76,7 @@ static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
     check_repetitions(reader, node);
     if (node->_private != &backwards) continue;
     char *from = attribute(node, "from"), *to = attribute(node, "to");
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
+    report_warning(reader->diagnostics, line_of(node),
                    "<for> from %s to %s runs backwards: nothing in it is read; expected the smaller number first", from,
                    to);
   }

@@ -91,7 +91,7 @@ void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr roo
     else if (strcmp((const char *)node->name, "experiment") == 0) read_experiment(&reader, node);
     else {
       char *name = reference_attribute(&reader, node, "name"), *value = attribute(node, "value");
-      if (name != NULL && value != NULL) set_point(model, scope, name, value, xmlGetLineNo(node), diagnostics);
+      if (name != NULL && value != NULL) set_point(model, scope, name, value, line_of(node), diagnostics);
     }
   }
 }

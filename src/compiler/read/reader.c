@@ -134,20 +134,21 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
 /* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
 static struct Model *read_file(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics,
                                int depth, struct Scope **scope) {
-  struct Diagnostics local = {.file = path};
+  struct Diagnostics local = {.file = path, .noted = diagnostics->noted};
   struct Model *model = NULL;
   xmlDocPtr document = xml_load(path, &local);
   if (document != NULL && is_robot(document)) document = system_of_robot(document, &(struct RobotOptions){0}, &local);
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
   if (root != NULL && is_element(root, "linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;
-    if (depth > 0) report_error(&local, xmlGetLineNo(root), "a linearization of a linearization; expected a <system>");
+    if (depth > 0) report_error(&local, line_of(root), "a linearization of a linearization; expected a <system>");
     else if (original != NULL) {
       model = read_file(original, options, &local, depth + 1, scope);
       if (model != NULL) read_linearization(model, *scope, root, &local);
     }
   } else if (root != NULL) {
     model = model_create();
+    model->lines = local.noted;
     *scope = language_of(model, &local);
     if (depth == 0 && !options->linearize) (*scope)->switches = &model->switches;
     struct Reader reader = {.model = model, .scope = *scope, .diagnostics = &local, .options = options};
@@ -169,6 +170,8 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
 
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics) {
   struct Scope *scope = NULL;
+  diagnostics->noted = allocate(1, sizeof *diagnostics->noted);
+  diagnostics->noted->own = path;
   struct Model *model = read_file(path, options, diagnostics, 0, &scope);
   if (model == NULL || options->solver == NULL) return model;
   model->solver.method = method_named(options->solver);

@@ -22,6 +22,8 @@ static void write_branches(FILE *file, const struct SwitchTable *facts) {
     const struct BranchFacts *branch = &facts->branches[i];
     fprintf(file, "{%zu, ", branch->mode);
     write_c_string(file, branch->function);
+    fputs(", ", file);
+    write_c_string(file, branch->file);
     fprintf(file, ", %ld, %s, %s}, ", branch->line, name_of(branch->is_side), name_of(branch->holds_energy));
   }
   fputs("};\n\n", file);

@@ -91,13 +91,12 @@ static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
   bool turns = strcmp(facts->function, "min") == 0 || strcmp(facts->function, "max") == 0;
   bool may_be_corner = turns && settlement->switches->contact_laws != NULL;
   if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
-  log_message(
-      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-      "time %g: %s, line %ld of system.xml, jumps back and forth there: on either side of its jump the motion leads "
-      "back to it, %s",
-      settlement->time, facts->function, facts->line,
-      may_be_corner ? "as where a body touches both pieces of a gap; expected a <contact> for each piece"
-                    : "as with dry friction that sticks; expected <friction>, which sticks, in place of sign");
+  log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+              "time %g: %s, line %ld of %s, jumps back and forth there: on either side of its jump the motion leads "
+              "back to it, %s",
+              settlement->time, facts->function, facts->line, facts->file,
+              may_be_corner ? "as where a body touches both pieces of a gap; expected a <contact> for each piece"
+                            : "as with dry friction that sticks; expected <friction>, which sticks, in place of sign");
   return without_end;
 }
 

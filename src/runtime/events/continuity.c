@@ -64,11 +64,11 @@ static const char *check_energy(const struct Settlement *settlement) {
   size_t count = settlement->switches->energy_count;
   double jump = fmax(share_of_jump(settlement, 0, 2), share_of_jump(settlement, 2, count - 2));
   if (!(jump > continuity_allowed_share(settlement))) return NULL;
-  log_message(
-      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-      "time %g: %s, line %ld of system.xml, jumps there in an energy or a position, by a share of %.2g, for which no "
-      "velocity tells its part; expected energies without jumps, or an <event> that sets the velocities",
-      settlement->time, settlement->energetic->function, settlement->energetic->line, jump);
+  log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+              "time %g: %s, line %ld of %s, jumps there in an energy or a position, by a share of %.2g, for which no "
+              "velocity tells its part; expected energies without jumps, or an <event> that sets the velocities",
+              settlement->time, settlement->energetic->function, settlement->energetic->line,
+              settlement->energetic->file, jump);
   return "an energy jumps";
 }
 
@@ -91,10 +91,10 @@ static const char *check_constraints(struct Settlement *settlement) {
   else
     log_message(
         instance, status,
-        "time %g: %s, line %ld of system.xml, turns or jumps there in a constraint, or in the gap of a closed "
+        "time %g: %s, line %ld of %s, turns or jumps there in a constraint, or in the gap of a closed "
         "contact, and positions or velocities would have to jump with it; expected one without kinks, or a <contact> "
         "for each piece of a gap",
-        settlement->time, settlement->switched->function, settlement->switched->line);
+        settlement->time, settlement->switched->function, settlement->switched->line, settlement->switched->file);
   return constraints_not_kept;
 }
 

@@ -217,8 +217,8 @@ static void name_indicator(size_t indicator, char *text, size_t size) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t friction = indicator - friction_indicator(switches, 0);
   if (indicator < switches->branch_count)
-    snprintf(text, size, "%s, line %ld of system.xml,", switches->branches[indicator].function,
-             switches->branches[indicator].line);
+    snprintf(text, size, "%s, line %ld of %s,", switches->branches[indicator].function,
+             switches->branches[indicator].line, switches->branches[indicator].file);
   else if (is_of_contact(indicator))
     snprintf(text, size, "the contact '%s'", switches->contacts[indicator - contact_indicator(switches, 0)].name);
   else snprintf(text, size, "the friction '%s'", switches->frictions[friction].name);

@@ -172,7 +172,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
   else if (crawls(&taylor->crossing, moved, 1e-9))
     return "a function jumps back and forth there, as dry friction does when it sticks; <friction> is made for that";
   if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
-    return "the system is stiff there; it needs <solver method=\"auto\"/> in system.xml";
+    return "the system is stiff there; it needs <solver method=\"auto\"/>";
   return NULL;
 }
 

@@ -57,7 +57,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
   log_message(
       instance, STATUS_WARNING,
       "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
-      "maxSteps of <solver> in system.xml %s",
+      "maxSteps of <solver> %s",
       lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
       lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps : (long)((double)step->count * WORK_LIMIT / work),
       lagrangian.steps.max_steps > 0 ? "sets" : "can change: by default it is as many as take about 10 s");
@@ -87,10 +87,10 @@ static const char *excess(const struct CommunicationStep *step, double work) {
     return work < WORK_LIMIT
                ? NULL
                : "it has taken as many steps within one communication step as take about 10 s; expected a "
-                 "shorter step, or maxSteps of <solver> in system.xml, which allows for more";
+                 "shorter step, or maxSteps of <solver>, which allows for more";
   return step->count < lagrangian.steps.max_steps
              ? NULL
-             : "it has taken as many steps as maxSteps of <solver> in system.xml allows within one communication step";
+             : "it has taken as many steps as maxSteps of <solver> allows within one communication step";
 }
 
 /* NULL, or why the solver gives up. */

@@ -1,6 +1,7 @@
 #include "program/facts/switch_facts.h"
 
 #include "base/memory.h"
+#include "base/paths.h"
 
 static size_t mode_index(const struct Program *program, Node mode) {
   return (size_t)graph_symbol_of(program->model->graph, mode)->index;
@@ -15,8 +16,10 @@ static const struct BranchFacts *branches_of(const struct Program *program) {
   struct BranchFacts *facts = allocate(switching->branch_count, sizeof *facts);
   for (size_t i = 0; i < switching->branch_count; i++) {
     const struct Branch *branch = switching->branches[i];
-    facts[i] = (struct BranchFacts){mode_index(program, branch->mode), branch->function, branch->line, branch->is_side,
-                                    switching->holds_energy[i]};
+    struct FileLine place = noted_line(program->model->lines, branch->line);
+    facts[i] = (struct BranchFacts){
+        mode_index(program, branch->mode), branch->function, file_name(place.file), place.line, branch->is_side,
+        switching->holds_energy[i]};
   }
   return facts;
 }

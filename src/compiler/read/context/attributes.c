@@ -9,17 +9,24 @@
 void report_at(const struct Reader *reader, xmlNodePtr node, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  report_error_of(reader->diagnostics, xmlGetLineNo(node), format, arguments);
+  report_error_of(reader->diagnostics, line_of(node), format, arguments);
   va_end(arguments);
 }
 
 struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds) {
   return (struct Place){
-      .line = xmlGetLineNo(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
+      .line = line_of(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
+}
+
+/* Where an attribute has its value, which is a number or a name. */
+static struct Place place_of_attribute(xmlNodePtr node, const char *name) {
+  struct Place place = place_at(node, name, 0);
+  place.line = line_of_attribute(node, name);
+  return place;
 }
 
 bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
-  return *text != '\0' && parse_number(reader->scope, text, place_at(node, name, 0), value);
+  return *text != '\0' && parse_number(reader->scope, text, place_of_attribute(node, name), value);
 }
 
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
@@ -30,7 +37,7 @@ bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, 
 static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
-  char *expanded = parse_name(reader->scope, text, place_at(node, name, 0), parts);
+  char *expanded = parse_name(reader->scope, text, place_of_attribute(node, name), parts);
   return expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
 }
 
@@ -44,10 +51,11 @@ char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
                           struct Quantity *value) {
-  char *text = attribute(node, name);
+  char *text = attribute_in_lines(node, name);
   if (text == NULL) return false;
-  char *what = format_text("%s of <%s>", name, (const char *)node->name);
-  if (*text != '\0') *value = parse_expression(reader->scope, text, place_at(node, what, kinds));
+  struct Place place = place_at(node, format_text("%s of <%s>", name, (const char *)node->name), kinds);
+  place.line = line_of_attribute(node, name);
+  if (*text != '\0') *value = parse_expression(reader->scope, text, place);
   return true;
 }
 
@@ -80,13 +88,15 @@ Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node t
                 struct Quantity *sum) {
   struct Model *model = reader->model;
   add_term(model, displaced, term);
-  Node undisplaced = without_displacements(reader, xmlGetLineNo(node), what, term);
+  Node undisplaced = without_displacements(reader, line_of(node), what, term);
   add_term(model, sum, undisplaced);
   return undisplaced;
 }
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
-  return parse_expression(reader->scope, text_of(node), place_at(node, what, kinds));
+  struct Place place = place_at(node, what, kinds);
+  place.line = line_of_content(node);
+  return parse_expression(reader->scope, text_of(node), place);
 }
 
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
@@ -124,11 +134,11 @@ static void append_expectation(struct Reader *reader, struct Expectation expecta
 }
 
 void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {
-  long line = scope_line(reader->scope, xmlGetLineNo(node));
+  long line = scope_line(reader->scope, line_of(node));
   append_expectation(reader, (struct Expectation){value, line, what, is_required, false});
 }
 
 void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value) {
-  long line = scope_line(reader->scope, xmlGetLineNo(node));
+  long line = scope_line(reader->scope, line_of(node));
   append_expectation(reader, (struct Expectation){value, line, what, true, true});
 }

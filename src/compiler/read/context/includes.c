@@ -42,7 +42,6 @@ struct Source *source_enter(struct Reader *reader, struct Source *source) {
   struct Source *before = reader->source;
   reader->source = source;
   reader->scope->prefix = source->prefix;
-  reader->scope->include_line = source->include_line;
   reader->diagnostics->file = source->file;
   reader->diagnostics->origin = source->origin;
   return before;
@@ -93,13 +92,13 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   if (is_robot(document)) return system_of_robot(document, options, diagnostics);
   xmlNodePtr root = xmlDocGetRootElement(document);
   if (!is_element(root, "system"))
-    report_error(diagnostics, xmlGetLineNo(root),
+    report_error(diagnostics, line_of(root),
                  "a <%s> cannot be included; expected the file of a <system>, <robot> or <mujoco>",
                  (const char *)root->name);
   else
     for (size_t i = 0; i < ROBOT_WORDS; i++)
       if (has_attribute(source->include, of_robots[i]))
-        report_error(diagnostics, xmlGetLineNo(root),
+        report_error(diagnostics, line_of(root),
                      "%s=\"...\" of <include> is for robots; expected a file that begins with <robot> or <mujoco>",
                      of_robots[i]);
   if (diagnostics->errors == 0) return document;
@@ -181,11 +180,10 @@ static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) 
 static struct Source *create_source(struct Reader *reader, xmlNodePtr node, const char *name, const char *prefix) {
   struct Source *source = allocate(1, sizeof *source), *outer = reader->source;
   char *file = attribute(node, "file");
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   *source = (struct Source){.file = path_beside(reader, file),
                             .prefix = copy_text(prefix),
                             .origin = format_text(" (included as '%s' on line %ld of %s)", name, line, outer->file),
-                            .include_line = outer->include_line > 0 ? outer->include_line : line,
                             .include = node,
                             .outer = outer};
   names_set(reader->includes->sources, prefix, source);
@@ -200,7 +198,7 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   struct Source *source = names_find(reader->includes->sources, prefix);
   if (source != NULL) {
     report_at(reader, node, "as=\"%s\" is the name of the <include> on line %ld already; expected another name%s", name,
-              xmlGetLineNo(source->include),
+              line_of(source->include),
               source->include == node ? ", with an index such as [i] where a <for> repeats it" : "");
     source = NULL;
   } else source = create_source(reader, node, name, prefix);
@@ -213,7 +211,7 @@ static bool check_kind(struct Reader *reader, struct Given *given, const char *e
   bool is_right = strcmp(element, as) == 0;
   if (!given->is_used && !is_right) {
     struct Source *present = source_enter(reader, given->source);
-    report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
+    report_error(reader->diagnostics, line_of(given->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
                  name + strlen(given->target->prefix), as, given->target->file, element);
     source_enter(reader, present);
   }
@@ -258,7 +256,7 @@ static void report_unused(struct Reader *reader, const struct Given *given, cons
   const char *name = full_name + strlen(given->target->prefix);
   reader->scope->prefix = given->target->prefix;
   const char *similar = scope_similar_name(reader->scope, name);
-  report_error(reader->diagnostics, xmlGetLineNo(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
+  report_error(reader->diagnostics, line_of(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
                (const char *)given->node->name, name, similar != NULL ? "did you mean '" : "expected one of its names",
                similar != NULL ? similar : "", similar != NULL ? "'?" : "");
   source_enter(reader, present);

@@ -12,7 +12,6 @@ struct Source {
   char *canonical_path; /* the same for two names of one file */
   char *prefix;         /* of its names: "motor."; "" of the system's own file */
   char *origin;         /* for messages; NULL of the system's own file */
-  long include_line;    /* of the <include> in the system's own file; 0 of that itself */
   xmlNodePtr include;   /* that asks for it; NULL of the system's own file */
   xmlNodePtr root;      /* <system>; NULL where the file cannot be read */
   struct Source *outer; /* the file with the <include> */

@@ -33,11 +33,11 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
   if (!display_unit_parse(text, &shown, &factor))
-    report_error(reader->diagnostics, xmlGetLineNo(node),
+    report_error(reader->diagnostics, line_of(node),
                  "%s '%s' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN", name, text);
   else if (!is_same_dimension(shown, dimension))
-    report_error(reader->diagnostics, xmlGetLineNo(node), "%s '%s' is for values in %s; expected this as the unit",
-                 name, text, unit_text(shown));
+    report_error(reader->diagnostics, line_of(node), "%s '%s' is for values in %s; expected this as the unit", name,
+                 text, unit_text(shown));
   else return text;
   return NULL;
 }
@@ -45,7 +45,7 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) name = copy_text("?"); /* reported already */
-  struct Variable variable = variable_create(name, attribute(node, "description"), xmlGetLineNo(node));
+  struct Variable variable = variable_create(name, attribute(node, "description"), line_of(node));
   variable.unit = attribute(node, "unit");
   variable.dimension = unit_attribute(reader, node, "unit");
   variable.display_unit = display_unit_attribute(reader, node, "displayUnit", variable.dimension);

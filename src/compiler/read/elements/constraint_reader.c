@@ -10,6 +10,7 @@ void declare_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, constraint.name, word, constraint.line);
   reader->present->number = reader->model->constraints.count;
+  constraint.line = scope_line(reader->scope, constraint.line);
   append_variable(&reader->model->constraints, constraint);
 }
 

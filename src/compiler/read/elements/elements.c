@@ -48,10 +48,11 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
   }
   if (has_attribute(node, "unit")) {
     struct Dimension unit = unit_attribute(reader, node, "unit");
-    if (!value.literal) require_unit(reader, xmlGetLineNo(node), "the value of the constant", value, unit);
+    if (!value.literal)
+      require_unit(reader, line_of_attribute(node, "value"), "the value of the constant", value, unit);
     value = (struct Quantity){.node = value.node, .dimension = unit};
   } else if (value.literal) value.factor = (struct NumberFactor){.text = name, .power = 1.0};
-  if (name != NULL) scope_define(reader->scope, name, value, xmlGetLineNo(node));
+  if (name != NULL) scope_define(reader->scope, name, value, line_of(node));
 }
 
 static Node append_input_rate(struct Reader *reader) {
@@ -121,7 +122,7 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
 static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
                         const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
-  require_unit(reader, xmlGetLineNo(node), what, term, unit_of(unit));
+  require_unit(reader, line_of(node), what, term, unit_of(unit));
   reader->model->given.inputs_move |=
       (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
   return add_energy(reader, node, what, term.node, displaced, sum);
@@ -147,7 +148,7 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
   if (symbol == NULL) return; /* the name was taken, which is reported */
   const struct Variable *velocity = &model->velocities.items[symbol->index];
   if (velocity->dimension.known)
-    require_unit(reader, xmlGetLineNo(node), "the acceleration", acceleration,
+    require_unit(reader, line_of_attribute(node, "acceleration"), "the acceleration", acceleration,
                  dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
   model->given.drives[symbol->index].acceleration = acceleration.node;
 }
@@ -170,7 +171,7 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
 
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
-  reader->model->solver.line = xmlGetLineNo(node);
+  reader->model->solver.line = scope_line(reader->scope, line_of(node));
   if (reader->has_solver) report_at(reader, node, "a second <solver>; expected one");
   reader->has_solver = true;
   if (method != NULL) reader->model->solver.method = method_named(method);
@@ -178,7 +179,7 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
     report_at(reader, node, "tolerance %g; expected a number between 0 and 1", *tolerance);
   if (*tolerance > 0 && *tolerance < 1e-14)
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
+    report_warning(reader->diagnostics, line_of(node),
                    "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->solver.max_step);
   double *steps = &reader->model->solver.max_steps;
@@ -252,8 +253,9 @@ static void read_state(struct Reader *reader, xmlNodePtr node) {
 static void read_work(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   if (work_of(model) != NULL) return;
-  struct Variable work = variable_create(copy_text("nonConservativeWork"),
-                                         copy_text("work of the non-conservative forces"), xmlGetLineNo(node));
+  struct Variable work =
+      variable_create(copy_text("nonConservativeWork"), copy_text("work of the non-conservative forces"),
+                      scope_line(reader->scope, line_of(node)));
   work.start = 0.0;
   work.dimension = unit_of("J");
   work.is_work = true;
@@ -272,11 +274,11 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   Node dissipation = read_energy(reader, node, &model->energies.displaced_dissipation, &model->energies.dissipation,
                                  "the dissipation", IN_FORCE, "W");
   if (dissipation != ZERO && !graph_depends_on(model->graph, dissipation, VELOCITY))
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
+    report_warning(reader->diagnostics, line_of(node),
                    "the dissipation has no velocities, and makes no force; expected one such as b*v^2/2");
   size_t count = reader->dissipation_count++;
   reader->dissipations = make_room(reader->dissipations, count, sizeof *reader->dissipations);
-  reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, xmlGetLineNo(node))};
+  reader->dissipations[count] = (struct Dissipation){dissipation, scope_line(reader->scope, line_of(node))};
   model->forces.any = true;
 }
 

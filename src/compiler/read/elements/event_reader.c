@@ -52,7 +52,7 @@ static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event
   const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
   const struct Quantity *target = scope_find(reader->scope, name);
   if (target != NULL && target->dimension.known)
-    require_unit(reader, xmlGetLineNo(node), "the value of <set>", value, target->dimension);
+    require_unit(reader, line_of(node), "the value of <set>", value, target->dimension);
   event->assignments = make_room(event->assignments, event->assignment_count, sizeof *event->assignments);
   event->assignments[event->assignment_count++] = (struct Assignment){symbol, value.node};
 }
@@ -60,18 +60,18 @@ static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event
 /* A condition that comes to hold, or an expression that passes 0 in a direction. */
 static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
   struct Graph *graph = reader->model->graph;
-  struct Place place = {.line = xmlGetLineNo(node), .what = "when", .kinds = IN_EVENT};
+  struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
   char *direction = attribute(node, "direction");
   Node value;
-  if (parse_when(reader->scope, when, place, &value)) {
+  if (parse_when(reader->scope, attribute_in_lines(node, "when"), place, &value)) {
     bool is_tuned = graph_is_constant_in_time(graph, value) && rests_on_parameters(graph, value);
-    event->condition = is_tuned ? tuned_condition(reader->scope, value, xmlGetLineNo(node)) : value;
+    event->condition = is_tuned ? tuned_condition(reader->scope, value, place.line) : value;
     if (direction != NULL)
       report_at(reader, node,
                 "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
                 "no direction");
   } else if (value != ZERO) {
-    event->condition = side_of(reader->scope, value, xmlGetLineNo(node));
+    event->condition = side_of(reader->scope, value, place.line);
     event->side = new_mode(reader, "side", when);
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;
     bool is_both = direction != NULL && strcmp(direction, "both") == 0;
@@ -129,7 +129,7 @@ void read_event(struct Reader *reader, xmlNodePtr node) {
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
   if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
     report_at(reader, node, "an <event> that changes nothing; expected a <set>");
-  if (reader->diagnostics->errors == 0) check_forces(reader, &event, xmlGetLineNo(node));
+  if (reader->diagnostics->errors == 0) check_forces(reader, &event, line_of(node));
   event.text = when;
   switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);
   switches->events[switches->event_count++] = event;

@@ -30,7 +30,7 @@ static struct Quantity read_friction_force(struct Reader *reader, xmlNodePtr nod
                                            struct Dimension unit) {
   struct Quantity force = {.node = ZERO};
   if (expression_attribute(reader, node, attribute_name, IN_CONDITION | KIND(ACCELERATION), &force) && unit.known)
-    require_unit(reader, xmlGetLineNo(node), attribute_name, force, unit);
+    require_unit(reader, line_of_attribute(node, attribute_name), attribute_name, force, unit);
   return force;
 }
 
@@ -59,7 +59,7 @@ static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension
     return false;
   }
   if (!expression_attribute(reader, node, "across", IN_CONSTRAINT, velocity)) return false;
-  if (along.known) require_unit(reader, xmlGetLineNo(node), "across", *velocity, along);
+  if (along.known) require_unit(reader, line_of_attribute(node, "across"), "across", *velocity, along);
   return true;
 }
 

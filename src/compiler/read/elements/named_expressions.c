@@ -25,7 +25,7 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
   struct Source *present = source_enter(reader, expression->source);
   struct Dimension unit = unit_attribute(reader, node, "unit");
   source_enter(reader, present);
-  require_unit(reader, xmlGetLineNo(where), what, value, unit);
+  require_unit(reader, line_of_attribute(where, "value"), what, value, unit);
   if (!unit.known) return value;
   return (struct Quantity){.node = value.node, .dimension = unit};
 }
@@ -36,7 +36,7 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   expression_attribute(reader, node, component, IN_POSITION, &value);
   if (definitions_are_waiting(reader->definitions)) return value;
   struct Dimension unit = unit_of(is_angle ? "rad" : "m");
-  require_unit(reader, xmlGetLineNo(node), is_angle ? "the angle" : component, value, unit);
+  require_unit(reader, line_of_attribute(node, component), is_angle ? "the angle" : component, value, unit);
   return (struct Quantity){.node = value.node, .dimension = value.dimension.known ? unit : dimension_unknown};
 }
 
@@ -46,7 +46,7 @@ static struct Quantity read_rate(struct Reader *reader, xmlNodePtr node) {
   expression_attribute(reader, node, "rate", IN_RATE, &rate);
   if (definitions_are_waiting(reader->definitions)) return rate;
   struct Dimension unit = dimension_multiply(unit_attribute(reader, node, "unit"), unit_of("s"), -1.0);
-  require_unit(reader, xmlGetLineNo(node), "the rate", rate, unit);
+  require_unit(reader, line_of_attribute(node, "rate"), "the rate", rate, unit);
   return rate;
 }
 
@@ -93,7 +93,7 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
                               .unit = attribute(node, "unit"),
                               .display_unit = display_unit_attribute(reader, node, "displayUnit", value.dimension),
                               .dimension = value.dimension,
-                              .node = without_displacements(reader, xmlGetLineNo(node), "the definition", value.node)};
+                              .node = without_displacements(reader, line_of(node), "the definition", value.node)};
   append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);
 }
 
@@ -123,5 +123,5 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
     definitions_add(reader->definitions, name, &expression);
     return;
   }
-  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, xmlGetLineNo(node)); /* says what has the name */
+  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, line_of(node)); /* says what has the name */
 }

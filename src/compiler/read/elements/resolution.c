@@ -16,7 +16,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
   const char *names = close_text(&text);
   const struct NamedExpression *expression = &definitions->items[closing].expression;
   struct Source *present = source_enter(reader, expression->source);
-  report_error(reader->diagnostics, xmlGetLineNo(expression->node),
+  report_error(reader->diagnostics, line_of(expression->node),
                "definitions depend on each other in a circle: %s%s; expected one that does not use the next", names,
                definitions->items[closing].name);
   source_enter(reader, present);
@@ -37,7 +37,7 @@ static void keep_waiting(struct Definitions *definitions, struct Reader *reader,
     struct Definition *definition = &definitions->items[stack[i]];
     struct Quantity nothing = {.node = ZERO};
     if (definition->state == ACTIVE)
-      scope_define(reader->scope, definition->name, nothing, xmlGetLineNo(definition->expression.node));
+      scope_define(reader->scope, definition->name, nothing, line_of(definition->expression.node));
     if (definition->state == ACTIVE) definition->state = READ;
   }
 }
@@ -63,7 +63,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     } else {
       xmlNodePtr node = definition->expression.node;
       struct Source *present = source_enter(reader, definition->expression.source);
-      bool is_new = scope_define(reader->scope, definition->name, value, xmlGetLineNo(node));
+      bool is_new = scope_define(reader->scope, definition->name, value, line_of(node));
       if (is_new) keep_named_expression(reader, node, definition->name, value);
       source_enter(reader, present);
       definition->state = READ;

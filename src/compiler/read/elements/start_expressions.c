@@ -10,7 +10,7 @@ static void read_start(struct Reader *reader, xmlNodePtr node, const struct Give
   struct Quantity value = {.node = ZERO, .literal = true};
   struct Source *present = enter_giver(reader, giver_of(given, attribute), &node);
   expression_attribute(reader, node, attribute, IN_MASS, &value);
-  require_unit(reader, xmlGetLineNo(node), "the start value", value, variable->dimension);
+  require_unit(reader, line_of_attribute(node, attribute), "the start value", value, variable->dimension);
   variable->start_expression = value.node;
   source_enter(reader, present);
 }

@@ -45,6 +45,7 @@ static size_t declare_held(struct Reader *reader, struct Variable constraint) {
   struct VariableList *constraints = &reader->model->constraints;
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, constraint.name, word, constraint.line);
+  constraint.line = scope_line(reader->scope, constraint.line);
   append_variable(constraints, constraint);
   return constraints->count - 1;
 }
@@ -60,7 +61,7 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
 /* The constraint of one end of a stop: x.min or x.max. */
 static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, const char *end) {
   return variable_create(format_text("%s.%s", coordinate, end),
-                         format_text("stop of %s at its %simum", coordinate, end), xmlGetLineNo(node));
+                         format_text("stop of %s at its %simum", coordinate, end), line_of(node));
 }
 
 void declare_stop(struct Reader *reader, xmlNodePtr node) {
@@ -163,10 +164,11 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
   struct Variable *constraint = &model->constraints.items[contact->constraint];
   struct Quantity restitution = {.node = ZERO};
   if (expression_attribute(reader, node, "restitution", IN_CONDITION, &restitution))
-    require_unit(reader, constraint->line, "the restitution", restitution, dimension_one);
+    require_unit(reader, line_of_attribute(node, "restitution"), "the restitution", restitution, dimension_one);
   double value = graph_is_constant(model->graph, restitution.node) ? graph_value(model->graph, restitution.node) : 0.0;
   if (!(value >= 0.0 && value <= 1.0))
-    report_error(reader->diagnostics, constraint->line, "the restitution %g; expected one from 0 to 1", value);
+    report_error(reader->diagnostics, line_of_attribute(node, "restitution"),
+                 "the restitution %g; expected one from 0 to 1", value);
   contact->gap = gap;
   contact->restitution = restitution.node;
   if (!graph_depends_on(model->graph, gap, COORDINATE))
@@ -217,7 +219,8 @@ static void read_contact_of_gap(struct Reader *reader, xmlNodePtr node) {
   expression_attribute(reader, node, "gap", IN_GAP, &gap);
   size_t number = reader->present->number;
   struct Variable *constraint = &reader->model->constraints.items[reader->model->switches.contacts[number].constraint];
-  if (constraint->unit != NULL) require_unit(reader, constraint->line, "the gap", gap, constraint->dimension);
+  if (constraint->unit != NULL)
+    require_unit(reader, line_of_attribute(node, "gap"), "the gap", gap, constraint->dimension);
   set_contact(reader, node, number, gap.node);
 }
 
@@ -242,7 +245,8 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
     struct Quantity limit;
     if (!expression_attribute(reader, node, ends[end], IN_GAP, &limit)) continue;
     const struct Variable *coordinate = &reader->model->coordinates.items[symbol->index];
-    if (coordinate->dimension.known) require_unit(reader, xmlGetLineNo(node), ends[end], limit, coordinate->dimension);
+    if (coordinate->dimension.known)
+      require_unit(reader, line_of_attribute(node, ends[end]), ends[end], limit, coordinate->dimension);
     struct Switches *switches = &reader->model->switches;
     struct Variable *constraint = &reader->model->constraints.items[switches->contacts[number].constraint];
     constraint->dimension = coordinate->dimension;

@@ -58,7 +58,7 @@ void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *
   struct Diagnostics *diagnostics = lines->reader->diagnostics;
   char *path = path_beside(lines->reader, name), *text = text_of_file(path);
   if (text == NULL) {
-    report_error(diagnostics, xmlGetLineNo(node),
+    report_error(diagnostics, line_of(node),
                  "the file '%s' cannot be read: %s; expected columns of numbers, and a path relative to this file",
                  path, strerror(errno));
     lines->wrong = true;
@@ -73,10 +73,7 @@ void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *
   }
 }
 
-/* The line of a text is that of its end. */
 void table_lines_of_text(struct TableLines *lines, xmlNodePtr part) {
-  const char *text = (const char *)part->content;
-  lines->line = xmlGetLineNo(part);
-  for (const char *c = text; *c != '\0'; c++) lines->line -= *c == '\n';
-  take_lines(lines, text);
+  lines->line = line_of(part);
+  take_lines(lines, (const char *)part->content);
 }

@@ -58,7 +58,7 @@ static void take_line(struct TableLines *lines, const char *line) {
 /* <point x y/> or text. */
 static void read_content(struct Points *points, xmlNodePtr node) {
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
-    points->lines.line = xmlGetLineNo(part);
+    points->lines.line = line_of(part);
     if (part->type == XML_ELEMENT_NODE) {
       double x = NAN, y = NAN;
       bool right = number_attribute(points->lines.reader, part, "x", &x);
@@ -119,6 +119,6 @@ void read_table(struct Reader *reader, xmlNodePtr node) {
                                                  : read_curve(reader, node, name, file);
   /* A table is no value: its name alone cannot be used. */
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
-  bool is_new = name != NULL && scope_define(reader->scope, name, word, xmlGetLineNo(node));
+  bool is_new = name != NULL && scope_define(reader->scope, name, word, line_of(node));
   if (is_new && table != NULL) names_set(reader->scope->tables, name, table);
 }

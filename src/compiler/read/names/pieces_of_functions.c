@@ -36,7 +36,7 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
   for (size_t i = switches->branch_count; i-- > 0;)
     if (switches->branches[i].indicator == indicator && switches->branches[i].is_side == is_side)
       return switches->branches[i].mode;
-  char *name = format_text("%s in line %ld", function, scope_line(scope, line));
+  char *name = format_text("%s in line %ld", function, line);
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   append_branch(switches, (struct Branch){.mode = mode,
                                           .indicator = indicator,

@@ -36,9 +36,10 @@ static void add_entry(struct Scope *scope, const char *name, struct Quantity qua
 
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
   const struct Entry *taken = find_entry(scope, name);
-  if (taken != NULL && taken->line > 0) {
+  if (taken != NULL && taken->line != 0) {
     report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name%s",
-                 name, taken->line, taken->line == line ? ", or an index such as [i] where a <for> repeats it" : "");
+                 name, noted_line(scope->diagnostics->noted, taken->line).line,
+                 taken->line == line ? ", or an index such as [i] where a <for> repeats it" : "");
     return false;
   }
   if (taken != NULL) {
@@ -89,7 +90,7 @@ char *scope_full_name(const struct Scope *scope, const char *name) {
 }
 
 long scope_line(const struct Scope *scope, long line) {
-  return scope->include_line > 0 ? scope->include_line : line;
+  return note_line(scope->diagnostics, line);
 }
 
 bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantity) {

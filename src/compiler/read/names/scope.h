@@ -26,7 +26,6 @@ struct Scope {
   bool keeps_whole;                 /* the present expression stays whole */
   struct Names *warned_numbers;     /* "file:line:number" of those that a warning has named */
   long table_line;                  /* where the present table is used */
-  long include_line;                /* of its <include> in the system's own file; 0 while that is read itself */
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
@@ -51,7 +50,7 @@ const struct Quantity *scope_find(const struct Scope *scope, const char *name);
 /* What the file being read calls by this name: with the prefix of the file, unless it is a word of the language. */
 char *scope_full_name(const struct Scope *scope, const char *name);
 
-/* The line in the system's own file for messages that come when no longer the file of the line is read. */
+/* The line for messages that come when no longer its file is read, as by note_line(). */
 long scope_line(const struct Scope *scope, long line);
 
 /* Whether a known name is a word of the language that has no value, such as that of a function. */

@@ -6,12 +6,11 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
-
-enum { LINE_LIMIT = 65535 }; /* of what libxml2 has room for in an element */
+#include "read/xml/lines.h"
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name) {
   xmlNodePtr node = xmlNewChild(parent, NULL, (const xmlChar *)name, NULL);
-  node->line = (unsigned short)(writer->line < LINE_LIMIT ? writer->line : LINE_LIMIT);
+  set_line(node, writer->line);
   return node;
 }
 

@@ -37,7 +37,7 @@ static struct Matrix3 read_tensor(struct RobotFile *urdf, xmlNodePtr node) {
 
 static void check_inertial(struct RobotFile *urdf, xmlNodePtr node, const struct Link *link,
                            const struct RigidBody *body) {
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   if (body->mass < 0)
     report_error(urdf->diagnostics, line, "the mass %g of the link '%s' is negative; expected 0 or more", body->mass,
                  link->name);
@@ -106,7 +106,7 @@ static bool read_sizes(struct RobotFile *urdf, xmlNodePtr node, const char *name
     largest = fmax(largest, sizes[i]);
   }
   if (urdf->diagnostics->errors == errors && (least < 0 || (touches && !(largest > 0))))
-    report_error(urdf->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s above 0", name,
+    report_error(urdf->diagnostics, line_of(node), "%s=\"%.60s\" of <%s>; expected %s above 0", name,
                  attribute(node, name), (const char *)node->name, count == 1 ? "a number" : "sides");
   return largest > 0;
 }
@@ -135,7 +135,7 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
 
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
-  struct Collision collision = {.place = read_origin(urdf, node), .friction = NAN, .line = xmlGetLineNo(node)};
+  struct Collision collision = {.place = read_origin(urdf, node), .friction = NAN, .line = line_of(node)};
   char *problem = NULL;
   bool touches = link_touches_ground(urdf->options, link->name);
   if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
@@ -211,7 +211,7 @@ static char *read_color(xmlNodePtr visual) {
 /* False where it cannot be drawn. */
 static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   char *problem = NULL;
-  struct Collision visual = {.line = xmlGetLineNo(node)};
+  struct Collision visual = {.line = line_of(node)};
   bool is_right = is_sound_visual(node);
   if (is_right) {
     visual.place = read_origin(urdf, node);
@@ -237,7 +237,7 @@ static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"inertial", "visual", "collision", NULL};
   struct Link *link = allocate(1, sizeof *link);
   link->name = required_attribute(urdf, node, "name");
-  link->line = xmlGetLineNo(node);
+  link->line = line_of(node);
   leave_out_others(urdf, node, known);
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (is_element(child, "collision")) read_collision(urdf, child, link);
@@ -253,7 +253,7 @@ static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   while (type < BALL && strcmp(text, joint_types[type]) != 0) type++;
   if (type == BALL && *text != '\0')
     report_error(
-        urdf->diagnostics, xmlGetLineNo(node),
+        urdf->diagnostics, line_of(node),
         "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar",
         text);
   return type < BALL ? (enum JointType)type : FIXED;
@@ -268,7 +268,7 @@ static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joi
       sqrt(joint->axis[0] * joint->axis[0] + joint->axis[1] * joint->axis[1] + joint->axis[2] * joint->axis[2]);
   bool has_axis = joint->type != FIXED && joint->type != FLOATING;
   if (has_axis && !(length > 0 && isfinite(length)))
-    report_error(urdf->diagnostics, xmlGetLineNo(axis),
+    report_error(urdf->diagnostics, line_of(axis),
                  "the <axis> of the joint '%s' has the length %g; expected a direction such as 0 0 1", joint->name,
                  length);
   for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] /= length;
@@ -282,10 +282,10 @@ static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *j
   double effort = number_not_negative(urdf, limit, "effort");
   bool is_limited = urdf->options->is_effort_limited;
   if (is_limited && effort == 0)
-    warn_unread(urdf, xmlGetLineNo(limit), "effort=\"0\" of <limit>, which stands for no limit,",
+    warn_unread(urdf, line_of(limit), "effort=\"0\" of <limit>, which stands for no limit,",
                 "the largest force or torque of the motor");
   if (is_limited && effort > 0 && (joint->type == FLOATING || joint->type == PLANAR))
-    warn_unread(urdf, xmlGetLineNo(limit), "effort of a floating or planar joint", in_system);
+    warn_unread(urdf, line_of(limit), "effort of a floating or planar joint", in_system);
   if (effort > 0) joint->effort = effort;
 }
 
@@ -295,20 +295,20 @@ static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *jo
   joint->lower = joint->upper = NAN;
   if (limit != NULL && (joint->type == FLOATING || joint->type == PLANAR) &&
       (has_attribute(limit, "lower") || has_attribute(limit, "upper")))
-    warn_unread(urdf, xmlGetLineNo(limit), "<limit lower upper> of a floating or planar joint",
+    warn_unread(urdf, line_of(limit), "<limit lower upper> of a floating or planar joint",
                 "a <stop> at each of its coordinates in a <system> that includes the robot");
   if (limit == NULL || (joint->type != REVOLUTE && joint->type != PRISMATIC)) return;
   double lower = 0, upper = 0;
   bool is_given = read_numbers(urdf, limit, "lower", 1, &lower);
   is_given |= read_numbers(urdf, limit, "upper", 1, &upper);
   if (urdf->options->has_stops && is_given && lower == upper)
-    report_error(urdf->diagnostics, xmlGetLineNo(limit),
+    report_error(urdf->diagnostics, line_of(limit),
                  "the limits of the joint '%s' are both %g; expected lower below upper, or type=\"fixed\"", joint->name,
                  lower);
   if (has_attribute(limit, "velocity")) leave_out(urdf, "velocity of limit");
   if (lower > upper)
-    report_error(urdf->diagnostics, xmlGetLineNo(limit),
-                 "lower=\"%g\" of <limit> is above upper=\"%g\"; expected it below", lower, upper);
+    report_error(urdf->diagnostics, line_of(limit), "lower=\"%g\" of <limit> is above upper=\"%g\"; expected it below",
+                 lower, upper);
   if (!is_given) return;
   joint->lower = lower;
   joint->upper = upper;
@@ -322,7 +322,7 @@ static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct Joint 
   double stiffness = number_not_negative(urdf, dynamics, "spring_stiffness");
   if (joint->type == FLOATING || joint->type == PLANAR) {
     if (damping > 0 || friction > 0 || stiffness > 0)
-      warn_unread(urdf, xmlGetLineNo(dynamics), "<dynamics> of a floating or planar joint", in_system);
+      warn_unread(urdf, line_of(dynamics), "<dynamics> of a floating or planar joint", in_system);
     return;
   }
   joint->damping = damping;
@@ -349,7 +349,7 @@ static void read_joint(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", NULL};
   struct Joint *joint = allocate(1, sizeof *joint);
   joint->name = required_attribute(urdf, node, "name");
-  joint->line = xmlGetLineNo(node);
+  joint->line = line_of(node);
   joint->type = read_type(urdf, node);
   joint->has_motor = true;
   joint->parent_name = read_end(urdf, node, "parent");
@@ -403,7 +403,7 @@ static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {
       continue;
     const xmlChar *text = node->children != NULL ? node->children->content : NULL;
     if (text == NULL || !says_nothing((const char *)text))
-      warn_unread(urdf, xmlGetLineNo(node), format_text("<%s>", (const char *)node->name), of_simulators[i].remedy);
+      warn_unread(urdf, line_of(node), format_text("<%s>", (const char *)node->name), of_simulators[i].remedy);
   }
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) check_simulators(urdf, child);
@@ -427,7 +427,7 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
   struct RobotFile urdf = {.robot = allocate(1, sizeof *urdf.robot), .options = options, .diagnostics = diagnostics};
   static const char *const known[] = {"link", "joint", "material", NULL};
   xmlNodePtr xacro = find_xacro(root);
-  urdf.robot->line = xmlGetLineNo(root);
+  urdf.robot->line = line_of(root);
   urdf.robot->gravity[2] = -9.81;
   urdf.robot->name = required_attribute(&urdf, root, "name");
   if (options->keyframe != NULL)
@@ -438,7 +438,7 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
         options->keyframe);
   if (xacro != NULL)
     report_error(
-        diagnostics, xmlGetLineNo(xacro),
+        diagnostics, line_of(xacro),
         "<%s> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it",
         (const char *)xacro->name);
   for (xmlNodePtr node = root->children; node != NULL && xacro == NULL; node = node->next) {

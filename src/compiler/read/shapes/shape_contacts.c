@@ -90,7 +90,7 @@ size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
 
 static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struct ShapeContact *contact) {
   const struct ContactShape *shapes[2];
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   if (reader->diagnostics->errors > 0 || !find_shapes(reader, node, shapes)) return false;
   contact->first = side_of_contact(reader, line, shapes[0]);
   contact->second = side_of_contact(reader, line, shapes[1]);
@@ -119,7 +119,7 @@ const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node) {
 static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit, Node usual) {
   struct Quantity value = {.node = usual};
   if (!expression_attribute(reader, node, name, IN_MASS, &value)) return usual;
-  require_unit(reader, xmlGetLineNo(node), name, value, unit_of(unit));
+  require_unit(reader, line_of_attribute(node, name), name, value, unit_of(unit));
   expect_not_negative(reader, node, format_text("the %s of <contact>", name), value.node, false);
   return value.node;
 }
@@ -186,7 +186,7 @@ static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
   struct Variable variable = variable_create(format_text("%s.force", name),
                                              format_text("force with which %s presses '%s' and '%s' apart", name,
                                                          attribute(node, "between"), attribute(node, "and")),
-                                             xmlGetLineNo(node));
+                                             line_of(node));
   variable.unit = copy_text("N");
   variable.dimension = unit_of("N");
   variable.node = force;
@@ -198,7 +198,7 @@ static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
 void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
   struct Graph *graph = reader->model->graph;
   struct ShapeContact contact;
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   struct Law law = {.stiffness = read_law_attribute(reader, node, "stiffness", "N/m", ZERO),
                     .damping = read_law_attribute(reader, node, "damping", "s/m", ZERO),
                     .friction = read_law_attribute(reader, node, "friction", "1", ZERO)};

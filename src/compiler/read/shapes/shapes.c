@@ -99,7 +99,7 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
 static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity length = {.node = ZERO};
   if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ZERO;
-  require_unit(reader, xmlGetLineNo(node), name, length, unit_of("m"));
+  require_unit(reader, line_of_attribute(node, name), name, length, unit_of("m"));
   return length.node;
 }
 
@@ -135,7 +135,7 @@ static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape
   shape->in = name;
   if (is_spatial_point) {
     shape->frame = point.frame;
-    shape->offset = vector_without_displacements(reader, xmlGetLineNo(node), name, point.offset);
+    shape->offset = vector_without_displacements(reader, line_of(node), name, point.offset);
   } else if (body != NULL) shape->particle = (size_t)(body - reader->model->mechanism.bodies);
   else if (name != NULL)
     report_at(reader, node, "there is nothing named '%s' for this <shape>; expected a <frame>, <body> or <particle>",
@@ -149,7 +149,7 @@ static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactSha
   for (int i = 2; i >= 0; i--) {
     struct Quantity angle = {.node = ZERO};
     if (!expression_attribute(reader, node, names[i], IN_MASS, &angle)) continue;
-    require_unit(reader, xmlGetLineNo(node), names[i], angle, unit_of("rad"));
+    require_unit(reader, line_of_attribute(node, names[i]), names[i], angle, unit_of("rad"));
     shape->angles[i] = angle.node;
     struct Vector axis = {{ZERO, ZERO, ZERO}};
     axis.along[i] = ONE;

@@ -113,7 +113,7 @@ char *name_of_body(struct Reader *reader, xmlNodePtr node) {
 static void read_mass(struct Reader *reader, xmlNodePtr node, struct Body *body) {
   expression_attribute(reader, node, "mass", IN_INERTIA, &body->mass);
   require_fixed(reader, body->line, "mass", body->mass, "m", "v");
-  require_unit(reader, body->line, "the mass", body->mass, unit_of("kg"));
+  require_unit(reader, line_of_attribute(node, "mass"), "the mass", body->mass, unit_of("kg"));
 }
 
 static const struct Body *report_same_name(const struct Reader *reader, const struct Body *body) {
@@ -127,7 +127,7 @@ static const struct Body *report_same_name(const struct Reader *reader, const st
 
 static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  struct Body body = {.name = name_of_body(reader, node), .line = xmlGetLineNo(node)};
+  struct Body body = {.name = name_of_body(reader, node), .line = line_of(node)};
   const struct Body *other = report_same_name(reader, &body);
   read_mass(reader, node, &body);
   for (int axis = 0; axis < 3 && other == NULL; axis++)
@@ -137,7 +137,7 @@ static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
   if (body.has_angle) {
     expression_attribute(reader, node, "inertia", IN_INERTIA, &body.inertia);
     require_fixed(reader, body.line, "inertia", body.inertia, "J", "omega");
-    require_unit(reader, body.line, "the inertia", body.inertia, unit_of("kg.m2"));
+    require_unit(reader, line_of_attribute(node, "inertia"), "the inertia", body.inertia, unit_of("kg.m2"));
   }
   if (other == NULL && !body.has_position[0] && !body.has_position[1] && !body.has_position[2])
     report_error(reader->diagnostics, body.line, "<%s> has no position; expected x, y or z", (const char *)node->name);
@@ -156,7 +156,7 @@ static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *bod
     for (int j = i; j < 3; j++) {
       struct Quantity moment = {.node = ZERO};
       if (!expression_attribute(reader, node, names[i][j], IN_MASS, &moment)) continue;
-      require_unit(reader, body->line, names[i][j], moment, unit_of("kg.m2"));
+      require_unit(reader, line_of_attribute(node, names[i][j]), names[i][j], moment, unit_of("kg.m2"));
       body->tensor.row[i].along[j] = body->tensor.row[j].along[i] = moment.node;
     }
 }
@@ -202,7 +202,7 @@ static void add_spatial_energy(struct Model *model, const struct Body *body) {
 
 /* A particle, body or point in a frame. */
 static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
-  struct Body body = {.name = name_of_body(reader, node), .line = xmlGetLineNo(node)};
+  struct Body body = {.name = name_of_body(reader, node), .line = line_of(node)};
   struct SpatialPoint point;
   if (body.name == NULL) return; /* reported */
   const struct Body *other = report_same_name(reader, &body);

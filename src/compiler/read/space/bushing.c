@@ -17,7 +17,7 @@ static struct Vector read_factors(struct Reader *reader, xmlNodePtr node, const 
   for (char *part = text != NULL ? strtok_r(text, " \t\r\n", &rest) : NULL; part != NULL;
        part = strtok_r(NULL, " \t\r\n", &rest)) {
     struct Quantity factor = parse_expression(reader->scope, part, place_at(node, what, IN_MASS));
-    require_unit(reader, xmlGetLineNo(node), what, factor, unit_of(unit));
+    require_unit(reader, line_of_attribute(node, what), what, factor, unit_of(unit));
     expect_not_negative(reader, node, what, factor.node, false);
     if (count < 3) factors.along[count] = factor.node;
     count++;

@@ -53,10 +53,9 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   }
   int index = symbol->index;
   struct Quantity force = expression_text_of(reader, node, "the force", IN_FORCE);
-  require_unit(reader, xmlGetLineNo(node), "the force", force,
+  require_unit(reader, line_of(node), "the force", force,
                dimension_multiply(unit_of("J"), model->coordinates.items[index].dimension, -1.0));
-  add_term(model, &model->forces.along[index],
-           without_displacements(reader, xmlGetLineNo(node), "the force", force.node));
+  add_term(model, &model->forces.along[index], without_displacements(reader, line_of(node), "the force", force.node));
 }
 
 void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers) {
@@ -84,8 +83,8 @@ static struct Vector read_components(struct Reader *reader, xmlNodePtr node, con
   for (int axis = 0; axis < 3; axis++) {
     struct Quantity component;
     if (!expression_attribute(reader, node, axes[axis], IN_FORCE, &component)) continue;
-    require_unit(reader, xmlGetLineNo(node), axes[axis], component, unit_of(unit));
-    vector.along[axis] = without_displacements(reader, xmlGetLineNo(node), axes[axis], component.node);
+    require_unit(reader, line_of_attribute(node, axes[axis]), axes[axis], component, unit_of(unit));
+    vector.along[axis] = without_displacements(reader, line_of(node), axes[axis], component.node);
   }
   return vector;
 }
@@ -107,7 +106,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   struct Model *model = reader->model;
   const struct Body *body = find_body(reader, name);
   struct SpatialPoint point;
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
   struct Vector force = read_components(reader, node, "N");
   if (body == NULL && !find_spatial_point(reader, name, &point)) {
@@ -164,7 +163,7 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
   const struct ReferenceFrame *turned = name != NULL ? find_frame(reader, name) : NULL;
   const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
   struct Vector torque = read_components(reader, node, "N.m");
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   reader->model->forces.any = true;
   if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
   if (turned != NULL && frame != NULL) {
@@ -187,7 +186,7 @@ void read_gravity(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++) {
     struct Quantity gravity = {.node = ZERO};
     if (!expression_attribute(reader, node, axes[axis], IN_MASS, &gravity)) continue;
-    require_unit(reader, xmlGetLineNo(node), axes[axis], gravity, unit_of("m/s2"));
+    require_unit(reader, line_of_attribute(node, axes[axis]), axes[axis], gravity, unit_of("m/s2"));
     model->mechanism.gravity.along[axis] = gravity.node;
     for (size_t i = 0; i < model->mechanism.body_count; i++) {
       const struct Body *body = &model->mechanism.bodies[i];

@@ -63,7 +63,7 @@ void declare_frame(struct Reader *reader, xmlNodePtr node) {
                           .description = format_text("norm of the quaternion of %s", name),
                           .unit = copy_text("1"),
                           .dimension = dimension_one,
-                          .line = xmlGetLineNo(turn)};
+                          .line = scope_line(reader->scope, line_of(turn))};
   reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, norm);
 }
@@ -158,7 +158,7 @@ static void read_offset(struct Reader *reader, xmlNodePtr node, struct Vector *o
     struct Quantity length = {.node = ZERO};
     if (expression_attribute(reader, node, axes[i], IN_POSITION, &length) &&
         !definitions_are_waiting(reader->definitions))
-      require_unit(reader, xmlGetLineNo(node), axes[i], length, unit_of("m"));
+      require_unit(reader, line_of_attribute(node, axes[i]), axes[i], length, unit_of("m"));
     offset->along[i] = length.node;
     rate->along[i] = total_time_derivative(reader->scope, length.node);
   }
@@ -337,7 +337,7 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
                              .description = description_of(name, components[i]),
                              .unit = copy_text(unit_of_component(components[i])),
                              .dimension = value->dimension,
-                             .node = without_displacements(reader, xmlGetLineNo(node), full_name, value->node)};
+                             .node = without_displacements(reader, line_of(node), full_name, value->node)};
     append_variable(&reader->model->mechanism.places, place);
   }
 }

@@ -11,7 +11,7 @@ enum { X, Y, Z };
 static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity length = {.node = ZERO};
   if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ONE; /* reported */
-  require_unit(reader, xmlGetLineNo(node), name, length, unit_of("m"));
+  require_unit(reader, line_of_attribute(node, name), name, length, unit_of("m"));
   if (length.node == ZERO) report_at(reader, node, "the %s of <joint> is 0; expected a length", name);
   return length.node == ZERO ? ONE : length.node;
 }

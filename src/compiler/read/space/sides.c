@@ -45,7 +45,7 @@ bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *nam
 }
 
 bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
-  long line = xmlGetLineNo(node);
+  long line = line_of(node);
   const char *what = attribute(node, name);
   if (!read_displaced_side(reader, node, name, side)) return false;
   side->position = vector_without_displacements(reader, line, what, side->position);
@@ -65,7 +65,7 @@ bool read_side_early(struct Reader *reader, xmlNodePtr node, const char *name, s
 struct Vector angular_velocity_of_side(struct Reader *reader, xmlNodePtr node, const struct Side *side) {
   const struct Pose *pose = &reader->model->mechanism.frames[side->frame].pose;
   const char *what = "the angular velocity of a frame";
-  struct Vector spin = vector_without_displacements(reader, xmlGetLineNo(node), what, pose->angular_velocity);
+  struct Vector spin = vector_without_displacements(reader, line_of(node), what, pose->angular_velocity);
   return matrix_apply(reader->model->graph, &side->rotation, spin);
 }
 

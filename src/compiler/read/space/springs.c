@@ -20,7 +20,7 @@ struct Spring {
 static Node read_constant(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit) {
   struct Quantity value = {.node = ZERO};
   if (expression_attribute(reader, node, name, IN_MASS, &value) && !definitions_are_waiting(reader->definitions))
-    require_unit(reader, xmlGetLineNo(node), name, value, unit_of(unit));
+    require_unit(reader, line_of_attribute(node, name), name, value, unit_of(unit));
   return value.node;
 }
 
@@ -65,7 +65,7 @@ static void append_components(struct Reader *reader, xmlNodePtr node, const char
         .description = format_text(i == 0 ? "%s of %s" : "%s in %s, positive in tension", components[i], name),
         .unit = copy_text(units[i]),
         .dimension = value->dimension};
-    variable.node = without_displacements(reader, xmlGetLineNo(node), full_name, value->node);
+    variable.node = without_displacements(reader, line_of(node), full_name, value->node);
     append_variable(&reader->model->mechanism.places, variable);
   }
 }

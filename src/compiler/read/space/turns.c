@@ -20,7 +20,7 @@ static const char blanks[] = " \t\r\n";
 static void read_expressions(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds, size_t count,
                              Node *nodes) {
   char *text = attribute(node, name), *what = format_text("%s of <rotate>", name), *rest = NULL;
-  struct Place place = {.line = xmlGetLineNo(node), .what = what, .kinds = kinds};
+  struct Place place = {.line = line_of_attribute(node, name), .what = what, .kinds = kinds};
   char *part = strtok_r(text, blanks, &rest);
   for (size_t i = 0; i < count && part != NULL; i++, part = strtok_r(NULL, blanks, &rest))
     nodes[i] = parse_expression(reader->scope, part, place).node;
@@ -54,7 +54,7 @@ static void warn_of_degrees(struct Reader *reader, xmlNodePtr node, struct Quant
   if (!angle.literal || !graph_is_constant(graph, angle.node)) return;
   double value = graph_value(graph, angle.node);
   if (value == floor(value) && fabs(value) > 6.0)
-    report_warning(reader->diagnostics, xmlGetLineNo(node),
+    report_warning(reader->diagnostics, line_of(node),
                    "the angle is %g rad; expected radians, such as %g*pi/180 for degrees", value, value);
 }
 
@@ -64,7 +64,7 @@ static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *p
   if (!read_axis(reader, node, &axis)) return;
   expression_attribute(reader, node, "angle", IN_POSITION, &angle);
   if (definitions_are_waiting(reader->definitions)) return;
-  require_unit(reader, xmlGetLineNo(node), "the angle", angle, unit_of("rad"));
+  require_unit(reader, line_of_attribute(node, "angle"), "the angle", angle, unit_of("rad"));
   warn_of_degrees(reader, node, angle);
   pose_turn(reader->model->graph, pose, axis, angle.node, total_time_derivative(reader->scope, angle.node));
 }

@@ -25,14 +25,23 @@ bool attribute_is(xmlNodePtr node, const char *name, const char *value) {
   return text != NULL && strcmp(text, value) == 0;
 }
 
+/* A blank, and the line breaks of a text alone, by which what follows it keeps its line. */
+static char *breaks_of(const char *text) {
+  char *breaks = copy_text(text), *end = breaks;
+  for (; *text != '\0'; text++)
+    if (*text == '\n') *end++ = '\n';
+  *end = '\0';
+  return format_text(" %s", breaks);
+}
+
 char *text_of(xmlNodePtr node) {
   char *text = copy_text("");
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
     bool comment = part->type == XML_COMMENT_NODE || part->type == XML_PI_NODE;
-    xmlChar *content = comment ? NULL : xmlNodeGetContent(part);
-    char *longer = format_text("%s%s", text, content != NULL ? (const char *)content : " ");
+    xmlChar *content = xmlNodeGetContent(part);
+    const char *known = content != NULL ? (const char *)content : "";
+    text = format_text("%s%s", text, comment ? breaks_of(known) : known);
     xmlFree(content);
-    text = longer;
   }
   return text;
 }

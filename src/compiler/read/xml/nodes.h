@@ -5,6 +5,8 @@
 
 #include <libxml/tree.h>
 
+#include "read/xml/lines.h"
+
 /* Whether it is an element of this name. */
 bool is_element(const xmlNode *node, const char *name);
 
@@ -15,7 +17,7 @@ bool attribute_is(xmlNodePtr node, const char *name, const char *value);
 /* NULL where missing. */
 char *attribute(xmlNodePtr node, const char *name);
 
-/* The element's text, in which a comment separates what stands before and after it. */
+/* The element's text, in which the line breaks of a comment, or a blank, separate what stands before and after it. */
 char *text_of(xmlNodePtr node);
 
 /* Whether it describes a robot in place of a system. */

@@ -117,7 +117,8 @@ static char *remedy(const char *wanted, struct Choices choices) {
 static void report_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
   const char *of = (const char *)element->name;
   char *what_then = remedy(name, choices_in(check, element, "attribute"));
-  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> has no attribute '%s'; %s", of, name, what_then);
+  report_error(check->diagnostics, line_of_attribute(element, name), "<%s> has no attribute '%s'; %s", of, name,
+               what_then);
 }
 
 /* One that is there with another spelling was told with it. */
@@ -127,7 +128,7 @@ static void report_missing_attribute(const struct Check *check, xmlNodePtr eleme
     similar_consider(&similar, name);
     if (similar.best != NULL) return;
   }
-  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> needs the attribute '%s'; expected %s=\"...\"",
+  report_error(check->diagnostics, line_of(element), "<%s> needs the attribute '%s'; expected %s=\"...\"",
                (const char *)element->name, name, name);
 }
 
@@ -136,7 +137,7 @@ static void report_element(const struct Check *check, xmlNodePtr element) {
   const char *hint = hint_for_element(name);
   bool is_known = find_declared(xmlDocGetRootElement(check->schema), "element", name) != NULL;
   char *what_then = remedy(name, choices_in(check, element->parent, "element"));
-  report_error(check->diagnostics, xmlGetLineNo(element), "<%s> %s <%s>; %s", name,
+  report_error(check->diagnostics, line_of(element), "<%s> %s <%s>; %s", name,
                is_known ? "cannot stand in" : "is not an element of", parent, *hint != '\0' ? hint : what_then);
 }
 
@@ -149,8 +150,8 @@ static xmlNodePtr first_of(xmlNodePtr element, xmlElementType type) {
 
 static void report_text(const struct Check *check, const xmlNode *node, const char *where, const char *expected) {
   const char *word = (const char *)node->content + strspn((const char *)node->content, " \t\r\n");
-  long line = xmlGetLineNo(node);
-  for (const char *c = word; *c != '\0'; c++) line -= *c == '\n'; /* the line of a text is that of its end */
+  long line = line_of(node);
+  for (const char *c = (const char *)node->content; c < word; c++) line += *c == '\n';
   report_error(check->diagnostics, line, "the text '%.*s' stands in <%s>; expected it in %s",
                (int)strcspn(word, " \t\r\n"), word, where, expected);
 }
@@ -163,7 +164,7 @@ static void report_content(const struct Check *check, xmlNodePtr element) {
   if (elements.count > 0 && text != NULL)
     report_text(check, text, name, "an element such as <potential>...</potential>, or in <!-- ... -->");
   else if (inner != NULL)
-    report_error(check->diagnostics, xmlGetLineNo(inner),
+    report_error(check->diagnostics, line_of(inner),
                  "<%s> stands inside of <%s>; expected the end of <%s> before it, by </%s> or />",
                  (const char *)inner->name, name, name, name);
   else if (text != NULL) report_text(check, text, name, "an attribute");
@@ -172,10 +173,10 @@ static void report_content(const struct Check *check, xmlNodePtr element) {
 static void report_root(const struct Check *check, xmlNodePtr root) {
   const char *name = (const char *)root->name;
   if (root->ns != NULL)
-    report_error(check->diagnostics, xmlGetLineNo(root), "<%s> belongs to the namespace '%s'; expected no xmlns", name,
+    report_error(check->diagnostics, line_of(root), "<%s> belongs to the namespace '%s'; expected no xmlns", name,
                  (const char *)root->ns->href);
   else
-    report_error(check->diagnostics, xmlGetLineNo(root),
+    report_error(check->diagnostics, line_of(root),
                  "the file begins with <%s>; expected <system name=\"...\">, <linearization of=\"...\" name=\"...\"> "
                  "or <robot name=\"...\">",
                  name);
@@ -217,7 +218,7 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
   case XML_SCHEMAV_CVC_MINEXCLUSIVE_VALID: what_then = copy_text("is not above 0; expected a positive number"); break;
   default: what_then = copy_text("is not a number; expected one such as 2, 0.5 or 1e-3");
   }
-  report_error(check->diagnostics, xmlGetLineNo(element), "%s %s", what, what_then);
+  report_error(check->diagnostics, line_of_attribute(element, name), "%s %s", what, what_then);
   xmlFree(value);
 }
 

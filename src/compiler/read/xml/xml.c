@@ -92,10 +92,13 @@ static xmlDocPtr parse(const char *path, const char *text, size_t length, struct
   parser->_private = diagnostics;
   parser->sax->internalSubset = refuse_document_type;
   int errors = diagnostics->errors;
-  enum { OPTIONS = XML_PARSE_NONET | XML_PARSE_BIG_LINES | XML_PARSE_NOCDATA };
+  enum { OPTIONS = XML_PARSE_NONET | XML_PARSE_NOCDATA };
   xmlDocPtr document = xmlCtxtReadMemory(parser, text, (int)length, path, NULL, OPTIONS);
   xmlFreeParserCtxt(parser);
-  if (diagnostics->errors == errors) return document;
+  if (diagnostics->errors == errors) {
+    if (document != NULL) lines_find(document, text, length);
+    return document;
+  }
   xmlFreeDoc(document);
   return NULL;
 }

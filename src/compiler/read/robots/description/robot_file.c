@@ -47,7 +47,7 @@ xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name)
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (!is_element(node, name)) continue;
     if (found != NULL)
-      report_error(file->diagnostics, xmlGetLineNo(node), "a second <%s> in <%s>; expected one", name,
+      report_error(file->diagnostics, line_of(node), "a second <%s> in <%s>; expected one", name,
                    (const char *)parent->name);
     else found = node;
   }
@@ -57,15 +57,15 @@ xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name)
 xmlNodePtr required_child_of(struct RobotFile *file, xmlNodePtr parent, const char *name) {
   xmlNodePtr found = child_of(file, parent, name);
   if (found == NULL)
-    report_error(file->diagnostics, xmlGetLineNo(parent), "<%s> has no <%s>; expected one in it",
-                 (const char *)parent->name, name);
+    report_error(file->diagnostics, line_of(parent), "<%s> has no <%s>; expected one in it", (const char *)parent->name,
+                 name);
   return found;
 }
 
 char *required_attribute(struct RobotFile *file, xmlNodePtr node, const char *name) {
   char *text = attribute(node, name);
   if (text != NULL && *text != '\0') return text;
-  report_error(file->diagnostics, xmlGetLineNo(node), "<%s> needs the attribute '%s'; expected %s=\"...\"",
+  report_error(file->diagnostics, line_of(node), "<%s> needs the attribute '%s'; expected %s=\"...\"",
                (const char *)node->name, name, name);
   return text != NULL ? text : copy_text("");
 }
@@ -92,7 +92,7 @@ bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, siz
   double read[3] = {0};
   if (parse_numbers(text, count, read) == count) memcpy(values, read, count * sizeof *values);
   else
-    report_error(file->diagnostics, xmlGetLineNo(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
+    report_error(file->diagnostics, line_of(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
                  (const char *)node->name,
                  count == 1 ? "a number such as 2, -0.5 or 1e-3" : "three numbers such as 0 0.5 -1e-3");
   return true;
@@ -109,8 +109,8 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
   double value = 0;
   read_numbers(file, node, name, 1, &value);
   if (value < 0)
-    report_error(file->diagnostics, xmlGetLineNo(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
-                 value, (const char *)node->name);
+    report_error(file->diagnostics, line_of(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name, value,
+                 (const char *)node->name);
   return value;
 }
 
@@ -147,7 +147,7 @@ static void check_attribute(struct RobotFile *file, xmlNodePtr node, const char 
       return;
   }
   if (is_known_element)
-    warn_unread(file, xmlGetLineNo(node), format_text("%s of <%s>", name, element),
+    warn_unread(file, line_of(node), format_text("%s of <%s>", name, element),
                 remedy != NULL ? remedy : "one of the attributes that the reference names");
 }
 

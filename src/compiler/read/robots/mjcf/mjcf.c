@@ -42,7 +42,7 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "coordinate=\"%s\" of <compiler>; expected local",
+    report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler>; expected local",
                  attribute(node, "coordinate"));
   if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
   if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
@@ -50,7 +50,7 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   if (sequence == NULL) return;
   if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
   else
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "eulerseq=\"%.60s\" of <compiler>; expected three of the letters x, y, z, X, Y, Z", sequence);
 }
 
@@ -71,14 +71,14 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (attribute_is(flag, flags[i], "disable"))
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(flag),
+      report_error(mjcf->file.diagnostics, line_of(flag),
                    "%s=\"disable\" of <flag> is not read; expected a file without what it disables", flags[i]);
 }
 
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
   if (make_unit(joint->axis) == 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1", joint->name);
 }
 
@@ -176,7 +176,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain)
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
   if (chain->is_free && chain->count > 1)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
   if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->place);
 }
@@ -217,7 +217,7 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
       inner = placement_within(outer, &inner);
       read_children(mjcf, child, parent, &inner);
     } else if (is_joint(child) && !is_element(node, "body"))
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(child), "a <%s> is in a <%s>; expected it in a <body>",
+      report_error(mjcf->file.diagnostics, line_of(child), "a <%s> is in a <%s>; expected it in a <body>",
                    (const char *)child->name, (const char *)node->name);
   }
 }
@@ -264,7 +264,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   int errors = diagnostics->errors;
   robot->name = attribute(root, "model");
   if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
-  robot->line = xmlGetLineNo(root);
+  robot->line = line_of(root);
   robot->gravity[2] = -9.81;
   if (options->floats)
     report_error(diagnostics, robot->line,

@@ -35,12 +35,12 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
 static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
   if (ratio != 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
                  "MuJoCo's compiled model",
                  ratio);
   if (actuator->bias[2] > 0 && actuator->gain == -actuator->bias[1])
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
                  "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
                  (const char *)node->name);
@@ -66,7 +66,7 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
   bool is_known = !isnan(lower) && !isnan(upper);
   if (!is_known || !isnan(actuator->control[0])) {
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "inheritrange of <position> %s",
+    report_error(mjcf->file.diagnostics, line_of(node), "inheritrange of <position> %s",
                  is_known ? "is beside a ctrlrange; expected one of them"
                           : "is a share of the range of its joint or tendon, which has none; expected ctrlrange");
     return;
@@ -81,7 +81,7 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
   const struct Robot *robot = mjcf->file.robot;
   for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)
     if (!isnan(robot->joints[i]->push[0])) {
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+      report_error(mjcf->file.diagnostics, line_of(node),
                    "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
                    "expected a file without this, or forcerange of the actuators",
                    actuator->name, robot->joints[i]->name);
@@ -100,7 +100,7 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   const char *tendon_name = attribute(node, "tendon");
   const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
   struct Actuator actuator = {
-      .name = attribute(node, "name"), .line = xmlGetLineNo(node), .transmission = transmission_of(mjcf, node, tendon)};
+      .name = attribute(node, "name"), .line = line_of(node), .transmission = transmission_of(mjcf, node, tendon)};
   if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
   double gear[6] = {1};
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);

@@ -58,11 +58,11 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
                                 .type = (unsigned)(long)mjcf_number(mjcf, node, "contype", 1),
                                 .affinity = (unsigned)(long)mjcf_number(mjcf, node, "conaffinity", 1)};
   if (contact.friction < 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "friction=\"%g\" of <%s> is negative; expected 0 or more",
+    report_error(mjcf->file.diagnostics, line_of(node), "friction=\"%g\" of <%s> is negative; expected 0 or more",
                  contact.friction, (const char *)node->name);
   double d = contact.dimensions;
   if (d != 1 && d != 3 && d != 4 && d != 6)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "condim=\"%g\" of <%s>; expected 1, 3, 4 or 6", d,
+    report_error(mjcf->file.diagnostics, line_of(node), "condim=\"%g\" of <%s>; expected 1, 3, 4 or 6", d,
                  (const char *)node->name);
   return contact;
 }
@@ -113,7 +113,7 @@ static struct MjcfContact combined(const struct MjcfContact *first, const struct
 /* With the file's plane, where it has one; else as the geom says. */
 static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Collision *shape) {
   const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
-  long line = xmlGetLineNo(contact.node);
+  long line = line_of(contact.node);
   const struct ContactRule *pair = ground != NULL ? find_pair(mjcf, ground, &contact) : NULL;
   shape->is_clear = mjcf->has_no_contacts;
   if (ground != NULL && pair == NULL)
@@ -159,14 +159,14 @@ static bool may_meet(const struct Mjcf *mjcf, const struct MjcfContact *first, c
 static char *name_of(xmlNodePtr node) {
   if (is_element(node, "worldbody")) return copy_text("the world");
   return has_attribute(node, "name") ? format_text("the %s '%s'", (const char *)node->name, attribute(node, "name"))
-                                     : format_text("the %s on line %ld", (const char *)node->name, xmlGetLineNo(node));
+                                     : format_text("the %s on line %ld", (const char *)node->name, line_of(node));
 }
 
 /* Warns of the first of several shapes that touch in MuJoCo alone. */
 static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second,
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
-  report_warning(mjcf->file.diagnostics, xmlGetLineNo(first->node),
+  report_warning(mjcf->file.diagnostics, line_of(first->node),
                  "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected a <contact between=\"...\" "
                  "and=\"...\"> of shapes that may meet, in a <system> that includes the robot",
                  name_of(first->node), name_of(first->body), name_of(second->node), name_of(second->body), others);
@@ -197,7 +197,7 @@ static void check_ground(struct Mjcf *mjcf) {
     is_met |= !is_static(&mjcf->contacts[i]) && may_meet(mjcf, &mjcf->ground, &mjcf->contacts[i]);
   if (is_met)
     report_warning(
-        mjcf->file.diagnostics, xmlGetLineNo(mjcf->ground.node),
+        mjcf->file.diagnostics, line_of(mjcf->ground.node),
         "nothing stands on %s; expected ground=\"true\" in an <include>, or ground=\"false\" if this is meant",
         name_of(mjcf->ground.node));
 }

@@ -16,14 +16,14 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
   for (int i = 0; i < 2; i++)
     if (joints[i] == NULL && *names[i] != '\0')
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+      report_error(mjcf->file.diagnostics, line_of(node),
                    "there is no joint '%s' for an <equality>; expected one of the file", names[i]);
   if (c[2] != 0 || c[3] != 0 || c[4] != 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
   if (joints[0] == NULL || joints[1] == NULL) return;
   if (joints[0]->mimicked_name != NULL)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "the joint '%s' follows '%s' already; expected one <equality> for each joint1", names[0],
                  joints[0]->mimicked_name);
   joints[0]->mimicked_name = names[1];
@@ -46,9 +46,8 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
     ends->names[i] = is_world ? copy_text(mjcf_world) : required_attribute(&mjcf->file, node, names[i]);
     ends->places[i] = mjcf_place_of(mjcf, ends->names[i]);
     if (ends->places[i] == NULL && *ends->names[i] != '\0')
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                   "there is no %s '%s' for a <%s>; expected one of the file", names == of_sites ? "site" : "body",
-                   ends->names[i], (const char *)node->name);
+      report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected one of the file",
+                   names == of_sites ? "site" : "body", ends->names[i], (const char *)node->name);
   }
   return ends->places[0] != NULL && ends->places[1] != NULL;
 }
@@ -91,19 +90,19 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
   if (!read_ends(mjcf, node, &ends)) return;
   bool is_fixed = is_element(node, "weld");
   if (is_fixed && mjcf_number(mjcf, node, "torquescale", 1) == 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "torquescale=\"0\" of <weld> holds no rotation; expected a <connect>");
   if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
   else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
   robot->loops = make_room(robot->loops, robot->loop_count, sizeof *robot->loops);
   robot->loops[robot->loop_count++] = (struct RobotLoop){
-      .name = name, .line = xmlGetLineNo(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
+      .name = name, .line = line_of(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
 }
 
 /* One tendon is as long as a polynomial of another says, or as at the start and so much more. */
 static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
-  struct TendonLink link = {.name = attribute(node, "name"), .line = xmlGetLineNo(node), .coefficient = {0, 1}};
+  struct TendonLink link = {.name = attribute(node, "name"), .line = line_of(node), .coefficient = {0, 1}};
   if (link.name == NULL) link.name = format_text("tendons%zu", robot->tendon_link_count + 1);
   mjcf_numbers(mjcf, node, "polycoef", 1, TENDON_POWERS, link.coefficient);
   bool has_other = has_attribute(node, "tendon2");

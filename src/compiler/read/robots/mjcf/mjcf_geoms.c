@@ -33,7 +33,7 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   double length = make_unit(along);
   bool is_round = geom->type == CAPSULE || geom->type == CYLINDER;
   if (!(length > 0) || (!is_round && geom->type != BOX && geom->type != ELLIPSOID)) {
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "fromto of a <geom> gives no place; expected two points, of a capsule, cylinder, box or ellipsoid");
     return;
   }
@@ -55,9 +55,8 @@ static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   place_between(mjcf, node, &geom);
   for (int i = 0; i < needed[geom.type] && mjcf->file.diagnostics->errors == errors; i++)
     if (!(geom.size[i] > 0))
-      report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
-                   "a <geom> of type %s has a size of %g; expected %d above 0", geom_types[geom.type], geom.size[i],
-                   needed[geom.type]);
+      report_error(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s has a size of %g; expected %d above 0",
+                   geom_types[geom.type], geom.size[i], needed[geom.type]);
   return geom;
 }
 
@@ -109,7 +108,7 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
     return body_seen_from(&geom->place, &body);
   }
   if (!is_solid && geom->type != PLANE && (has_mass ? mass : density) > 0)
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "the inertia of a <geom> of type %s is not known%s%s; expected an <inertial> in its body, as MuJoCo's "
                  "mj_saveLastXML writes it, or mass=\"0\"",
                  geom_types[geom->type], has_problem ? ": " : "", has_problem ? geom->mesh->problem : "");
@@ -159,7 +158,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
     robot->ground->place = geom->place;
     mjcf->ground = *contact;
   } else if (mjcf->file.options->has_ground)
-    report_warning(mjcf->file.diagnostics, xmlGetLineNo(contact->node),
+    report_warning(mjcf->file.diagnostics, line_of(contact->node),
                    "a <geom> of type plane of the body '%s' touches nothing: expected %s", link->name,
                    is_of_world ? "one plane, which is the ground"
                                : "it in the <worldbody>, of which one is the ground");
@@ -176,15 +175,14 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
     return;
   }
   if (problem != NULL && meets_ground)
-    report_warning(mjcf->file.diagnostics, xmlGetLineNo(node),
-                   "a <geom> of type %s of the body '%s' touches nothing: %s", geom_types[geom->type], link->name,
-                   problem);
+    report_warning(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s of the body '%s' touches nothing: %s",
+                   geom_types[geom->type], link->name, problem);
   else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
     note_mesh_problem(&mjcf->file, geom->mesh->problem);
   else if (problem != NULL)
     leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder, box, ellipsoid and mesh");
   if (problem != NULL) return;
-  struct Collision shape = shape_of(geom, xmlGetLineNo(node));
+  struct Collision shape = shape_of(geom, line_of(node));
   shape.color = read_color(mjcf, node);
   if (touches) mjcf_set_contact(mjcf, &contact, &shape);
   struct Collision **shapes = touches ? &link->collisions : &link->visuals;
@@ -201,7 +199,7 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link)
   bool is_full = mjcf_numbers(mjcf, node, "fullinertia", 6, 6, moments) > 0;
   if (!is_full) mjcf_numbers(mjcf, node, "diaginertia", 3, 3, moments);
   else if (has_attribute(node, "diaginertia"))
-    report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+    report_error(mjcf->file.diagnostics, line_of(node),
                  "<inertial> has diaginertia and fullinertia; expected one of them");
   required_attribute(&mjcf->file, node, "mass");
   for (int i = 0; i < 6; i++) body.tensor.at[row[i]][column[i]] = body.tensor.at[column[i]][row[i]] = moments[i];

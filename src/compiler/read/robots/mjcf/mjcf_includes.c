@@ -66,7 +66,7 @@ static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) 
 
 static void set_lines(xmlNodePtr node, long line) {
   for (; node != NULL; node = node->next) {
-    node->line = (unsigned short)(line < 65535 ? line : 65535);
+    set_line(node, line);
     if (node->type == XML_ELEMENT_NODE) set_lines(node->children, line);
   }
 }
@@ -75,7 +75,7 @@ static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
 
 /* The elements of the file come before the <include>, which goes. */
 static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
-  long line = inclusion->line > 0 ? inclusion->line : xmlGetLineNo(node);
+  long line = inclusion->line > 0 ? inclusion->line : line_of(node);
   char *path = find_file(inclusion, node, line);
   xmlDocPtr document = path != NULL ? load(inclusion, path, line) : NULL;
   if (document == NULL) return;

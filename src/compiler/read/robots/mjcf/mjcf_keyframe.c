@@ -32,7 +32,7 @@ static double *read_list(struct Mjcf *mjcf, xmlNodePtr key, const char *name, si
   if (text == NULL) return NULL;
   double *values = allocate(expected + 1, sizeof *values);
   if (parse_numbers(text, expected, values) == expected) return values;
-  report_error(mjcf->file.diagnostics, xmlGetLineNo(key), "%s=\"%.60s\" of <key>; expected %zu number%s", name, text,
+  report_error(mjcf->file.diagnostics, line_of(key), "%s=\"%.60s\" of <key>; expected %zu number%s", name, text,
                expected, expected == 1 ? "" : "s");
   return NULL;
 }

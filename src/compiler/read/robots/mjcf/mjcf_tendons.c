@@ -27,7 +27,7 @@ static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon
 static void check_line(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *from,
                        const char *to) {
   if (*to == '\0' || strcmp(from, to) != 0) return;
-  report_error(mjcf->file.diagnostics, xmlGetLineNo(node),
+  report_error(mjcf->file.diagnostics, line_of(node),
                "the tendon '%s' goes from the site '%s' to itself; expected another site, or this one once",
                tendon->name, to);
 }
@@ -114,7 +114,7 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
     mjcf_report_unknown(mjcf, node, "a <fixed> or <spatial> one");
     return;
   }
-  struct Tendon tendon = {.name = attribute(node, "name"), .line = xmlGetLineNo(node)};
+  struct Tendon tendon = {.name = attribute(node, "name"), .line = line_of(node)};
   double limits[2];
   if (tendon.name == NULL) tendon.name = format_text("tendon%zu", robot->tendon_count + 1);
   if (is_spatial) read_path(mjcf, node, &tendon);
@@ -140,7 +140,7 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
     if (strcmp(robot->tendons[i].name, name) == 0) return &robot->tendons[i];
     similar_consider(&similar, robot->tendons[i].name);
   }
-  report_error(mjcf->file.diagnostics, xmlGetLineNo(node), "there is no tendon '%s' for a <%s>; %s", name,
+  report_error(mjcf->file.diagnostics, line_of(node), "there is no tendon '%s' for a <%s>; %s", name,
                (const char *)node->name,
                similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected one of the file");
   return NULL;

@@ -4,13 +4,14 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/xml/lines.h"
 
 const char mjcf_world[] = "world";
 
 struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
   struct Link *link = allocate(1, sizeof *link);
   link->name = name;
-  link->line = xmlGetLineNo(node);
+  link->line = line_of(node);
   add_link(&mjcf->file, link);
   return link;
 }
@@ -19,7 +20,7 @@ struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType 
                              char *child) {
   struct Joint *joint = allocate(1, sizeof *joint);
   joint->name = name;
-  joint->line = xmlGetLineNo(node);
+  joint->line = line_of(node);
   joint->type = type;
   joint->parent_name = parent;
   joint->child_name = child;
