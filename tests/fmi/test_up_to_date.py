@@ -162,9 +162,8 @@ def test_numbers_that_are_not_finite(value, open_fmu):
         instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr("x"), [value])
     exchange = open_fmu("OscillatorByTaylor", kind=FMU2Model).initialize()
     exchange.fmu.enterContinuousTimeMode()
-    with exchange.fails(ERROR, "state 2 is.*finite"):
+    with exchange.fails(DISCARD, "state 2 is.*finite"):
         exchange.fmu.setContinuousStates((c_double * 2)(1.0, value), 2)
-    exchange.reset().initialize()
     with exchange.fails(ERROR, "the time is.*finite"):
         exchange.fmu.setTime(value)
 

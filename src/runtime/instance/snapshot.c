@@ -117,6 +117,13 @@ static bool are_modes(const char *parameters) {
   return true;
 }
 
+/* Whether the solver could have saved its part of the situation, which is used in co-simulation alone. */
+static bool could_solver_save(const struct Instance *instance, const struct Situation *fixed, const char *saved) {
+  const struct Solver *solver = lagrangian.solver;
+  return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->could_save == NULL ||
+         solver->could_save(fixed, saved);
+}
+
 /*
  * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
  * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
@@ -135,9 +142,7 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
          (may_lack_state(fixed->phase) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
          snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
-         are_modes(situation + parameters) &&
-         (lagrangian.solver == NULL || lagrangian.solver->could_save == NULL ||
-          lagrangian.solver->could_save(fixed, situation + saved));
+         are_modes(situation + parameters) && could_solver_save(instance, fixed, situation + saved);
 }
 
 const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size) {
