@@ -7,7 +7,8 @@
 enum { SIZE = 30, POSITIONS = SIZE * (SIZE + 1) / 2, NUMBERS = COMPLEX * (SIZE * SIZE + SIZE) };
 
 static int place[SIZE], start[SIZE + 1], column[POSITIONS];
-const struct Lagrangian lagrangian = {.coordinate_count = SIZE, .state_count = 2 * SIZE, .implicit = {.lu_pattern = {place, start, column}}};
+const struct Lagrangian lagrangian = {
+    .coordinate_count = SIZE, .state_count = 2 * SIZE, .implicit = {.lu_pattern = {place, start, column}}};
 
 /* From -1 to 1. */
 static double next(unsigned *seed) {

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import fmu
 from closed_forms import pendulum_angle
@@ -180,6 +181,19 @@ def swing_in_orbit(t):
     return {"robot.hinge": theta, "reach": np.sin(theta), "robot.tool_z": 2}
 
 
+def lagged_actuator(t):
+    m, k, T, kp, ki, b, ref = 2, 8, 0.05, 20, 8, 6, 0.1
+    rates = [[0, 1, 0, 0, 0], [-k / m, -b / m, 0, 1 / m, 0], [-1, 0, 0, 0, ref], [-kp / T, 0, ki / T, -1 / T, kp * ref / T], [0] * 5]
+    return dict(zip(["x", "v", "xi", "F"], expm(t * np.array(rates)) @ [0, 0, 0, 0, 1]))
+
+
+def limited_controller(t):
+    """At the limit up to first, and again from where the integral is (5/2 - 1)/2."""
+    first, decay = -np.log(0.15) / 100, np.exp(-100 * t)
+    integral = min(max(0, t - first), 0.75)
+    return {"D": 1 - decay, "I": integral, "u": min(5, 2 * (1 + 2 * integral + 10 * decay))}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -216,6 +230,8 @@ MOTIONS = {
     "HandAndBob": (hand_and_bob, 1e-5),
     "RodForces": (rod_forces, 1e-5),
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
+    "LaggedActuator": (lagged_actuator, 1e-6),
+    "LimitedController": (limited_controller, 1e-9),
     "SlidingBlock": (block, 1e-12),
     "BandBrake": (band_brake, 1e-12),
     "CueBall": (cue_ball, 1e-9),
