@@ -129,12 +129,18 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
   return laws->explain(&settlement);
 }
 
-/* Logs a friction that jams a constraint, as where it makes the equations of motion singular; false where none does. */
+/*
+ * Logs a friction that jams a contact, or a constraint, as where it makes the equations of motion singular; false where none
+ * does.
+ */
 static bool explain_jam(struct Settlement *settlement) {
+  struct Instance *instance = settlement->instance;
   const struct FrictionLaws *laws = settlement->switches->friction_laws;
-  int singular = settlement->instance->singular;
-  bool jams = singular != 0 && laws != NULL && laws->explain_jam(settlement, settlement->switches->branch_count);
-  settlement->instance->singular = jams ? 0 : singular;
+  int singular = instance->singular;
+  bool behind_start = settlement->occasion != AT_START;
+  bool jams = (behind_start && settle_explain(instance, settlement->time, settlement->state)) ||
+              (singular != 0 && laws != NULL && laws->explain_jam(settlement, settlement->switches->branch_count));
+  instance->singular = jams ? 0 : singular;
   return jams;
 }
 
@@ -153,8 +159,7 @@ const char *settle(struct Instance *instance, double time, double *state, enum O
   if (problem == NULL) problem = settle_in_rounds(&settlement);
   bool lacks = problem == no_accelerations || problem == no_first_accelerations;
   bool is_explained = lacks && explain_jam(&settlement);
-  if (problem == no_accelerations && !is_explained && !settle_explain(instance, time, state))
-    blame_frictions(&settlement);
+  if (problem == no_accelerations && !is_explained) blame_frictions(&settlement);
   if (problem == NULL) problem = branches_check(&settlement);
   if (problem == NULL) problem = push(&settlement);
   if (problem == NULL) problem = continuity_check(&settlement);
