@@ -189,6 +189,7 @@ struct EventFacts {
 
 struct ContactLaws;
 struct FrictionLaws;
+struct TimeLaws;
 
 struct SwitchTable {
   size_t mode_count; /* of the last parameters */
@@ -226,6 +227,10 @@ struct SwitchTable {
   void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
   const struct PlaneFacts *planes; /* ascending; NULL where there are none */
   size_t plane_count;
+  /* The branches whose indicators are affine in time, and depend on parameters and modes beside it alone; ascending. */
+  const size_t *timed;
+  size_t timed_count;
+  const struct TimeLaws *time_laws; /* time_laws.h; NULL without such branches */
 };
 
 /*

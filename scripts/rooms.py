@@ -66,6 +66,7 @@ RUNTIME = House(
     src/runtime/events
     src/runtime/contacts
     src/runtime/planes
+    src/runtime/timing
     src/runtime/stepping
     src/runtime/fmi
     src/runtime/fmi2

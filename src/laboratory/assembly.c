@@ -8,6 +8,7 @@
 #include "instance/event_laws.h"
 #include "instance/projection.h"
 #include "instance/solver.h"
+#include "instance/time_laws.h"
 #include "interpreter.h"
 #include "library_functions.h"
 #include "oblique.h"
@@ -132,6 +133,7 @@ static struct SwitchTable *switches_of(const struct Program *program) {
   if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
   if (switches->friction_count > 0)
     switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
+  if (switches->timed_count > 0) switches->time_laws = &time_laws;
   return switches;
 }
 

@@ -326,6 +326,20 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
   switching->rests = any ? rests : NULL;
 }
 
+/* True if the node depends on time, parameters and modes alone, and changes with time at a rate that is constant between events. */
+static bool is_affine_in_time(const struct Model *model, Node node, Node rate) {
+  const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
+  const struct Vertex *vertices = model->graph->vertices;
+  return rate != ZERO && (vertices[node].kinds & ~may_use) == 0 && !graph_depends_on(model->graph, rate, TIME);
+}
+
+static void find_timed(const struct Model *model, struct SwitchingExpressions *switching) {
+  switching->timed = allocate(switching->branch_count, sizeof *switching->timed);
+  for (size_t i = 0; i < switching->branch_count; i++)
+    if (is_affine_in_time(model, switching->values[i], switching->values[switching->branch_count + i]))
+      switching->timed[switching->timed_count++] = i;
+}
+
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || is_motionless(model)) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
@@ -342,6 +356,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->watched_count = watched.count;
   switching->values = values.nodes;
   switching->value_count = values.count;
+  find_timed(model, switching);
   fill_roundings(model, &counts, switching);
   return switching->indicator_count > 0 ? switching : NULL;
 }

@@ -24,6 +24,8 @@ struct SwitchingExpressions {
   bool feels_forces;    /* some branch turns by the force of a constraint */
   bool has_sides;       /* of expressions of events, among the branches */
   bool friction_varies; /* some friction slides with a force that is not constant */
+  size_t *timed;        /* the branches whose next zero is a known time: affine in time, else of parameters and modes */
+  size_t timed_count;
   bool *
       rests; /* of each friction, and in it of each contact: the friction follows from its force; NULL where none does */
 };

@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/sorting.h"
+#include "mechanics/switching.h"
 #include "program/facts/block_facts.h"
 #include "write/c_text.h"
 #include "write/description.h"
@@ -52,6 +53,7 @@ static bool has_lanes(const struct Program *program) {
 static void write_runtime(FILE *file, const struct Program *program) {
   const struct Method *method = program->equations->method;
   const struct Switches *switches = &program->model->switches;
+  const struct SwitchingExpressions *switching = program->equations->switching;
   const char *solver = program->solver, *lu = program->lu;
   fputs("#ifdef FMU_IN_ONE_FILE\n", file);
   for (const char *const *room = core_rooms; *room != NULL; room++) include_room(file, *room);
@@ -67,6 +69,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->routines[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   if (has_planes(switches)) include_room(file, "planes");
+  if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
   fputs("#endif\n", file);
 }
 

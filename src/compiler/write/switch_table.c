@@ -96,6 +96,12 @@ static void write_events(FILE *file, const struct SwitchTable *facts) {
   fputs("};\n\n", file);
 }
 
+static void write_timed(FILE *file, const struct SwitchTable *facts) {
+  if (facts->timed_count == 0) return;
+  fputs("extern const struct TimeLaws time_laws;\n\n", file);
+  write_sizes(file, "size_t", "timed", facts->timed, facts->timed_count);
+}
+
 static void write_flag(FILE *file, const char *name, bool is_set) {
   if (is_set) fprintf(file, "    .%s = true,\n", name);
 }
@@ -123,6 +129,8 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   if (facts->plane_count > 0)
     fputs("    .planes = plane_facts,\n    .plane_count = sizeof plane_facts / sizeof *plane_facts,\n", file);
   if (facts->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
+  if (facts->timed_count > 0)
+    fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n", facts->timed_count);
   fputs("};\n\n", file);
 }
 
@@ -139,5 +147,6 @@ void switching_write(FILE *file, const struct Program *program) {
   write_planes(file, &facts);
   write_rests(file, &facts);
   write_events(file, &facts);
+  write_timed(file, &facts);
   write_table(file, program, &facts);
 }

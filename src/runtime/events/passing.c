@@ -11,6 +11,7 @@
 #include "events/settle.h"
 #include "events/settlement.h"
 #include "events/window.h"
+#include "instance/time_laws.h"
 
 /* So many events within rounding have no end. */
 enum { EVENT_LIMIT = 30 };
@@ -72,11 +73,13 @@ bool events_settle_change(struct Instance *instance, double time) {
 const char *events_update(struct Instance *instance, bool *changed) {
   struct Situation *situation = instance->situation;
   *changed = false;
-  /* The modes agree already, and that of what goes from 0 is known from its event alone. */
-  if (situation->waiting_event == 0 && situation->changed != CHANGED_VALUES) return NULL;
+  if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
+  const struct TimeLaws *times = lagrangian.switches->time_laws;
+  bool is_due = situation->waiting_event == 0 && times != NULL && times->is_due(instance);
+  /* Otherwise the modes agree already, and that of what goes from 0 is known from its event alone. */
+  if (situation->waiting_event == 0 && situation->changed != CHANGED_VALUES && !is_due) return NULL;
   enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
-  if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
   const char *problem = settle(instance, situation->time, instance->state, occasion, indicator, changed);
   bool is_new = occasion == AT_EVENT || *changed;
   if (is_new && situation->changed == CHANGED_NOTHING) situation->changed = CHANGED_BY_EVENT;

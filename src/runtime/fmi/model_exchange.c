@@ -7,6 +7,7 @@
 #include "fmi/check.h"
 #include "instance/projection.h"
 #include "instance/event_laws.h"
+#include "instance/time_laws.h"
 #include "stepping/reading.h"
 
 enum Status exchange_set_time(struct Instance *instance, double time) {
@@ -134,4 +135,10 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
     return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
   *states_changed |= moved > 0.0;
   return STATUS_DONE;
+}
+
+bool exchange_next_event(struct Instance *instance, double *time) {
+  const struct TimeLaws *laws = lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
+  *time = 0.0;
+  return laws != NULL && evaluate_prepare(instance) == STATUS_DONE && laws->next(instance, time);
 }

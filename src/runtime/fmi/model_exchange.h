@@ -32,4 +32,7 @@ bool exchange_complete_step(struct Instance *instance);
 /* Brings the modes into agreement with the state, and this back to the constraints; tells whether it was moved. */
 enum Status exchange_update(struct Instance *instance, bool *states_changed);
 
+/* Finds the time of the next event that is known beforehand, behind an update. False for none. */
+bool exchange_next_event(struct Instance *instance, double *time);
+
 #endif

@@ -65,5 +65,6 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {
   bool states_changed;
   enum Status status = exchange_update(instance, &states_changed);
   eventInfo->valuesOfContinuousStatesChanged = states_changed;
+  if (status == STATUS_DONE) eventInfo->nextEventTimeDefined = exchange_next_event(instance, &eventInfo->nextEventTime);
   return status_of(status);
 }

@@ -79,7 +79,9 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *discreteStatesN
   *discreteStatesNeedUpdate = *terminateSimulation = *nominalsOfContinuousStatesChanged = fmi3False;
   *nextEventTimeDefined = fmi3False;
   *nextEventTime = 0.0;
-  return status_of(exchange_update(instance, valuesOfContinuousStatesChanged));
+  enum Status status = exchange_update(instance, valuesOfContinuousStatesChanged);
+  if (status == STATUS_DONE) *nextEventTimeDefined = exchange_next_event(instance, nextEventTime);
+  return status_of(status);
 }
 
 static fmi3Status get_count(fmi3Instance c, size_t count, size_t *value, const char *name, const char *argument) {

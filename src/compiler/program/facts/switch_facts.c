@@ -103,7 +103,9 @@ struct SwitchTable switch_facts_of(const struct Program *program) {
                               .feels_forces = switching->feels_forces,
                               .friction_varies = switching->friction_varies,
                               .has_sides = switching->has_sides,
-                              .rests_on = switching->rests};
+                              .rests_on = switching->rests,
+                              .timed = switching->timed,
+                              .timed_count = switching->timed_count};
   if (facts.branch_count > 0) facts.branches = branches_of(program);
   if (facts.contact_count > 0) facts.contacts = contacts_of(program);
   if (facts.friction_count > 0) facts.frictions = frictions_of(program);

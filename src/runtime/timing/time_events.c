@@ -1,0 +1,74 @@
+/*
+ * Time events. The indicator of a timed branch is f(t) = a + b t, with a and b constant between events, so that its zero is
+ * t - f(t)/b from any t. Near the zero f(t) is a difference of close numbers, which is exact, and a second step from there
+ * gives the number next to -a/b.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "events/settlement.h"
+#include "instance/time_laws.h"
+
+/* Newton steps: one to the zero, and those that take away the rounding of the way there. */
+enum { ZERO_STEPS = 3 };
+
+/* Relative: how far from an event an importer may be who has come to it. */
+static const double TIME_ROUNDING = 4.0 * DBL_EPSILON;
+
+/* value[] of the switch table at a time. The branches are no function of the accelerations, which are 0 here. */
+static void values_at_time(struct Settlement *settlement, double time) {
+  struct Point point = instance_point(settlement->instance);
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  point.time = time;
+  memset(settlement->acceleration, 0, rows * sizeof *settlement->acceleration);
+  settlement->switches->switching_values(&point, settlement->acceleration, settlement->value);
+}
+
+/* How long until the branch comes to 0, by the values at a time; INFINITY where it does not. */
+static double time_to_zero(const struct Settlement *settlement, size_t branch) {
+  double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
+  double value = settlement->value[branch], rate = settlement->value[branch_rate_place(settlement->switches, branch)];
+  double duration = -value / rate;
+  return mode * rate < 0.0 && isfinite(duration) ? duration : INFINITY;
+}
+
+/* The branch that comes to 0 first; branch_count for none. */
+static size_t first_to_turn(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  size_t first = switches->branch_count;
+  double least = INFINITY;
+  for (size_t i = 0; i < switches->timed_count; i++) {
+    double duration = time_to_zero(settlement, switches->timed[i]);
+    if (!(duration < least)) continue;
+    least = duration;
+    first = switches->timed[i];
+  }
+  return first;
+}
+
+static bool find_next_time(struct Instance *instance, double *time) {
+  struct Settlement settlement = settlement_of(instance);
+  double present = instance->situation->time;
+  values_at_time(&settlement, present);
+  size_t branch = first_to_turn(&settlement);
+  if (branch == settlement.switches->branch_count) return false;
+  *time = present;
+  for (int i = 0; i < ZERO_STEPS; i++) {
+    *time += time_to_zero(&settlement, branch);
+    values_at_time(&settlement, *time);
+  }
+  *time = fmax(*time, present);
+  return isfinite(*time);
+}
+
+static bool is_due(struct Instance *instance) {
+  struct Settlement settlement = settlement_of(instance);
+  double present = instance->situation->time;
+  values_at_time(&settlement, present);
+  size_t branch = first_to_turn(&settlement);
+  return branch < settlement.switches->branch_count &&
+         time_to_zero(&settlement, branch) <= TIME_ROUNDING * fabs(present);
+}
+
+const struct TimeLaws time_laws = {.next = find_next_time, .is_due = is_due};
