@@ -11,8 +11,10 @@
 
 #include "contacts/impact_outcomes.h"
 #include "contacts/planes.h"
+#include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "events/continuity.h"
 
 /* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
 static const double shortest_slip = 1e-4;
@@ -56,6 +58,12 @@ static void take_direction(const struct Settlement *settlement, size_t friction,
   state->noise_of_force = settlement->force_noise[friction] + noise[stiction];
 }
 
+/* True if a velocity is further from 0 than a kink in it, or an error of a method, takes it. */
+static bool is_off_zero(const struct Settlement *settlement, double velocity) {
+  double scale = largest_scale(settlement->state, lagrangian.coordinate_count);
+  return fabs(velocity) > continuity_allowed_share(settlement) * scale;
+}
+
 static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
   const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
   size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
@@ -70,7 +78,9 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
                                 .largest_rate = settlement->largest[place + FRICTION_RATE],
                                 .is_hit = is_hit(settlement, indicator),
                                 .is_first = settlement->flips[indicator] == 0.0,
-                                .may_jump = settlement->jumped || settlement->occasion == AT_START};
+                                .may_jump =
+                                    settlement->jumped || settlement->occasion == AT_START ||
+                                    (may_turn_gaps(settlement) && is_off_zero(settlement, value[FRICTION_VELOCITY]))};
   take_direction(settlement, friction, &state);
   /* Of what passes through 0 the next moment has a force. */
   bool may_stay = settlement->switches->rests_on != NULL || !settlement->switches->friction_varies;
@@ -193,6 +203,16 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
     *switched = true;
   }
   return NULL;
+}
+
+void frictions_release(struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    double velocity = settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
+    if (switches->frictions[i].is_given || !friction_sticks(settlement, i) || !is_off_zero(settlement, velocity))
+      continue;
+    set_friction(settlement, i, velocity < 0.0 ? -1.0 : 1.0);
+  }
 }
 
 /* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
@@ -366,5 +386,6 @@ const struct FrictionLaws friction_laws = {.act = frictions_act,
                                            .tell = frictions_tell,
                                            .blame = frictions_blame,
                                            .check = frictions_check,
+                                           .release = frictions_release,
                                            .explain_jam = frictions_explain_jam,
                                            .has_other_impulses = impact_has_others};

@@ -26,6 +26,9 @@ void frictions_blame(const struct Settlement *settlement, const char *missing);
  */
 bool frictions_explain_jam(struct Settlement *settlement, size_t branch);
 
+/* Lets those slide that stick although a parameter or a state was set so that their velocity is not 0. */
+void frictions_release(struct Settlement *settlement);
+
 /* Of the rate of a velocity, what is left of it at most where friction holds that. */
 extern const double friction_held_share;
 

@@ -193,12 +193,21 @@ static const char *pass_late(struct Instance *instance, bool *passes, bool *chan
   return NULL;
 }
 
+/* What an importer sets in event mode may jump. */
+static void release_frictions(struct Instance *instance) {
+  const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (laws == NULL || instance->situation->changed != CHANGED_VALUES) return;
+  struct Settlement settlement = settlement_at(instance, instance->situation->time, instance->state, IN_EXCHANGE);
+  if (settlement_evaluate(&settlement)) laws->release(&settlement);
+}
+
 const char *exchange_settle(struct Instance *instance, bool *changed) {
   const char *problem = NULL;
   bool passes = may_turn_back(instance), others;
   *changed = false;
   for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes, changed);
   if (problem != NULL) return problem;
+  release_frictions(instance);
   problem = settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, &others);
   *changed |= others;
   return problem;

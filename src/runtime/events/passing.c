@@ -57,11 +57,15 @@ bool events_start(struct Instance *instance) {
   return problem == NULL;
 }
 
-bool events_part_contacts(struct Instance *instance, double time) {
-  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
-  if (laws == NULL) return true;
+/* What has no values is reported by others. */
+bool events_part(struct Instance *instance, double time) {
+  const struct ContactLaws *contacts = lagrangian.switches->contact_laws;
+  const struct FrictionLaws *frictions = lagrangian.switches->friction_laws;
+  if (contacts == NULL && frictions == NULL) return true;
   struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  return !settlement_evaluate(&settlement) || laws->part(&settlement); /* what has no values is told by others */
+  if (!settlement_evaluate(&settlement)) return true;
+  if (frictions != NULL) frictions->release(&settlement);
+  return contacts == NULL || contacts->part(&settlement);
 }
 
 bool events_settle_change(struct Instance *instance, double time) {

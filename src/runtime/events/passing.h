@@ -6,7 +6,7 @@
 
 /* The functions of the same names in struct EventLaws. */
 bool events_start(struct Instance *instance);
-bool events_part_contacts(struct Instance *instance, double time);
+bool events_part(struct Instance *instance, double time);
 bool events_settle_change(struct Instance *instance, double time);
 const char *events_check(struct Instance *instance, double time);
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,

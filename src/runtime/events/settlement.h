@@ -79,6 +79,8 @@ struct FrictionLaws {
   void (*blame)(const struct Settlement *settlement, const char *missing);
   /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
   const char *(*check)(struct Settlement *settlement);
+  /* Lets frictions slide that stick at a velocity which is not 0. */
+  void (*release)(struct Settlement *settlement);
   /* Logs a friction that jams a constraint; false where none does. As frictions_explain_jam(). */
   bool (*explain_jam)(struct Settlement *settlement, size_t branch);
   /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */

@@ -47,10 +47,10 @@ struct EventLaws {
   /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
   bool (*start)(struct Instance *instance);
   /*
-   * Opens contacts that a parameter, an input or a state has moved apart; false after logging why the step is discarded,
-   * as bodies that stand in one another.
+   * Opens contacts that a parameter, an input or a state has moved apart, and lets frictions slide that it has set in motion;
+   * false after logging why the step is discarded, as bodies that stand in one another.
    */
-  bool (*part_contacts)(struct Instance *instance, double time);
+  bool (*part)(struct Instance *instance, double time);
   /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
   bool (*settle_change)(struct Instance *instance, double time);
   /*

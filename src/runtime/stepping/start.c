@@ -31,7 +31,7 @@ enum Status start_find(struct Instance *instance) {
 
 bool start_step(struct Instance *instance) {
   double time = instance->situation->time;
-  if (lagrangian.event_laws != NULL && !lagrangian.event_laws->part_contacts(instance, time)) return false;
+  if (lagrangian.event_laws != NULL && !lagrangian.event_laws->part(instance, time)) return false;
   if (lagrangian.constraints.projection != NULL && !lagrangian.constraints.projection->follow_change(instance))
     return false;
   return lagrangian.event_laws == NULL || lagrangian.event_laws->settle_change(instance, time);
