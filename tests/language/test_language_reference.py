@@ -194,6 +194,12 @@ def limited_controller(t):
     return {"D": 1 - decay, "I": integral, "u": min(5, 2 * (1 + 2 * integral + 10 * decay))}
 
 
+def wavy_road(t):
+    W, w, p = np.pi, 5.0, 2 * np.pi / 3
+    mass = lambda p: 0.02 / (1 - (W / w) ** 2) * (np.sin(W * t - p) + np.sin(p) * np.cos(w * t) - W / w * np.cos(p) * np.sin(w * t))
+    return {"front": mass(0), "rear": mass(p)}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -232,6 +238,7 @@ MOTIONS = {
     "ThrustedArm": (lambda t: {"theta": 1.5 * 2 * t**2 / (2 * 3)}, 1e-9),
     "LaggedActuator": (lagged_actuator, 1e-6),
     "LimitedController": (limited_controller, 1e-9),
+    "WavyRoad": (wavy_road, 1e-7),
     "SlidingBlock": (block, 1e-12),
     "BandBrake": (band_brake, 1e-12),
     "CueBall": (cue_ball, 1e-9),

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/expressions/named_functions.h"
 #include "read/robots/description/rigid_body.h"
 
 static void check_content(const struct Reader *reader) {
@@ -171,9 +172,21 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
   }
 }
 
+/* Of the system's own file; those of an included one may be for others. */
+static void warn_of_functions(const struct Reader *reader) {
+  const struct Names *functions = reader->scope->functions;
+  for (size_t i = 0; i < functions->capacity; i++) {
+    const struct NamedFunction *function = functions->places[i].meaning;
+    if (function != NULL && !function->is_used && *function->prefix == '\0')
+      report_warning(reader->diagnostics, function->line,
+                     "nothing calls the function '%s', so that its expression is not checked", function->name);
+  }
+}
+
 void check_system(struct Reader *reader) {
   check_content(reader);
   if (reader->diagnostics->errors > 0) return;
+  warn_of_functions(reader);
   warn_without_unit(reader);
   warn_at_start(reader);
   warn_of_displacements(reader);

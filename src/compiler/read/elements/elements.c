@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "mechanics/energies.h"
+#include "read/context/function_reader.h"
 #include "read/context/includes.h"
 #include "read/context/variables.h"
 #include "read/elements/constraint_reader.h"
@@ -306,6 +307,7 @@ static const struct Element elements[] = {
     {"force", NULL, NULL, NULL, read_force, false},
     {"frame", declare_frame, collect_components, read_body, add_stillness_of_norm, false},
     {"friction", declare_friction, NULL, NULL, read_friction, false},
+    {"function", declare_function, NULL, NULL, NULL, false},
     {"gravity", NULL, NULL, NULL, read_gravity, false},
     {"input", read_input, collect_value, NULL, NULL, false},
     {"joint", declare_joint, collect_joint, NULL, read_joint, false},

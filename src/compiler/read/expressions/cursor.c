@@ -1,13 +1,26 @@
 #include "read/expressions/cursor.h"
 
 #include <ctype.h>
+#include <string.h>
 
+#include "base/memory.h"
 #include "read/names/hints.h"
 
 long current_line(struct Parser *parser) {
   for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';
   while (parser->counted > parser->next) parser->newlines -= *--parser->counted == '\n';
   return parser->place.line + parser->newlines;
+}
+
+/* The indices of a <for> around the expression are unknown in the functions that it calls. */
+const struct Quantity *find_quantity(const struct Parser *parser, const char *name) {
+  for (const struct Local *local = parser->locals; local != NULL; local = local->outer)
+    if (strcmp(local->name, name) == 0) return &local->value;
+  char *full_name = scope_full_name(parser->scope, name);
+  bool is_hidden = parser->function != NULL && scope_is_index(parser->scope, full_name);
+  const struct Quantity *quantity = is_hidden ? NULL : scope_find(parser->scope, full_name);
+  release(full_name);
+  return quantity;
 }
 
 void skip_space(struct Parser *parser) {

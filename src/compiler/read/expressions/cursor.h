@@ -12,6 +12,15 @@ struct Place {
   int input_derivatives; /* how many time derivatives inputs must have there */
 };
 
+/* A name that holds in a part of an expression alone: the index of a sum, an argument of a function. */
+struct Local {
+  const char *name;
+  struct Quantity value;
+  struct Local *outer; /* the next one around it; NULL for none */
+};
+
+struct NamedFunction;
+
 struct Parser {
   struct Scope *scope;
   struct Graph *graph;
@@ -21,6 +30,10 @@ struct Parser {
   long newlines;
   int nesting;
   long repetitions; /* bodies of sum(...) parsed so far */
+  struct Local *locals;
+  const struct NamedFunction *function; /* whose expression is read; NULL for none */
+  const struct Parser *caller;          /* of the function */
+  const char *use;                      /* of the function, for messages, without its name */
   bool failed;
 };
 
@@ -34,6 +47,9 @@ void expect_character(struct Parser *parser, char c, const char *context);
 
 /* What stands at the reading position, for messages. */
 const char *found(const struct Parser *parser, char buffer[32]);
+
+/* What a name stands for at the reading position; NULL where it is unknown. */
+const struct Quantity *find_quantity(const struct Parser *parser, const char *name);
 
 /* The line of the reading position. */
 long current_line(struct Parser *parser);

@@ -10,6 +10,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/expressions/comparisons.h"
+#include "read/expressions/named_functions.h"
 #include "read/expressions/quantities.h"
 #include "read/expressions/unknown_names.h"
 #include "read/expressions/vectors.h"
@@ -164,9 +165,9 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
 }
 
 struct Quantity look_up(struct Parser *parser, const char *name) {
-  char *full_name = scope_full_name(parser->scope, name);
-  const struct Quantity *quantity = scope_find(parser->scope, full_name);
+  const struct Quantity *quantity = find_quantity(parser, name);
   if (quantity == NULL) {
+    char *full_name = scope_full_name(parser->scope, name);
     if (!definitions_wait_for(parser->scope->definitions, full_name)) report_unknown_name(parser, name);
     return nothing;
   }
@@ -198,26 +199,30 @@ static void skip_to_end(struct Parser *parser) {
     depth += (*parser->next == '(') - (*parser->next == ')');
 }
 
+static struct Quantity number_of(const struct Parser *parser, double number) {
+  return (struct Quantity){.node = graph_constant(parser->graph, number), .dimension = dimension_one, .literal = true};
+}
+
 /* What stands before the body of sum(index, first, last, body). */
 struct SumHead {
   char *index;
   long first, last;
 };
 
-static char *parse_sum_index(struct Parser *parser) {
+/* The name that a call declares, as the index of sum(index, first, last, expression), whose form the usage is. */
+static char *parse_declared(struct Parser *parser, const char *what, const char *usage) {
   char buffer[32];
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected a name as the index of sum(index, first, last, expression), found %s",
-         parser->place.what, found(parser, buffer));
+    FAIL(parser, "%s: expected a name as the %s of %s, found %s", parser->place.what, what, usage,
+         found(parser, buffer));
   char *name = read_identifier(parser);
-  expect_character(parser, ',', "after the index of sum(index, first, last, expression)");
+  expect_character(parser, ',', format_text("after the %s of %s", what, usage));
   return name;
 }
 
 static struct SumHead parse_sum_head(struct Parser *parser) {
-  char *name = parse_sum_index(parser);
-  struct SumHead head = {.index = scope_full_name(parser->scope, name)};
+  struct SumHead head = {.index = parse_declared(parser, "index", "sum(index, first, last, expression)")};
   const char *bounds = parser->next;
   head.first = parse_whole(parser, "the first index of sum(...)");
   expect_character(parser, ',', "after the first index");
@@ -226,8 +231,9 @@ static struct SumHead parse_sum_head(struct Parser *parser) {
     FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
          head.first, head.last);
   expect_character(parser, ',', "after the last index");
-  if (!parser->failed && scope_find(parser->scope, head.index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what, name);
+  if (!parser->failed && find_quantity(parser, head.index) != NULL)
+    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
+         head.index);
   return head;
 }
 
@@ -236,15 +242,17 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   const struct SumHead head = parse_sum_head(parser);
   const char *body = parser->next;
   struct Quantity total = {.node = ZERO, .dimension = dimension_unknown, .literal = true};
+  struct Local index = {.name = head.index, .outer = parser->locals};
+  parser->locals = &index;
   if (head.first > head.last) skip_to_end(parser);
   for (long i = head.first; !parser->failed && i <= head.last; i++) {
     if (++parser->repetitions > REPETITION_LIMIT)
       FAIL(parser, "%s: sum(...) has more than %d terms", parser->place.what, REPETITION_LIMIT);
     parser->next = body;
-    scope_set_number(parser->scope, head.index, (double)i);
+    index.value = number_of(parser, (double)i);
     total = quantity_add(parser, total, parse_sum(parser));
   }
-  scope_remove(parser->scope, head.index);
+  parser->locals = index.outer;
   expect_character(parser, ')', "at the end of sum(...)");
   return total;
 }
@@ -295,12 +303,24 @@ static struct Quantity parse_table(struct Parser *parser, const struct Table *ta
 
 /* The table of a name as the file calls it; NULL where there is none. */
 static const struct Table *find_table(const struct Parser *parser, const char *name) {
-  return table_named(parser->scope, scope_full_name(parser->scope, name));
+  char *full_name = scope_full_name(parser->scope, name);
+  const struct Table *table = table_named(parser->scope, full_name);
+  release(full_name);
+  return table;
+}
+
+static struct NamedFunction *find_named_function(const struct Parser *parser, const char *name) {
+  char *full_name = scope_full_name(parser->scope, name);
+  struct NamedFunction *named = function_named(parser->scope, full_name);
+  release(full_name);
+  return named;
 }
 
 static struct Quantity parse_call(struct Parser *parser, const char *name) {
   const struct Table *table = find_table(parser, name);
+  struct NamedFunction *named = find_named_function(parser, name);
   if (table != NULL) return parse_table(parser, table, name);
+  if (named != NULL) return parse_function_call(parser, named);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
   if (strcmp(name, "if") == 0) return parse_choice(parser);
@@ -347,7 +367,8 @@ static struct Quantity parse_named(struct Parser *parser) {
   name = read_name_suffix(parser, name);
   end = parser->next;
   if (parser->failed) return nothing;
-  if (find_table(parser, name) != NULL && accept_character(parser, '(')) return parse_call(parser, name);
+  bool is_callable = find_table(parser, name) != NULL || find_named_function(parser, name) != NULL;
+  if (is_callable && accept_character(parser, '(')) return parse_call(parser, name);
   parser->next = end;
   return look_up(parser, name);
 }
@@ -418,20 +439,24 @@ static struct Parser parser_of(struct Scope *scope, const char *text, struct Pla
       .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
 }
 
+struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(struct Parser *parser)) {
+  char buffer[32];
+  struct Quantity value = read(parser);
+  skip_space(parser);
+  if (!parser->failed && *parser->next == ')')
+    FAIL(parser, "%s: ')' without '('; expected an operator or the end", parser->place.what);
+  if (!parser->failed && *parser->next != '\0')
+    FAIL(parser, "%s: expected an operator or the end, found %s%s", parser->place.what, found(parser, buffer),
+         hint_for_text(parser->text, parser->next));
+  require_limits(parser);
+  return parser->failed ? nothing : value;
+}
+
 /* False where the text has a mistake; the value is then nothing. */
 static bool read_text(struct Scope *scope, const char *text, struct Place place,
                       struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
   struct Parser parser = parser_of(scope, text, place);
-  char buffer[32];
-  *value = read(&parser);
-  skip_space(&parser);
-  if (!parser.failed && *parser.next == ')')
-    FAIL(&parser, "%s: ')' without '('; expected an operator or the end", place.what);
-  if (!parser.failed && *parser.next != '\0')
-    FAIL(&parser, "%s: expected an operator or the end, found %s%s", place.what, found(&parser, buffer),
-         hint_for_text(text, parser.next));
-  require_limits(&parser);
-  if (parser.failed) *value = nothing;
+  *value = parse_whole_text(&parser, read);
   return !parser.failed;
 }
 

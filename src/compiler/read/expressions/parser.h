@@ -24,6 +24,9 @@ struct Quantity parse_expression(struct Scope *scope, const char *text, struct P
 /* The same from the reading position on, as far as it goes. */
 struct Quantity parse_sum(struct Parser *parser);
 
+/* The same to the end of the text, or what another function reads of it. */
+struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(struct Parser *parser));
+
 /* A power or primary, as a factor of a product. */
 struct Quantity parse_power(struct Parser *parser);
 

@@ -4,6 +4,7 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
+#include "read/expressions/named_functions.h"
 #include "read/names/definitions.h"
 #include "read/names/hints.h"
 #include "read/names/similar.h"
@@ -68,12 +69,13 @@ void report_unknown_name(struct Parser *parser, const char *name) {
 void report_reserved(struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   bool is_table = table_named(parser->scope, full_name) != NULL;
+  bool is_function = function_named(parser->scope, full_name) != NULL || is_function_name(name);
   char *force = format_text("%s.force", full_name);
   bool is_constraint = scope_find(parser->scope, force) != NULL;
   if (is_constraint)
     FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
          name, name);
-  else if (is_table || is_function_name(name))
+  else if (is_table || is_function)
     FAIL(parser, "%s: '%s' is not a variable but a %s; expected its argument in parentheses, as in %s(...)",
          parser->place.what, name, is_table ? "table" : "function", name);
   else
@@ -93,11 +95,11 @@ static char *function_names(void) {
 }
 
 /* Those of the file being read, as it calls them. */
-static void consider_tables(struct Similar *similar, const struct Scope *scope) {
-  size_t length = strlen(scope->prefix);
-  for (size_t i = 0; i < scope->tables->capacity; i++) {
-    const char *name = scope->tables->places[i].text;
-    if (name != NULL && strncmp(name, scope->prefix, length) == 0) similar_consider(similar, name + length);
+static void consider_own(struct Similar *similar, const struct Names *names, const char *prefix) {
+  size_t length = strlen(prefix);
+  for (size_t i = 0; i < names->capacity; i++) {
+    const char *name = names->places[i].text;
+    if (name != NULL && strncmp(name, prefix, length) == 0) similar_consider(similar, name + length);
   }
 }
 
@@ -106,7 +108,8 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
-  consider_tables(&similar, parser->scope);
+  consider_own(&similar, parser->scope->tables, parser->scope->prefix);
+  consider_own(&similar, parser->scope->functions, parser->scope->prefix);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);

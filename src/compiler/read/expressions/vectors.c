@@ -117,7 +117,7 @@ static bool is_number_ahead(struct Parser *parser) {
   parser->next = begin;
   if (is_call) return strcmp(name, "cross") != 0;
   char *full_name = scope_full_name(parser->scope, name);
-  return scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+  return find_quantity(parser, name) != NULL || definitions_contain(parser->scope->definitions, full_name);
 }
 
 static struct Arrow scaled_by(struct Parser *parser, struct Arrow arrow, struct Quantity factor, bool is_product) {

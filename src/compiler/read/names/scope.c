@@ -19,6 +19,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->diagnostics = diagnostics;
   scope->names = names_create();
   scope->tables = names_create();
+  scope->functions = names_create();
   scope->warned_numbers = names_create();
   scope->prefix = "";
   return scope;
@@ -69,6 +70,11 @@ void scope_set_index(struct Scope *scope, const char *name, double value) {
 void scope_remove_index(struct Scope *scope, const char *name) {
   const struct Entry *entry = find_entry(scope, name);
   if (entry != NULL && entry->is_index) names_remove(scope->names, name);
+}
+
+bool scope_is_index(const struct Scope *scope, const char *name) {
+  const struct Entry *entry = find_entry(scope, name);
+  return entry != NULL && entry->is_index;
 }
 
 void scope_remove(struct Scope *scope, const char *name) {

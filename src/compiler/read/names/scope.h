@@ -17,6 +17,7 @@ struct Scope {
   bool checks_units;                /* some variable has a unit; a file without any is free of them */
   struct Requirements requirements; /* of all expressions read */
   struct Names *tables;             /* full name -> struct Table, see table.h */
+  struct Names *functions;          /* full name -> struct NamedFunction, see named_functions.h */
   struct Definitions *definitions;  /* names that may become known; NULL for none */
   struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
   Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
@@ -43,6 +44,9 @@ void scope_set_number(struct Scope *scope, const char *name, double value);
 void scope_set_index(struct Scope *scope, const char *name, double value);
 void scope_remove_index(struct Scope *scope, const char *name);
 void scope_remove(struct Scope *scope, const char *name);
+
+/* Whether the name is the index of a <for>. */
+bool scope_is_index(const struct Scope *scope, const char *name);
 
 /* NULL where the name is unknown. */
 const struct Quantity *scope_find(const struct Scope *scope, const char *name);
