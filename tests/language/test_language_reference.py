@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
+from scipy.linalg import eigh, expm
 
 import fmu
 from closed_forms import pendulum_angle
@@ -200,6 +200,13 @@ def wavy_road(t):
     return {"front": mass(0), "rear": mass(p)}
 
 
+def cantilever(t):
+    M, K = 3 * np.array([[1 / 5, 1 / 6], [1 / 6, 1 / 7]]), 5 * np.array([[4, 6], [6, 12]])
+    squares, modes = eigh(K, M)
+    q = modes @ (np.cos(np.sqrt(squares) * t) * (modes.T @ M @ [0.1, 0]))
+    return {"q1": q[0], "q2": q[1], "tip": q[0] + q[1], "turned": (2 * q[0] + 3 * q[1]) / 2}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -239,6 +246,7 @@ MOTIONS = {
     "LaggedActuator": (lagged_actuator, 1e-6),
     "LimitedController": (limited_controller, 1e-9),
     "WavyRoad": (wavy_road, 1e-7),
+    "Cantilever": (cantilever, 1e-6),
     "SlidingBlock": (block, 1e-12),
     "BandBrake": (band_brake, 1e-12),
     "CueBall": (cue_ball, 1e-9),

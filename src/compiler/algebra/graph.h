@@ -54,6 +54,7 @@ enum SymbolKind {
   DISPLACEMENT, /* a virtual one, always 0: index 2 i of the i-th, 2 i + 1 of its rate */
   REACTION,     /* the force along a displacement, or of the drive of a coordinate */
   MODE,         /* changes at events alone; its index counts on behind the parameters */
+  DUMMY,        /* the variable of an integral or a derivative while its expression is read */
   SEED_PARAMETER,
   SEED_TIME,
   SEED_COORDINATE,

@@ -82,10 +82,22 @@ void report_error_of(struct Diagnostics *diagnostics, long line, const char *for
     fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
 }
 
+static void report_kind(const struct Diagnostics *diagnostics, long line, const char *kind, const char *format,
+                        va_list arguments) {
+  struct FileLine place = file_line(diagnostics, line);
+  print_message(&place, kind, format_arguments(format, arguments));
+}
+
+void report_note(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  report_kind(diagnostics, line, "note: ", format, arguments);
+  va_end(arguments);
+}
+
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  struct FileLine place = file_line(diagnostics, line);
-  print_message(&place, "warning: ", format_arguments(format, arguments));
+  report_kind(diagnostics, line, "warning: ", format, arguments);
   va_end(arguments);
 }

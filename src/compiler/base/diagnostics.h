@@ -45,6 +45,10 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments)
     __attribute__((format(printf, 3, 0)));
 
+/* Prints to stderr what is right, but good to know. */
+void report_note(const struct Diagnostics *diagnostics, long line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Prints a warning to stderr. */
 void report_warning(const struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -96,6 +96,7 @@ static struct Model *model_create(void) {
 /* The names that each system knows. */
 static struct Scope *language_of(struct Model *model, struct Diagnostics *diagnostics) {
   struct Scope *scope = scope_create(model->graph, diagnostics);
+  scope->model = model;
   define_language(scope);
   /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */
   model->time = scope_symbol(scope, TIME, 0, "time", dimension_unknown, 0);

@@ -42,6 +42,7 @@ static Place place_of_symbol(const struct Values *values, const struct Symbol *s
   case SEED_RESULT: return place_in(SPACE_SEED_RESULT, index);
   case DISPLACEMENT: /* replaced in all that is computed, and without seeds */
   case REACTION:
+  case DUMMY:
   case SEED_INPUT:
   case SYMBOL_KIND_COUNT: break;
   }

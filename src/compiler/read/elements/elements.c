@@ -77,6 +77,14 @@ static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const ch
   return nominal;
 }
 
+/* A start value where it is a number alone, as integrals need it before it is read with the others; else 0. */
+static double plain_number(xmlNodePtr node, const char *name) {
+  const char *text = attribute(node, name);
+  char *end = NULL;
+  double number = text != NULL ? strtod(text, &end) : 0.0;
+  return end != NULL && *end == '\0' && isfinite(number) ? number : 0.0;
+}
+
 static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable position = common_attributes(reader, node);
@@ -87,7 +95,8 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   if (velocity.name == NULL) velocity.name = copy_text("?");
   given_for(reader, node, position.name); /* is there, and read with the start values */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
-  position.start = velocity.start = 0.0; /* see start_expressions.h */
+  position.start = plain_number(node, "start"); /* see start_expressions.h */
+  velocity.start = plain_number(node, "velocityStart");
   char *fixed = attribute(node, "fixed");
   position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
   position.nominal = nominal_attribute(reader, node, "nominal");

@@ -9,6 +9,7 @@
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/expressions/calculus.h"
 #include "read/expressions/comparisons.h"
 #include "read/expressions/named_functions.h"
 #include "read/expressions/quantities.h"
@@ -78,8 +79,7 @@ static struct Quantity parse_literal(struct Parser *parser) {
                            .literal = true};
 }
 
-/* A whole number from an expression of compile-time numbers. */
-static long parse_whole(struct Parser *parser, const char *what) {
+long parse_whole(struct Parser *parser, const char *what) {
   unsigned kinds = parser->place.kinds;
   parser->place.kinds = 0;
   struct Quantity value = parse_sum(parser);
@@ -172,7 +172,7 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
     return nothing;
   }
   if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
-  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~parser->place.kinds;
+  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~(parser->place.kinds | 1u << DUMMY);
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
@@ -209,8 +209,7 @@ struct SumHead {
   long first, last;
 };
 
-/* The name that a call declares, as the index of sum(index, first, last, expression), whose form the usage is. */
-static char *parse_declared(struct Parser *parser, const char *what, const char *usage) {
+char *parse_declared(struct Parser *parser, const char *what, const char *usage) {
   char buffer[32];
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
@@ -323,6 +322,8 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (named != NULL) return parse_function_call(parser, named);
   if (strcmp(name, "sum") == 0) return parse_repeated_sum(parser);
   if (strcmp(name, "der") == 0) return parse_derivative(parser);
+  if (strcmp(name, "diff") == 0) return parse_partial_derivative(parser);
+  if (strcmp(name, "integral") == 0) return parse_integral(parser);
   if (strcmp(name, "if") == 0) return parse_choice(parser);
   if (is_function_of_vectors(name)) return parse_function_of_vectors(parser, name);
   bool is_root = strcmp(name, "sqrt") == 0;

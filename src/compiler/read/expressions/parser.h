@@ -12,6 +12,7 @@
  *   power    = primary [ "^" sign ]
  *   primary  = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
  *            | "sum" "(" index "," first "," last "," sum ")" | "der" "(" sum ")"
+ *            | "diff" "(" sum "," name ")" | "integral" "(" name "," sum "," sum "," sum [ "," sum ] ")"
  *            | "distance" "(" vector "," vector ")" | "dot" "(" vector "," vector ")" | "norm" "(" vector ")"
  *   name     = part { "." part }
  *   part     = identifier [ "[" index expression "]" ]
@@ -29,6 +30,12 @@ struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(
 
 /* A power or primary, as a factor of a product. */
 struct Quantity parse_power(struct Parser *parser);
+
+/* The name that a call declares, as the index of sum(index, first, last, expression), whose form the usage is. */
+char *parse_declared(struct Parser *parser, const char *what, const char *usage);
+
+/* A whole number from an expression of compile-time numbers. */
+long parse_whole(struct Parser *parser, const char *what);
 
 /* A name at the reading position, its indices worked out. */
 char *read_name(struct Parser *parser);

@@ -106,6 +106,7 @@ static void consider_own(struct Similar *similar, const struct Names *names, con
 void report_unknown_function(struct Parser *parser, const char *name) {
   struct Similar similar = {.wanted = name};
   for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
+  for (size_t i = 0; free_functions[i] != NULL; i++) similar_consider(&similar, free_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
   consider_own(&similar, parser->scope->tables, parser->scope->prefix);

@@ -49,7 +49,9 @@ static const struct Hint of_functions[] = {
     {"arctan2", "; write atan2"},
     {"fabs", "; write abs"},
     {"sgn", "; write sign"},
-    {"diff", "; write der for a time derivative"},
+    {"int", "; write integral(s, a, b, expression) for an integral over s"},
+    {"integrate", "; write integral(s, a, b, expression) for an integral over s, <state name=\"z\" rate=\"...\"/> for "
+                  "one over time"},
     {"ddt", "; write der for a time derivative"},
     {"dot", "; write der for a time derivative"},
     {"ddot", "; write der(v) of the velocity for an acceleration"},

@@ -92,3 +92,43 @@ Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node ri
   default: return choose_node(graph, negate(graph, sign), left, right);
   }
 }
+
+/* As derivatives of min and max need it. */
+static Node pieces_of_less(struct Scope *scope, Node left, Node right, long line) {
+  Node difference = subtract(scope->graph, right, left);
+  if (graph_is_constant_in_time(scope->graph, difference)) return function(scope->graph, LESS, left, right);
+  return function(scope->graph, GATE, branch_of(scope, difference, "a condition", line), ONE);
+}
+
+static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
+  struct Graph *graph = scope->graph;
+  switch (operation) {
+  case ADD: return add(graph, left, right);
+  case MULTIPLY: return multiply(graph, left, right);
+  case POWER: return power(graph, left, right);
+  case LESS: return pieces_of_less(scope, left, right, line);
+  default:
+    return functions[operation].has_pieces ? pieces_of(scope, operation, left, right, line)
+                                           : function(graph, operation, left, right);
+  }
+}
+
+/* Branches use the cone of the graph, so that the nodes are collected in another one. */
+Node with_pieces(struct Scope *scope, Node node, long line) {
+  const struct Graph *graph = scope->graph;
+  if (keeps_whole(scope)) return node;
+  struct Cone *cone = cone_create();
+  cone_collect(cone, graph, &node, 1);
+  graph_work(graph, cone->work);
+  Node *mapped = allocate(cone->count, sizeof *mapped);
+  for (size_t place = 0; place < cone->count; place++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[place]];
+    int arity = operation_arity(vertex.operation);
+    Node left = arity > 0 ? mapped[cone_place(cone, vertex.left)] : ZERO;
+    Node right = arity > 1 ? mapped[cone_place(cone, vertex.right)] : ZERO;
+    mapped[place] = arity == 0 ? cone->nodes[place] : rebuilt(scope, vertex.operation, left, right, line);
+  }
+  Node result = mapped[cone_place(cone, node)];
+  release(mapped);
+  return result;
+}

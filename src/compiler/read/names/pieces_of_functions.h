@@ -27,5 +27,10 @@ enum { CONTACT_STATE = 1 << 29 };
 /* The kinds of symbols that a node rests on, also by what decides on its pieces; CONTACT_STATE among them. */
 unsigned kinds_that_decide(const struct Scope *scope, Node node);
 
+/*
+ * A node that was read while the scope keeps expressions whole, by its pieces, unless it still does; line: for messages.
+ */
+Node with_pieces(struct Scope *scope, Node node, long line);
+
 /* abs, sign, min or max of nodes, by their pieces. */
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);

@@ -21,6 +21,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->tables = names_create();
   scope->functions = names_create();
   scope->warned_numbers = names_create();
+  scope->noted_integrals = names_create();
   scope->prefix = "";
   return scope;
 }

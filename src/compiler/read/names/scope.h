@@ -8,25 +8,37 @@
 #include "read/names/names.h"
 
 struct Definitions;
+struct Model;
 struct Switches;
+
+/* The variable of an integral or a derivative while its expression is read, which is between two values. */
+struct Dummy {
+  Node symbol, low, high;
+};
+
+enum { DUMMY_LIMIT = 20 };
 
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
-  struct Names *names;              /* name -> struct Entry */
-  bool checks_units;                /* some variable has a unit; a file without any is free of them */
-  struct Requirements requirements; /* of all expressions read */
-  struct Names *tables;             /* full name -> struct Table, see table.h */
-  struct Names *functions;          /* full name -> struct NamedFunction, see named_functions.h */
-  struct Definitions *definitions;  /* names that may become known; NULL for none */
-  struct Switches *switches;        /* the model's; NULL where all expressions stay whole, as for a linearisation */
-  Node *time_derivatives;           /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
-  size_t time_derivative_count;     /* of the symbols so far; branches make some without the scope */
-  struct Derivatives rates;         /* d node / dt of what has been asked for */
-  const char *prefix;               /* of the names of the file being read: "motor." of an included one, else "" */
-  bool keeps_whole;                 /* the present expression stays whole */
-  struct Names *warned_numbers;     /* "file:line:number" of those that a warning has named */
-  long table_line;                  /* where the present table is used */
+  struct Names *names;               /* name -> struct Entry */
+  bool checks_units;                 /* some variable has a unit; a file without any is free of them */
+  struct Requirements requirements;  /* of all expressions read */
+  struct Names *tables;              /* full name -> struct Table, see table.h */
+  struct Names *functions;           /* full name -> struct NamedFunction, see named_functions.h */
+  struct Definitions *definitions;   /* names that may become known; NULL for none */
+  struct Switches *switches;         /* the model's; NULL where all expressions stay whole, as for a linearisation */
+  Node *time_derivatives;            /* one node a symbol: d symbol / dt; ZERO for parameters and modes */
+  size_t time_derivative_count;      /* of the symbols so far; branches make some without the scope */
+  struct Derivatives rates;          /* d node / dt of what has been asked for */
+  const char *prefix;                /* of the names of the file being read: "motor." of an included one, else "" */
+  bool keeps_whole;                  /* the present expression stays whole */
+  struct Dummy dummies[DUMMY_LIMIT]; /* those outside come first; each is used again and again */
+  size_t dummy_count;                /* around the reading position */
+  const struct Model *model;         /* whose start values integrals look at */
+  struct Names *noted_integrals;     /* "file:line:text" of those that a message has named */
+  struct Names *warned_numbers;      /* "file:line:number" of those that a warning has named */
+  long table_line;                   /* where the present table is used */
 };
 
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);

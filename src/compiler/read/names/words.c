@@ -7,6 +7,8 @@
 
 const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or", "not", NULL};
 
+const char *const free_functions[] = {"diff", "integral", NULL};
+
 /* What all systems have values of: first what expressions can use, then results. */
 static const char *const values[] = {"pi",
                                      "time",
@@ -30,10 +32,13 @@ enum Operation find_function(const char *name) {
   return (enum Operation)operation;
 }
 
+static bool is_among(const char *name, const char *const *list) {
+  while (*list != NULL && strcmp(name, *list) != 0) list++;
+  return *list != NULL;
+}
+
 bool is_function_name(const char *name) {
-  size_t i = 0;
-  while (special_functions[i] != NULL && strcmp(name, special_functions[i]) != 0) i++;
-  return special_functions[i] != NULL || find_function(name) < OPERATION_COUNT;
+  return is_among(name, special_functions) || find_function(name) < OPERATION_COUNT;
 }
 
 bool is_word(const char *name) {
@@ -54,5 +59,6 @@ void words_print(FILE *file) {
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) fprintf(file, "function %s\n", functions[operation].name);
   for (size_t i = 0; special_functions[i] != NULL; i++) fprintf(file, "function %s\n", special_functions[i]);
+  for (size_t i = 0; free_functions[i] != NULL; i++) fprintf(file, "function %s\n", free_functions[i]);
   for (size_t i = 0; i < VALUE_COUNT; i++) fprintf(file, "name %s\n", values[i]);
 }

@@ -1,0 +1,148 @@
+#include "read/expressions/calculus.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+#include "read/expressions/integration.h"
+#include "read/expressions/parser.h"
+#include "read/expressions/quantities.h"
+#include "read/names/pieces_of_functions.h"
+
+static const struct Quantity nothing = {.node = ZERO};
+static const char integral_form[] = "integral(name, from, to, expression)";
+static const char derivative_form[] = "diff(expression, name)";
+
+/*
+ * An expression at the reading position in which a name stands for a dummy, the last of the scope's, which the caller
+ * closes. It stays whole: pieces would look at the dummy beyond the expression.
+ */
+static struct Quantity parse_with_dummy(struct Parser *parser, const char *name, struct Dimension dimension, Node low,
+                                        Node high) {
+  struct Scope *scope = parser->scope;
+  struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
+  if (dummy->symbol == ZERO) dummy->symbol = graph_symbol(parser->graph, DUMMY, (int)scope->dummy_count, "dummy");
+  *dummy = (struct Dummy){dummy->symbol, low, high};
+  struct Local local = {name, {.node = dummy->symbol, .dimension = dimension}, parser->locals};
+  bool was_whole = scope->keeps_whole;
+  size_t requirements = scope->requirements.count;
+  parser->locals = &local;
+  scope->keeps_whole = true;
+  struct Quantity value = parse_sum(parser);
+  scope->keeps_whole = was_whole;
+  scope->requirements.count = requirements;
+  parser->locals = local.outer;
+  return value;
+}
+
+static void check_nesting(struct Parser *parser) {
+  if (parser->scope->dummy_count == DUMMY_LIMIT)
+    FAIL(parser, "%s: more than %d nested integrals and derivatives; expected fewer", parser->place.what, DUMMY_LIMIT);
+}
+
+/* The name behind the expression of diff, before that is read; the reading position stays. */
+static char *look_ahead_for_name(struct Parser *parser, const char **end) {
+  const char *begin = parser->next;
+  for (int depth = 0; *parser->next != '\0' && depth >= 0 && !(depth == 0 && *parser->next == ','); parser->next++)
+    depth += (*parser->next == '(') - (*parser->next == ')');
+  expect_character(parser, ',', format_text("before the name of %s", derivative_form));
+  skip_space(parser);
+  if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
+    FAIL(parser, "%s: expected a name at the end of %s", parser->place.what, derivative_form);
+  char *name = parser->failed ? NULL : read_name(parser);
+  expect_character(parser, ')', format_text("after the name of %s", derivative_form));
+  *end = parser->next;
+  parser->next = begin;
+  return name;
+}
+
+static const struct Local *find_local(const struct Parser *parser, const char *name) {
+  const struct Local *local = parser->locals;
+  while (local != NULL && strcmp(local->name, name) != 0) local = local->outer;
+  return local;
+}
+
+/* By an argument of a function or the variable of an integral: by a dummy, in whose place its value comes. */
+static struct Quantity derivative_by_local(struct Parser *parser, const struct Local *local) {
+  struct Scope *scope = parser->scope;
+  check_nesting(parser);
+  if (parser->failed) return nothing;
+  struct Dimension dimension = local->value.literal ? dimension_unknown : local->value.dimension;
+  Node at = local->value.node;
+  struct Quantity value = parse_with_dummy(parser, local->name, dimension, at, at);
+  Node symbol = scope->dummies[--scope->dummy_count].symbol;
+  if (parser->failed) return nothing;
+  Node derivative = replaced(parser->graph, derivative_by(parser->graph, value.node, symbol), symbol, at);
+  return (struct Quantity){.node = with_pieces(scope, derivative, current_line(parser)),
+                           .dimension = dimension_multiply(value.dimension, dimension, -1.0)};
+}
+
+static bool is_variable(const struct Graph *graph, Node node) {
+  if (graph->vertices[node].operation != SYMBOL) return false;
+  enum SymbolKind kind = graph_symbol_of(graph, node)->kind;
+  return kind == PARAMETER || kind == TIME || kind == COORDINATE || kind == VELOCITY || kind == STATE || kind == INPUT;
+}
+
+static struct Quantity derivative_by_variable(struct Parser *parser, const char *name) {
+  struct Graph *graph = parser->graph;
+  const struct Quantity variable = look_up(parser, name);
+  if (parser->failed || definitions_are_waiting(parser->scope->definitions)) return nothing;
+  if (!is_variable(graph, variable.node))
+    FAIL(parser,
+         "%s: diff(..., %s) is by an expression; expected a coordinate, velocity, state, input, parameter, time or an "
+         "argument of a <function>",
+         parser->place.what, name);
+  struct Quantity value = parser->failed ? nothing : parse_sum(parser);
+  if (parser->failed) return nothing;
+  struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension;
+  return (struct Quantity){.node = derivative_by(graph, value.node, variable.node),
+                           .dimension = dimension_multiply(value.dimension, dimension, -1.0)};
+}
+
+struct Quantity parse_partial_derivative(struct Parser *parser) {
+  const char *end;
+  char *name = look_ahead_for_name(parser, &end);
+  if (parser->failed) return nothing;
+  const struct Local *local = find_local(parser, name);
+  struct Quantity derivative =
+      local != NULL ? derivative_by_local(parser, local) : derivative_by_variable(parser, name);
+  if (definitions_are_waiting(parser->scope->definitions)) derivative = nothing;
+  else expect_character(parser, ',', format_text("after the expression of %s", derivative_form));
+  parser->next = end;
+  return parser->failed ? nothing : derivative;
+}
+
+/* The number of nodes that the author gives; 0 where lagc is to choose. */
+static size_t parse_node_count(struct Parser *parser) {
+  if (!accept_character(parser, ',')) return 0;
+  long count = parse_whole(parser, "the number of nodes of integral(...)");
+  if (!parser->failed && (count < 1 || count > QUADRATURE_LIMIT))
+    FAIL(parser, "%s: integral(...) by %ld nodes; expected 1 to %d", parser->place.what, count, QUADRATURE_LIMIT);
+  return parser->failed ? 0 : (size_t)count;
+}
+
+struct Quantity parse_integral(struct Parser *parser) {
+  const char *begin = parser->next;
+  char *name = parse_declared(parser, "variable", integral_form);
+  if (!parser->failed && find_quantity(parser, name) != NULL)
+    FAIL(parser, "%s: the variable '%s' of integral(...) is already a name; expected a new one", parser->place.what,
+         name);
+  struct Quantity from = parse_sum(parser);
+  expect_character(parser, ',', format_text("after the beginning of %s", integral_form));
+  struct Quantity to = parser->failed ? nothing : parse_sum(parser);
+  expect_character(parser, ',', format_text("after the end of %s", integral_form));
+  check_nesting(parser);
+  if (parser->failed) return nothing;
+  struct Dimension dimension = quantity_add(parser, from, to).dimension; /* their units agree */
+  struct Quantity value = parse_with_dummy(parser, name, dimension, from.node, to.node);
+  struct Integral integral = {.value = value.node, .given = parse_node_count(parser)};
+  expect_character(parser, ')', format_text("at the end of %s", integral_form));
+  integral.text = format_text("integral(%.*s", (int)(parser->next - begin), begin);
+  bool is_ready = !parser->failed && !definitions_are_waiting(parser->scope->definitions);
+  Node sum = is_ready ? integrate(parser, &integral) : ZERO;
+  parser->scope->dummy_count--;
+  if (parser->failed) return nothing;
+  return (struct Quantity){.node = sum, .dimension = dimension_multiply(value.dimension, dimension, 1.0)};
+}

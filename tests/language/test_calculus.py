@@ -1,0 +1,126 @@
+"""diff and integral: closed forms, the number of nodes that lagc chooses, and messages."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import roots_legendre
+
+from fmu import build_systems, lagc
+
+HEAD = '<coordinate name="x" velocity="v" start="0.7"/><coordinate name="y" velocity="vy" start="-0.3" velocityStart="0.5"/><particle mass="1" x="x" y="y"/><parameter name="p" start="1.5"/><input name="u" start="2"/>'
+FUNCTIONS = """<function name="wave" arguments="s k">sin(k*s)*exp(-s) + abs(s - x)*s</function>
+<function name="slope" arguments="s">diff(wave(s, p), s)</function>
+<function name="ramp" arguments="s">abs(s)*s</function>"""
+# Each with the value that it has at x = 0.7, y = -0.3, v = 0, vy = 0.5, p = 1.5, u = 2, time = 0.
+X, Y, VY, P, U = 0.7, -0.3, 0.5, 1.5, 2.0
+VALUES = {
+    "diff(x^2*y + p*v, x)": 2 * X * Y,
+    "diff(sin(x*vy)*u, vy)": U * X * np.cos(X * VY),
+    "diff(x*p^3, p)": 3 * X * P**2,
+    "diff(exp(time)*x*u + der(x), time)": X * U,
+    "diff(u^3*x, u)": 3 * U**2 * X,
+    "diff(diff(x^3*y^2, x), y)": 6 * X**2 * Y,
+    "slope(1)": P * np.cos(P) * np.exp(-1) - np.sin(P) * np.exp(-1) + 1 + (1 - X),
+    "slope(y)": P * np.cos(P * Y) * np.exp(-Y) - np.sin(P * Y) * np.exp(-Y) - Y + (X - Y),
+    "sum(i, 1, 3, diff(ramp(i*y), y))": sum(2 * i * i * abs(Y) for i in (1, 2, 3)),
+    "integral(s, 0, x, s^2)": X**3 / 3,
+    "integral(s, y, x*p, sin(s*p))": (np.cos(Y * P) - np.cos(X * P * P)) / P,
+    "integral(s, 1, 0, s)": -0.5,
+    "integral(s, 0, 1, integral(r, 0, s, (s - r)^3*x))": X / 20,
+    "integral(s, 0, 1, diff(s^3*integral(r, 0, s, r), s))": 0.5,
+    "integral(s, 0, 1, sqrt(1 + (x + y*s)^2))": quad(lambda s: np.sqrt(1 + (X + Y * s) ** 2), 0, 1, epsabs=1e-14)[0],
+    "integral(s, 0, 1, exp(s), 2)": sum(w / 2 * np.exp((1 + s) / 2) for s, w in zip(*roots_legendre(2))),
+    "integral(s, 0, x, x - s) + integral(s, x, 1, s - x)": X**2 / 2 + (1 - X) ** 2 / 2,
+    "integral(s, 0, 1, der(s*x*y))": X * VY / 2,
+    "integral(s, 0, 1, sum(i, 1, 3, s^i))": 1 / 2 + 1 / 3 + 1 / 4,
+}  # fmt: skip
+# A string that hangs between its ends: sag functions of the third degree, whose energy is no polynomial.
+STRING = """<system name="CalculusString"><parameter name="L" start="2" unit="m"/><parameter name="EA" start="50" unit="N"/>
+<parameter name="rho" start="0.4" unit="kg/m"/><parameter name="g" start="9.81" unit="m/s2"/>
+<coordinate name="a" velocity="va" unit="m" start="0.1"/><coordinate name="b" velocity="vb" unit="m"/>
+<function name="w" arguments="s">a*sin(pi*s/L) + b*sin(2*pi*s/L)</function>
+<kinetic>integral(s, 0, L, rho*der(w(s))^2/2)</kinetic>
+<potential>integral(s, 0, L, EA*(sqrt(1 + diff(w(s), s)^2) - 0.9)^2/2 + rho*g*w(s))</potential><solver tolerance="1e-10"/></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    outputs = "".join(f'<output name="o[{i}]">{text}</output>' for i, text in enumerate(VALUES))
+    build_systems("calculus", {"CalculusValues": f'<system name="CalculusValues">{HEAD}{FUNCTIONS}{outputs}</system>', "CalculusString": STRING})
+
+
+def test_values(open_fmu):
+    instance = open_fmu("CalculusValues").initialize()
+    for i, (text, expected) in enumerate(VALUES.items()):
+        assert instance.get(f"o[{i}]") == pytest.approx(expected, rel=2e-13, abs=1e-15), text
+
+
+def test_forces_of_an_integral(open_fmu):
+    """Accelerations from the derivatives of the energies by quadrature that adapts."""
+    instance = open_fmu("CalculusString").initialize({"a": 0.15, "b": -0.08})
+    a, b, L, EA, rho, g = 0.15, -0.08, 2, 50, 0.4, 9.81
+
+    def force(k):
+        def integrand(s):
+            slope = a * np.pi / L * np.cos(np.pi * s / L) + b * 2 * np.pi / L * np.cos(2 * np.pi * s / L)
+            stretch = np.sqrt(1 + slope**2)
+            return EA * (stretch - 0.9) * slope / stretch * k * np.pi / L * np.cos(k * np.pi * s / L) + rho * g * np.sin(k * np.pi * s / L)
+
+        return -quad(integrand, 0, L, epsabs=1e-13, epsrel=1e-13)[0]
+
+    for k, name in [(1, "der(va)"), (2, "der(vb)")]:
+        assert instance.get(name) == pytest.approx(force(k) / (rho * L / 2), rel=1e-11, abs=1e-11)
+    start = instance.get("totalEnergy")
+    instance.run(2, 0.1)
+    assert instance.get("totalEnergy") == pytest.approx(start, rel=1e-7)
+
+
+def said_of(tmp_path, content):
+    (tmp_path / "system.xml").write_text(f'<system name="X">\n{HEAD}{content}</system>')
+    return lagc("system.xml", "-o", "out", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("expression, nodes", [("s^5*x", 3), ("s^6*x", 4), ("s^2*sqrt(p)*v", 2), ("x*y", 1), ("s^15 + y", 8)])
+def test_as_many_nodes_as_the_degree_needs(tmp_path, expression, nodes):
+    result = said_of(tmp_path, f'<output name="o">integral(s, 0, 2, {expression})</output>')
+    assert re.findall(r"system.xml:2: note: integral\(s, 0, 2, (.*)\) is exact to 1e-13 by (\d+) node", result.stderr) == [(expression, str(nodes))]
+
+
+def test_a_kink_is_named_with_its_error(tmp_path):
+    result = said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x))</output>')
+    share = re.search(r"warning: integral\(s, 0, 1, abs\(s - 0.3\*x\)\) has a relative error of (\S+) by 32 nodes", result.stderr)
+    assert result.returncode == 0 and 1e-6 < float(share.group(1)) < 0.1
+    assert "warning: integral" not in said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x), 5)</output>').stderr
+
+
+@pytest.mark.parametrize("expression, message", [
+    ("diff(x^2, d)", "diff(..., d) is by an expression; expected a coordinate"),
+    ("diff(x^2)", "expected ',' before the name of diff(expression, name)"),
+    ("diff(x^2, 3)", "expected a name at the end of diff(expression, name)"),
+    ("diff(x^2, zz)", "unknown name 'zz'"),
+    ("diff(x 2, x)", "expected ',' after the expression of diff(expression, name)"),
+    ("integral(x, 0, 1, x)", "the variable 'x' of integral(...) is already a name"),
+    ("integral(s, 0, 1)", "expected ',' after the end of integral(name, from, to, expression)"),
+    ("integral(s, 0, 1, s, 0)", "integral(...) by 0 nodes; expected 1 to 200"),
+    ("integral(s, 0, 1, s, p)", "cannot depend on parameters"),
+    ("integral(s, 0, 1, s) + s", "unknown name 's'"),
+    ("integral(s, 0, 1, log(-1 - s^2))", "integral(s, 0, 1, log(-1 - s^2)) has no finite value"),
+    ("integral(s, 0, x, vv[s])", "is not a whole number"),
+    ("integral(3, 0, x, 1)", "expected a name as the variable of integral(name, from, to, expression)"),
+])  # fmt: skip
+def test_messages(tmp_path, expression, message):
+    result = said_of(tmp_path, f'<define name="d">2*x</define><output name="o">{expression}</output>')
+    assert result.returncode == 1 and message in result.stderr
+
+
+def test_names_of_functions_that_are_free(tmp_path):
+    result = said_of(tmp_path, '<state name="integral" rate="x"/><define name="diff">integral(s, 0, 1, s)*integral</define><output name="o">diff(diff, x) + diff</output>')
+    assert "is by an expression" not in result.stderr and result.returncode == 0, result.stderr
+
+
+def test_units(tmp_path):
+    text = '<parameter name="l" start="2" unit="m"/><parameter name="k" start="3" unit="N/m"/><coordinate name="z" velocity="vz" unit="m"/><particle mass="1" z="z"/>'
+    assert said_of(tmp_path, text + '<potential>integral(s, 0, l, k*s)</potential><force coordinate="z">-diff(k*z^2/2, z)</force>').returncode == 0
+    assert "has the unit" in said_of(tmp_path, text + "<potential>integral(s, 0, l, k*s^2)</potential>").stderr
