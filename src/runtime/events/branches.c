@@ -1,7 +1,6 @@
 #include "events/branches.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
@@ -88,15 +87,12 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
 static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
   const struct FrictionLaws *laws = settlement->switches->friction_laws;
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
-  bool turns = strcmp(facts->function, "min") == 0 || strcmp(facts->function, "max") == 0;
-  bool may_be_corner = turns && settlement->switches->contact_laws != NULL;
   if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
+  if (continuity_explain_corner(settlement, branch)) return without_end;
   log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
               "time %g: %s, line %ld of %s, jumps back and forth there: on either side of its jump the motion leads "
-              "back to it, %s",
-              settlement->time, facts->function, facts->line, facts->file,
-              may_be_corner ? "as where a body touches both pieces of a gap; expected a <contact> for each piece"
-                            : "as with dry friction that sticks; expected <friction>, which sticks, in place of sign");
+              "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
+              settlement->time, facts->function, facts->line, facts->file);
   return without_end;
 }
 

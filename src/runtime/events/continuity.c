@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "instance/projection.h"
 
 /* In units of the scales of the state: less of a change may be rounding. */
@@ -72,6 +73,50 @@ static const char *check_energy(const struct Settlement *settlement) {
   return "an energy jumps";
 }
 
+/* Evaluates value[] at any velocities, which tell pieces of gaps from one another, with a branch in one of its pieces. */
+static bool values_of_piece(struct Settlement *settlement, size_t branch, double piece, double *value) {
+  struct Instance *instance = settlement->instance;
+  size_t n = lagrangian.coordinate_count;
+  instance->parameter[settlement->switches->branches[branch].mode] = piece;
+  instance->prepared_is_stale = true;
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  memcpy(settlement->rounded, settlement->state, lagrangian.state_count * sizeof *settlement->rounded);
+  for (size_t i = 0; i < n; i++) settlement->rounded[n + i] = 1.0 / (1.0 + (double)i);
+  memset(settlement->acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement->acceleration);
+  struct Point point = solver_point(instance, settlement->time, settlement->rounded);
+  settlement->switches->switching_values(&point, settlement->acceleration, value);
+  return true;
+}
+
+/* The contact whose gap differs in the pieces of a branch; contact_count for none. */
+static size_t find_corner(struct Settlement *settlement, size_t branch) {
+  const struct SwitchTable *switches = settlement->switches;
+  const double *one = settlement->value, *other = settlement->other_noise;
+  size_t mode = switches->branches[branch].mode, found = 0;
+  double kept = mode_of(settlement, mode);
+  bool is_known = values_of_piece(settlement, branch, 1.0, settlement->value) &&
+                  values_of_piece(settlement, branch, -1.0, settlement->other_noise);
+  settlement->instance->parameter[mode] = kept;
+  settlement->instance->prepared_is_stale = true;
+  while (is_known && found < switches->contact_count &&
+         one[contact_place(switches, found, CONTACT_RATE)] == other[contact_place(switches, found, CONTACT_RATE)])
+    found++;
+  return is_known ? found : switches->contact_count;
+}
+
+bool continuity_explain_corner(struct Settlement *settlement, size_t branch) {
+  const struct BranchFacts *facts = &settlement->switches->branches[branch];
+  size_t contact = find_corner(settlement, branch);
+  if (contact == settlement->switches->contact_count) return false;
+  bool is_discarded = settlement->occasion == AT_EVENT || settlement->occasion == AT_CHANGE;
+  log_message(
+      settlement->instance, is_discarded ? STATUS_DISCARD : STATUS_ERROR,
+      "time %g: the gap of the contact '%s' has a corner there, by %s, line %ld of %s, and both of its pieces are "
+      "touched; expected a <contact> for each piece",
+      settlement->time, settlement->switches->contacts[contact].name, facts->function, facts->line, facts->file);
+  return true;
+}
+
 /* Whether the constraints hold as before in the branches that were switched to. */
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
@@ -88,13 +133,12 @@ static const char *check_constraints(struct Settlement *settlement) {
                 "time %g: an event sets %s so that the constraints do not hold; expected values of <set> for all "
                 "coordinates and velocities that they move, which fulfil them",
                 settlement->time, settlement->moved ? "coordinates" : "modes");
-  else
-    log_message(
-        instance, status,
-        "time %g: %s, line %ld of %s, turns or jumps there in a constraint, or in the gap of a closed "
-        "contact, and positions or velocities would have to jump with it; expected one without kinks, or a <contact> "
-        "for each piece of a gap",
-        settlement->time, settlement->switched->function, settlement->switched->line, settlement->switched->file);
+  else if (!continuity_explain_corner(settlement, (size_t)(settlement->switched - settlement->switches->branches)))
+    log_message(instance, status,
+                "time %g: %s, line %ld of %s, turns or jumps there in a constraint, and positions or velocities would "
+                "have to jump with it; expected one without kinks",
+                settlement->time, settlement->switched->function, settlement->switched->line,
+                settlement->switched->file);
   return constraints_not_kept;
 }
 

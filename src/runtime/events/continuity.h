@@ -19,6 +19,12 @@ const char *continuity_check(struct Settlement *settlement);
 /* How far a branch without a kink may move the state, in units of its scales: an importer comes to it late. */
 double continuity_allowed_share(const struct Settlement *settlement);
 
+/*
+ * Logs the contact whose gap has a corner, or a jump, where a branch switches: a body that touches both of its pieces needs a
+ * contact for each of them. False where there is none.
+ */
+bool continuity_explain_corner(struct Settlement *settlement, size_t branch);
+
 /* The reason where they cannot. */
 extern const char constraints_not_kept[];
 

@@ -6,6 +6,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "events/continuity.h"
 #include "events/indicators.h"
 #include "events/search.h"
 #include "events/settle.h"
@@ -37,6 +38,7 @@ static const double window_share = 1.25;
 
 static const char gathering[] =
     "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
+static const char corner[] = "the corner of a gap is touched from both sides";
 static const char flutter[] = "a contact opens and closes there without end";
 static const char too_close[] = "events lie closer there than can be told";
 static const char no_modes[] = "with these parameters there is no acceleration there";
@@ -254,13 +256,22 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
   return too_close;
 }
 
+/* True, after logging it, where events gather in a corner of a gap. */
+static bool is_at_corner(struct Instance *instance, double time, size_t indicator) {
+  if (indicator >= lagrangian.switches->branch_count) return false;
+  if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return false;
+  struct Settlement settlement = settlement_at(instance, time, instance->event_state, AT_EVENT);
+  return continuity_explain_corner(&settlement, indicator);
+}
+
 /* The step ends at events that do not end: an importer in event mode, whose step began at one, would go on from one more. */
-static const char *refuse_gathering(const struct Instance *instance, const struct CommunicationStep *step,
+static const char *refuse_gathering(struct Instance *instance, const struct CommunicationStep *step,
                                     struct EventProgress *progress, size_t indicator) {
   char name[NAME_SIZE];
   const char *finer = lagrangian.solver->finer;
   progress->is_lost = true;
   if (instance->stops_at_events) progress->searched = step->start;
+  if (is_at_corner(instance, progress->searched, indicator)) return corner;
   name_indicator(indicator, name, sizeof name);
   if (!is_of_contact(indicator)) {
     log_message(instance, STATUS_DISCARD, "time %.15g: %s switches there without end", progress->searched, name);

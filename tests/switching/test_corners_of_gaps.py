@@ -1,0 +1,48 @@
+"""One gap with several pieces, whose corner a body rests in: a message names the contact and asks for one for each piece, which go on."""
+
+import numpy as np
+import pytest
+
+from fmu import DISCARD, build_systems
+
+BODY = '<coordinate name="x" velocity="v" {0}/><coordinate name="y" velocity="w" {1}/><particle mass="1" x="x" y="y"/>'
+PUSHES = '<force coordinate="x">-0.1</force><force coordinate="y">-2</force>'
+SLIDES = BODY.format('start="1" velocityStart="-1"', "") + PUSHES
+FALLS = BODY.format('start="-1" velocityStart="1"', 'start="1"') + '<force coordinate="y">-2</force>'
+REACHED = 10 * (np.sqrt(1.2) - 1)  # where 1 - t - 0.05 t^2 = 0
+# Of each: the gap, what stands in it by the message, and when the corner is reached; None where bounces do not end before that.
+CORNERS = {
+    "Min": (SLIDES, "min(x, y)", "min", REACHED),
+    "Max": (SLIDES, "-max(-x, -y)", "max", REACHED),
+    "Condition": (SLIDES, "if(x &lt; y, x, y)", "a condition", REACHED),
+    "Abs": (SLIDES, "(x + y - abs(x - y))/2", "abs", REACHED),
+    "Vee": (FALLS, "if(x &gt; 0, y - x, y + x)", "a condition", None),
+}
+METHODS = ["taylor", "radau"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    text = '<system name="{}">{}<contact name="corner" gap="{}" restitution="0"/><solver method="{}"/></system>'
+    texts = {f"Corner{name}{method.title()}": text.format(f"Corner{name}{method.title()}", body, gap, method)
+             for name, (body, gap, _, _) in CORNERS.items() for method in METHODS}  # fmt: skip
+    both = '<contact name="wall" gap="x" restitution="0"/><contact name="floor" gap="y" restitution="0"/>'
+    texts["CornerBoth"] = f'<system name="CornerBoth">{SLIDES}{both}</system>'
+    build_systems("corners-of-gaps", texts)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("corner", CORNERS)
+def test_a_corner_asks_for_two_contacts(open_fmu, corner, method):
+    _, _, function, reached = CORNERS[corner]
+    instance = open_fmu(f"Corner{corner}{method.title()}").initialize()
+    with instance.fails(DISCARD, f"the gap of the contact 'corner' has a corner there, by {function}, line 1 .* expected a <contact> for each piece"):
+        instance.step(3.0)
+    text = next(text for _, _, text in instance.messages if "has a corner" in text)
+    assert reached is None or float(text.split()[1][:-1]) == pytest.approx(reached, abs=1e-5)
+
+
+def test_two_contacts_hold_in_a_corner(open_fmu):
+    instance = open_fmu("CornerBoth").initialize()
+    instance.step(3.0)
+    assert instance.get("x", "y", "v", "w", "wall.force", "floor.force") == pytest.approx([0, 0, 0, 0, 0.1, 2], abs=1e-12)
