@@ -33,16 +33,20 @@ static void write_display_units(xmlTextWriterPtr writer, const struct Interface 
   }
 }
 
-static void write_unit(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count,
-                       const char *name) {
-  struct Dimension dimension = unit_of(name);
-  xmlTextWriterStartElement(writer, BAD_CAST "Unit");
-  write_attribute(writer, "name", name);
+static void write_base_unit(xmlTextWriterPtr writer, struct Dimension dimension) {
   xmlTextWriterStartElement(writer, BAD_CAST "BaseUnit");
   for (int i = 0; i < BASE_UNIT_COUNT; i++)
     if (dimension.exponent[i] != 0)
       xmlTextWriterWriteFormatAttribute(writer, BAD_CAST base_unit_names[i], "%g", dimension.exponent[i]);
   xmlTextWriterEndElement(writer);
+}
+
+static void write_unit(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count,
+                       const char *name) {
+  struct Dimension dimension = unit_of(name);
+  xmlTextWriterStartElement(writer, BAD_CAST "Unit");
+  write_attribute(writer, "name", name);
+  if (dimension_is_whole(dimension)) write_base_unit(writer, dimension);
   write_display_units(writer, interface, variable_count, name);
   xmlTextWriterEndElement(writer);
 }

@@ -30,6 +30,22 @@ static const struct OtherUnit others[] = {
     {"min", "s", 60, 0},
     {"h", "s", 3600, 0},
     {"kN", "N", 1e3, 0},
+    {"inch", "m", 0.0254, 0},
+    {"in", "m", 0.0254, 0},
+    {"ft", "m", 0.3048, 0},
+    {"um", "m", 1e-6, 0},
+    {"l", "m3", 1e-3, 0},
+    {"L", "m3", 1e-3, 0},
+    {"lbf", "N", 4.4482216152605, 0},
+    {"bar", "Pa", 1e5, 0},
+    {"mbar", "Pa", 1e2, 0},
+    {"psi", "Pa", 6894.757293168361, 0},
+    {"kPa", "Pa", 1e3, 0},
+    {"MPa", "Pa", 1e6, 0},
+    {"GPa", "Pa", 1e9, 0},
+    {"kW", "W", 1e3, 0},
+    {"kJ", "J", 1e3, 0},
+    {"mA", "A", 1e-3, 0},
     {"rpm", "rad/s", 1.0 / 30, 1},
     {"Nm", "N.m", 1, 0},
     {"kgm", "kg.m", 1, 0},
@@ -76,7 +92,7 @@ struct Translation {
 /* Writes the unit with the SI names; exponents and signs between factors stay as they are. */
 static struct Translation translate(const char *text, FILE *file) {
   struct Translation result = {.factor = 1};
-  long side = 1; /* -1 below the slash */
+  double side = 1; /* -1 below the slash */
   while (*text != '\0') {
     size_t length = length_of_name(text);
     if (length == 0) {
@@ -88,31 +104,33 @@ static struct Translation translate(const char *text, FILE *file) {
     fprintf(file, "%.*s", other != NULL ? (int)strlen(other->si) : (int)length, other != NULL ? other->si : text);
     text += length;
     if (other == NULL) continue;
-    bool has_exponent = isdigit((unsigned char)*text) || *text == '-';
-    long exponent = has_exponent ? strtol(text, NULL, 10) : 1;
+    const char *behind = text;
+    double exponent = unit_exponent(&behind);
+    bool is_pi_whole = other->pi_power == 0 || exponent == floor(exponent);
     result.has_other = true;
-    result.is_wrong |= labs(exponent) > 20 || (has_exponent && strpbrk(other->si, "./") != NULL);
+    result.is_wrong |= fabs(exponent) > 20 || !is_pi_whole || (behind > text && strpbrk(other->si, "./123") != NULL);
     if (result.is_wrong) break;
-    result.factor *= pow(other->factor, (double)(side * exponent));
+    result.factor *= pow(other->factor, side * exponent);
     result.pi_power += (int)(side * exponent) * other->pi_power;
   }
   return result;
 }
 
 /* The number in a few digits, with e for a power of ten; false where that is not the number. */
-static bool write_short(char text[32], double number) {
+static bool write_number(char text[32], double number, int digits) {
   double exponent = round(log10(number));
   bool is_power = exponent != 0 && fabs(number * pow(10, -exponent) - 1) < 1e-12;
   if (is_power) snprintf(text, 32, "1e%.0f", exponent);
-  else snprintf(text, 32, "%.10g", number);
+  else snprintf(text, 32, "%.*g", digits, number);
   return fabs(strtod(text, NULL) / number - 1) < 1e-12;
 }
 
 /* "1e-2", "1/3.6", "pi/180", "180/pi"; NULL where the factor has no such form. */
 static char *factor_text(double factor, int pi_power) {
   char number[32], pi[32] = "pi";
-  bool is_above = write_short(number, factor);
-  if (!isnormal(factor) || (!is_above && !write_short(number, 1 / factor))) return NULL;
+  if (!isnormal(factor)) return NULL;
+  bool is_above = write_number(number, factor, 8), is_below = !is_above && write_number(number, 1 / factor, 8);
+  if (!is_above && !is_below) is_above = write_number(number, factor, 16);
   if (abs(pi_power) > 1) snprintf(pi, sizeof pi, "pi^%d", abs(pi_power));
   if (pi_power == 0) return format_text("%s%s", is_above ? "" : "1/", number);
   if (pi_power > 0) return format_text("%s%c%s", pi, is_above ? '*' : '/', number);
@@ -136,6 +154,9 @@ bool display_unit_parse(const char *text, struct Dimension *dimension, double *f
 }
 
 char *unit_remedy(const char *text) {
+  if (strcmp(text, "degC") == 0 || strcmp(text, "\xc2\xb0"
+                                                "C") == 0)
+    return copy_text("expected K, and the value plus 273.15");
   struct Translation translation;
   char *si = translation_of(text, &translation);
   struct Dimension dimension;

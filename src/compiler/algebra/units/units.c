@@ -68,6 +68,17 @@ bool dimension_is_whole(struct Dimension dimension) {
   return dimension.known;
 }
 
+double unit_exponent(const char **text) {
+  const char *next = *text + (**text == '-');
+  if (!isdigit((unsigned char)*next)) return 1.0;
+  while (isdigit((unsigned char)*next)) next++;
+  if (*next == '.' && isdigit((unsigned char)next[1]))
+    for (next++; isdigit((unsigned char)*next);) next++;
+  double exponent = strtod(*text, NULL); /* which reads no further: a unit begins with no digit, x or e behind it */
+  *text = next;
+  return exponent;
+}
+
 struct UnitReader {
   const char *next;
   const char *problem;
@@ -100,11 +111,8 @@ static struct Dimension read_factor(struct UnitReader *reader) {
     reader->next += length;
     struct Dimension unit = dimension_one;
     memcpy(unit.exponent, table[i].exponent, sizeof unit.exponent);
-    char *end;
-    bool has_exponent = isdigit((unsigned char)*reader->next) || *reader->next == '-';
-    long exponent = has_exponent ? strtol(reader->next, &end, 10) : 1;
-    if (has_exponent) reader->next = end;
-    if (labs(exponent) <= 20) return dimension_multiply(dimension_one, unit, (double)exponent);
+    double exponent = unit_exponent(&reader->next);
+    if (fabs(exponent) <= 20) return dimension_multiply(dimension_one, unit, exponent);
     reader->problem = "an exponent is larger than 20";
     return dimension_unknown;
   }

@@ -23,6 +23,9 @@ extern const struct Dimension dimension_unknown, dimension_one;
  */
 bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
 
+/* The exponent behind a unit's name, as in s-1 or Pa0.5, behind which the text then is; 1 where there is none. */
+double unit_exponent(const char **text);
+
 /* The dimension of a unit that is right. */
 struct Dimension unit_of(const char *text);
 

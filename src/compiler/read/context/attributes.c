@@ -1,5 +1,7 @@
 #include "read/context/attributes.h"
 
+#include <string.h>
+
 #include "algebra/differentiate.h"
 #include "algebra/units/other_units.h"
 #include "base/memory.h"
@@ -104,6 +106,14 @@ struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, cons
   struct Quantity value = expression_text_of(reader, node, what, kinds);
   reader->scope->keeps_whole = false;
   return value;
+}
+
+char *next_listed(const char **text) {
+  static const char separators[] = " \t\r\n,;";
+  const char *begin = *text + strspn(*text, separators);
+  size_t length = strcspn(begin, separators);
+  *text = begin + length;
+  return length > 0 ? format_text("%.*s", (int)length, begin) : NULL;
 }
 
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name) {

@@ -120,6 +120,9 @@ struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const
 /* The same where no event waits for its pieces: abs, min and the like stay whole. */
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds);
 
+/* The next of a list such as "1 2, 3", behind which the text then is; NULL at the end. */
+char *next_listed(const char **text);
+
 /* The unit in an attribute of the element; unknown where missing or after an error. */
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 

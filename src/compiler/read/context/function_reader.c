@@ -9,8 +9,6 @@
 #include "read/names/definitions.h"
 #include "read/names/words.h"
 
-static const char separators[] = " \t\r\n,;";
-
 static void check_argument(struct Reader *reader, xmlNodePtr node, const struct NamedFunction *function,
                            const char *name) {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_", digits[] = "0123456789";
@@ -31,15 +29,13 @@ static void check_argument(struct Reader *reader, xmlNodePtr node, const struct 
 
 static void read_arguments(struct Reader *reader, xmlNodePtr node, struct NamedFunction *function) {
   const char *next = attribute(node, "arguments");
-  if (next == NULL) next = "";
-  for (next += strspn(next, separators); *next != '\0'; next += strspn(next, separators)) {
-    size_t length = strcspn(next, separators), count = function->argument_count;
-    char *name = format_text("%.*s", (int)length, next);
+  char *name = next != NULL ? next_listed(&next) : NULL;
+  for (; name != NULL; name = next_listed(&next)) {
+    size_t count = function->argument_count;
     check_argument(reader, node, function, name);
     function->arguments = make_room(function->arguments, count, sizeof *function->arguments);
     function->arguments[count] = name;
     function->argument_count++;
-    next += length;
   }
   if (function->argument_count == 0)
     report_at(

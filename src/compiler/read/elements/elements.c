@@ -24,21 +24,22 @@
 #include "read/space/joints.h"
 #include "read/space/springs.h"
 
-/* The value, which an <include> may give, with the unit that it has by itself. */
-static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given,
+/* The value in an attribute, which an <include> may give, or in a list, with the unit that it has by itself. */
+static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given, char *listed,
                                 struct Quantity *value) {
-  struct Source *present = enter_giver(reader, giver_of(given, "value"), &node);
-  char *text = attribute(node, "value");
+  const struct Given *giver = giver_of(given, "value");
+  struct Source *present = enter_giver(reader, giver, &node);
+  char *text = listed != NULL && giver == NULL ? listed : attribute(node, "value");
   bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place_at(node, "value", 0), value);
   source_enter(reader, present);
   return right;
 }
 
-static void read_constant(struct Reader *reader, xmlNodePtr node) {
-  char *name = name_attribute(reader, node, "name");
+/* listed: its value in a list; NULL where it has an attribute of its own. */
+static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, char *listed) {
   struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
   const struct Given *given = given_for(reader, node, name);
-  bool right = name != NULL && read_constant_value(reader, node, given, &value);
+  bool right = read_constant_value(reader, node, given, listed, &value);
   struct Place place = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
@@ -53,7 +54,29 @@ static void read_constant(struct Reader *reader, xmlNodePtr node) {
       require_unit(reader, line_of_attribute(node, "value"), "the value of the constant", value, unit);
     value = (struct Quantity){.node = value.node, .dimension = unit};
   } else if (value.literal) value.factor = (struct NumberFactor){.text = name, .power = 1.0};
-  if (name != NULL) scope_define(reader->scope, name, value, line_of(node));
+  scope_define(reader->scope, name, value, line_of(node));
+}
+
+/* values="1 2 3" of m: m[1], m[2] and m[3]. */
+static void read_constants(struct Reader *reader, xmlNodePtr node, const char *name) {
+  const char *next = attribute(node, "values");
+  size_t count = 0;
+  if (has_attribute(node, "value")) report_at(reader, node, "a <constant> with value and values; expected one of them");
+  check_name_of_list(reader, node, name);
+  for (char *text = next_listed(&next); text != NULL; text = next_listed(&next))
+    define_constant(reader, node, format_text("%s[%zu]", name, ++count), text);
+  if (count == 0) report_at(reader, node, "the constant '%s' has no values; expected numbers", name);
+}
+
+static void read_constant(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  if (name == NULL) return;
+  if (has_attribute(node, "values")) read_constants(reader, node, name);
+  else define_constant(reader, node, name, NULL);
+  if (!has_attribute(node, "value") && !has_attribute(node, "values"))
+    report_at(reader, node,
+              "<constant> needs the attribute 'value'; expected value=\"...\", or values=\"...\" for name[1], name[2], "
+              "...");
 }
 
 static Node append_input_rate(struct Reader *reader) {

@@ -105,8 +105,6 @@ static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *
   append_variable(list, variable);
 }
 
-static const char separators[] = " \t\r\n,;";
-
 /* The parameter of a list that has this name and this value. */
 static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, const char *text) {
   struct Variable variable = variable_of(reader, node);
@@ -122,22 +120,23 @@ static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, cons
   declare(reader, node, given, variable);
 }
 
+void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name) {
+  if (strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
+    report_at(reader, node,
+              "the %s '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
+              (const char *)node->name, name);
+}
+
 /* values="1 2 3" of m: m[1], m[2] and m[3]. */
 static void read_list(struct Reader *reader, xmlNodePtr node) {
   const char *next = attribute(node, "values"), *name = name_attribute(reader, node, "name");
   if (has_attribute(node, "start") || has_attribute(node, "value"))
     report_at(reader, node, "a <parameter> with values and a start or value; expected values=\"...\" alone");
   if (name == NULL) return;
-  if (strchr(name, ']') != NULL && name[strlen(name) - 1] == ']')
-    report_at(reader, node,
-              "the parameter '%s' with values has an index; expected a name alone, which gets the indices 1, 2, ...",
-              name);
+  check_name_of_list(reader, node, name);
   size_t count = 0;
-  for (next += strspn(next, separators); *next != '\0'; next += strspn(next, separators)) {
-    int length = (int)strcspn(next, separators);
-    read_listed(reader, node, format_text("%s[%zu]", name, ++count), format_text("%.*s", length, next));
-    next += length;
-  }
+  for (char *text = next_listed(&next); text != NULL; text = next_listed(&next))
+    read_listed(reader, node, format_text("%s[%zu]", name, ++count), text);
   if (count == 0) report_at(reader, node, "the parameter '%s' has no values; expected numbers", name);
 }
 

@@ -3,6 +3,9 @@
 
 #include "read/context/includes.h"
 
+/* Reports an index in the name of a list. */
+void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name);
+
 /* Declares a parameter that can be set, or one for each of its values; calculated ones are definitions. */
 void read_parameter(struct Reader *reader, xmlNodePtr node);
 
