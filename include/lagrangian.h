@@ -184,7 +184,14 @@ struct EventFacts {
   size_t side;         /* the mode that keeps the last sign other than 0; of PASSAGE_HOLDS without meaning */
   bool is_of_contacts; /* contacts, frictions and forces decide on the condition */
   size_t first_assignment, assignment_count;
-  const char *when; /* as written */
+  const char *when; /* as written; every of a sample */
+};
+
+/* A sample at base + count period, by modes. */
+struct SampleFacts {
+  size_t event;
+  size_t branch; /* turns at the next time */
+  size_t base, count, period;
 };
 
 struct ContactLaws;
@@ -230,14 +237,16 @@ struct SwitchTable {
   /* The branches whose indicators are affine in time, and depend on parameters and modes beside it alone; ascending. */
   const size_t *timed;
   size_t timed_count;
-  const struct TimeLaws *time_laws; /* time_laws.h; NULL without such branches */
+  const struct TimeLaws *time_laws;  /* time_laws.h; NULL without such branches */
+  const struct SampleFacts *samples; /* NULL where there are none */
+  size_t sample_count;
 };
 
 /*
  * value[] of struct SwitchTable: the indicators of the branches, then their time derivatives; of each contact the gap, its first
  * and second time derivative and the restitution; of each friction the velocity, its time derivative, the stiction and the
  * force while it slides, and both against negative velocities; the conditions of the events; what they assign; the kinetic and the potential energy, and the momenta;
- * of frictions in a plane the scale of the speed.
+ * of frictions in a plane the scale of the speed; of each sample every and offset.
  */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
 enum {
@@ -249,6 +258,8 @@ enum {
   FRICTION_FORCE_BACK,
   FRICTION_VALUES
 };
+
+enum { SAMPLE_EVERY, SAMPLE_OFFSET, SAMPLE_VALUES };
 
 static inline size_t branch_rate_place(const struct SwitchTable *switches, size_t branch) {
   return switches->branch_count + branch;
@@ -279,6 +290,10 @@ static inline size_t plane_place(const struct SwitchTable *switches, size_t plan
   return energy_place(switches) + switches->energy_count + plane;
 }
 
+static inline size_t sample_place(const struct SwitchTable *switches, size_t sample, size_t part) {
+  return plane_place(switches, switches->plane_count) + SAMPLE_VALUES * sample + part;
+}
+
 /* indicator[] of struct SwitchTable: of the branches, the contacts and the frictions. */
 static inline size_t contact_indicator(const struct SwitchTable *switches, size_t contact) {
   return switches->branch_count + contact;
@@ -297,6 +312,13 @@ static inline size_t plane_of(const struct SwitchTable *switches, size_t frictio
 
 static inline bool is_in_plane(const struct SwitchTable *switches, size_t friction) {
   return plane_of(switches, friction) < switches->plane_count;
+}
+
+/* The sample that turns a branch; NULL for none. */
+static inline const struct SampleFacts *sample_of(const struct SwitchTable *switches, size_t branch) {
+  for (size_t i = 0; i < switches->sample_count; i++)
+    if (switches->samples[i].branch == branch) return &switches->samples[i];
+  return NULL;
 }
 
 static inline size_t indicator_count(const struct SwitchTable *switches) {

@@ -207,6 +207,13 @@ def cantilever(t):
     return {"q1": q[0], "q2": q[1], "tip": q[0] + q[1], "turned": (2 * q[0] + 3 * q[1]) / 2}
 
 
+def digital_servo(t):
+    """Deadbeat: forth for one period, back for another, after one of waiting."""
+    s = t / 0.01 - 1
+    phi = 0.0 if s < 0 else s**2 / 2 if s < 1 else 1 - (2 - s) ** 2 / 2 if s < 2 else 1.0
+    return {"phi": 0.5 * phi}
+
+
 # What each example says, at any time: variables by name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
@@ -252,6 +259,7 @@ MOTIONS = {
     "CueBall": (cue_ball, 1e-9),
     "DroppedBall": (dropped_ball, 1e-12),
     "Thermostat": (thermostat, 1e-9),
+    "DigitalServo": (digital_servo, 1e-12),
     "Latch": (lambda t: {"x": (10 * t**3 - 1.25) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0}, 1e-12),
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),

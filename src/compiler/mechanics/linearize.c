@@ -283,12 +283,14 @@ static size_t column_of(const struct Model *model, const struct Symbol *symbol) 
   return first + (size_t)symbol->index;
 }
 
-/* Symbols at 0 but parameters and time. */
+/* Symbols at 0 but parameters, modes and time. */
 static Node *zero_symbols(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *zero = allocate(graph->symbol_count, sizeof *zero);
   for (size_t i = 0; i < model->parameters.count; i++)
     zero[graph->vertices[model->parameters.items[i].node].left] = model->parameters.items[i].node;
+  for (size_t i = 0; i < graph->symbol_count; i++)
+    if (graph->symbols[i].kind == MODE) zero[i] = graph->symbols[i].node;
   zero[graph->vertices[model->time].left] = model->time;
   return zero;
 }

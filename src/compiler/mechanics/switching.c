@@ -233,6 +233,18 @@ static void append_planes(const struct Model *model, struct NodeList *list) {
   }
 }
 
+/* The period and the first time of each sample. */
+static void append_samples(const struct Switches *switches, struct SwitchingExpressions *switching,
+                           struct NodeList *list) {
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    if (event->passage != PASSAGE_SAMPLES) continue;
+    append_node(list, event->sample.every);
+    append_node(list, event->sample.offset);
+    switching->sample_count++;
+  }
+}
+
 static void fill_contacts(const struct Model *model, const struct SwitchTable *counts, const Node *seeds,
                           Node *values) {
   for (size_t i = 0; i < counts->contact_count; i++) {
@@ -301,6 +313,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
   append_nodes(list, values, count);
   append_energies(model, equations, switching, list);
   append_planes(model, list);
+  append_samples(&model->switches, switching, list);
 }
 
 /* Whether the friction follows from the force of the contact. */

@@ -26,6 +26,7 @@ struct SwitchingExpressions {
   bool friction_varies; /* some friction slides with a force that is not constant */
   size_t *timed;        /* the branches whose next zero is a known time: affine in time, else of parameters and modes */
   size_t timed_count;
+  size_t sample_count; /* of the events */
   bool *
       rests; /* of each friction, and in it of each contact: the friction follows from its force; NULL where none does */
 };

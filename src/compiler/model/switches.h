@@ -58,14 +58,24 @@ struct Assignment {
   Node symbol, value;
 };
 
+/* Times base + count period, by modes: those of base and period change where the period is set anew. */
+struct Sample {
+  Node base, count, period;
+  Node every, offset; /* constant between events: the period, and the first time */
+  Node branch;        /* the mode of the branch that turns at the next time */
+};
+
 struct Event {
   enum Passage passage;
-  Node condition;      /* a function of modes alone: positive where it holds, or the sign of the expression */
-  Node side;           /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
-  bool is_of_contacts; /* contacts, frictions and forces decide on the condition */
+  struct Sample sample; /* of PASSAGE_SAMPLES */
+  Node condition;       /* a function of modes alone: positive where it holds, or the sign of the expression */
+  Node expression;      /* that passes 0; ZERO for conditions and samples */
+  Node side;            /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
+  long line;            /* of a sample, or of the expression, for messages */
+  bool is_of_contacts;  /* contacts, frictions and forces decide on the condition */
   struct Assignment *assignments;
   size_t assignment_count;
-  char *text; /* for messages */
+  char *text; /* for messages: when, or every of a sample */
 };
 
 struct Switches {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "read/event_checks.h"
 #include "read/expressions/named_functions.h"
 #include "read/robots/description/rigid_body.h"
 
@@ -18,6 +19,11 @@ static void check_content(const struct Reader *reader) {
   if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
                            model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
+  for (size_t i = 0; i < model->switches.event_count && is_motionless(model); i++)
+    if (model->switches.events[i].passage == PASSAGE_SAMPLES)
+      report_error(reader->diagnostics, model->switches.events[i].line,
+                   "a <sample> in a system without coordinates and states; expected a <state>, such as <state "
+                   "name=\"clock\" unit=\"s\" rate=\"1\"/>");
   if (is_motionless(model) && reader->has_solver)
     report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates and states has nothing to solve; expected no <solver>");
@@ -189,6 +195,7 @@ void check_system(struct Reader *reader) {
   warn_of_functions(reader);
   warn_without_unit(reader);
   warn_at_start(reader);
+  warn_of_events(reader);
   warn_of_displacements(reader);
   if (reader->dissipation_count == 0) return;
   warn_of_dissipation(reader, 1);

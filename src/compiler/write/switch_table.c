@@ -79,7 +79,8 @@ static void write_event(FILE *file, const struct EventFacts *event) {
   static const char *const passages[] = {[PASSAGE_HOLDS] = "PASSAGE_HOLDS",
                                          [PASSAGE_RISES] = "PASSAGE_RISES",
                                          [PASSAGE_FALLS] = "PASSAGE_FALLS",
-                                         [PASSAGE_BOTH] = "PASSAGE_BOTH"};
+                                         [PASSAGE_BOTH] = "PASSAGE_BOTH",
+                                         [PASSAGE_SAMPLES] = "PASSAGE_SAMPLES"};
   fprintf(file, "{%s, %zu, %s, %zu, %zu, ", passages[event->passage], event->side, name_of(event->is_of_contacts),
           event->first_assignment, event->assignment_count);
   write_name(file, event->when);
@@ -100,6 +101,17 @@ static void write_timed(FILE *file, const struct SwitchTable *facts) {
   if (facts->timed_count == 0) return;
   fputs("extern const struct TimeLaws time_laws;\n\n", file);
   write_sizes(file, "size_t", "timed", facts->timed, facts->timed_count);
+}
+
+static void write_samples(FILE *file, const struct SwitchTable *facts) {
+  if (facts->sample_count == 0) return;
+  fputs("static const struct SampleFacts sample_facts[] = {", file);
+  for (size_t i = 0; i < facts->sample_count; i++) {
+    const struct SampleFacts *sample = &facts->samples[i];
+    fprintf(file, "{%zu, %zu, %zu, %zu, %zu}, ", sample->event, sample->branch, sample->base, sample->count,
+            sample->period);
+  }
+  fputs("};\n\n", file);
 }
 
 static void write_flag(FILE *file, const char *name, bool is_set) {
@@ -131,6 +143,8 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   if (facts->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
   if (facts->timed_count > 0)
     fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n", facts->timed_count);
+  if (facts->sample_count > 0)
+    fprintf(file, "    .samples = sample_facts,\n    .sample_count = %zu,\n", facts->sample_count);
   fputs("};\n\n", file);
 }
 
@@ -148,5 +162,6 @@ void switching_write(FILE *file, const struct Program *program) {
   write_rests(file, &facts);
   write_events(file, &facts);
   write_timed(file, &facts);
+  write_samples(file, &facts);
   write_table(file, program, &facts);
 }

@@ -6,6 +6,7 @@
 #include "events/continuity.h"
 #include "events/indicators.h"
 #include "instance/held.h"
+#include "instance/time_laws.h"
 
 enum { FLIP_LIMIT = 8 };
 
@@ -167,6 +168,8 @@ static void guess_branches(struct Instance *instance) {
 
 void branches_guess(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
+  bool has_samples = switches->sample_count > 0 && lagrangian.prepare(instance->parameter, instance->prepared) == 0;
+  if (has_samples) switches->time_laws->start(instance);
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
     instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;

@@ -1,6 +1,13 @@
 #include "events/conditions.h"
 
+#include <math.h>
+
 #include "evaluation/evaluate.h"
+
+/* Of an expression that passes 0. */
+static bool has_side(const struct EventFacts *event) {
+  return event->passage != PASSAGE_HOLDS && event->passage != PASSAGE_SAMPLES;
+}
 
 static void assign(struct Settlement *settlement, const struct EventFacts *event) {
   const struct SwitchTable *switches = settlement->switches;
@@ -27,7 +34,7 @@ static void note_conditions(struct Settlement *settlement, bool all) {
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
     double condition = settlement->value[condition_place(switches, i)];
-    bool stays = event->passage != PASSAGE_HOLDS && condition == 0.0;
+    bool stays = has_side(event) && condition == 0.0;
     if (!stays && (all || event->is_of_contacts)) settlement->condition[i] = condition;
   }
 }
@@ -37,7 +44,7 @@ void conditions_begin(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
     double condition = settlement->value[condition_place(switches, i)];
-    bool was_at_side = event->passage != PASSAGE_HOLDS && mode_of(settlement, event->side) != 0.0;
+    bool was_at_side = has_side(event) && mode_of(settlement, event->side) != 0.0;
     settlement->condition[i] = was_at_side ? mode_of(settlement, event->side) : condition;
   }
 }
@@ -48,7 +55,7 @@ static void keep_sides(const struct Settlement *settlement) {
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventFacts *event = &switches->events[i];
     double sign = settlement->value[condition_place(switches, i)];
-    if (event->passage != PASSAGE_HOLDS && sign != 0.0) settlement->instance->parameter[event->side] = sign;
+    if (has_side(event) && sign != 0.0) settlement->instance->parameter[event->side] = sign;
   }
 }
 
@@ -57,6 +64,7 @@ static bool happens(const struct Settlement *settlement, size_t event) {
   const struct EventFacts *facts = &settlement->switches->events[event];
   double condition = settlement->value[condition_place(settlement->switches, event)],
          before = settlement->condition[event];
+  if (facts->passage == PASSAGE_SAMPLES) return condition > 0.0;
   if (facts->passage == PASSAGE_HOLDS) return condition > 0.0 && !(before > 0.0);
   bool rises = condition > 0.0 && before < 0.0, falls = condition < 0.0 && before > 0.0;
   return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
@@ -73,6 +81,10 @@ static const struct AssignmentFacts *rival_assignment(const struct SwitchTable *
   return NULL;
 }
 
+static const char *attribute_of(const struct EventFacts *event) {
+  return event->passage == PASSAGE_SAMPLES ? "every" : "when";
+}
+
 /* Logs two events that happen at once and set the same. Whether there are any. */
 static bool find_rivals(const struct Settlement *settlement, size_t event) {
   const struct SwitchTable *switches = settlement->switches;
@@ -81,9 +93,10 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
     const struct AssignmentFacts *rival = rival_assignment(switches, &switches->events[k], &switches->events[event]);
     if (rival == NULL) continue;
     log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
-                "time %g: the events number %zu, when=\"%s\", and number %zu, when=\"%s\", happen at once and both set "
+                "time %g: the events number %zu, %s=\"%s\", and number %zu, %s=\"%s\", happen at once and both set "
                 "'%s'; expected one event, or conditions that keep them apart",
-                settlement->time, k + 1, switches->events[k].when, event + 1, switches->events[event].when,
+                settlement->time, k + 1, attribute_of(&switches->events[k]), switches->events[k].when, event + 1,
+                attribute_of(&switches->events[event]), switches->events[event].when,
                 evaluate_name(rival->kind, rival->index));
     return true;
   }
@@ -107,9 +120,27 @@ static void begin_at_zero(struct Settlement *settlement) {
       settlement->condition[i] = 0.0;
 }
 
+/* Logs a sample whose period is no positive time; whether there is one. */
+static bool find_endless_sample(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->sample_count; i++) {
+    double period = settlement->value[sample_place(switches, i, SAMPLE_EVERY)], time = settlement->time;
+    double offset = settlement->value[sample_place(switches, i, SAMPLE_OFFSET)];
+    if (period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time) continue;
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: a <sample> has every=\"%s\", which is %g s, and its offset is %g s; expected a period above 0, "
+        "and one that is not lost against the time",
+        time, switches->events[switches->samples[i].event].when, period, offset);
+    return true;
+  }
+  return false;
+}
+
 const char *conditions_happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
+  if (find_endless_sample(settlement)) return "there are no samples";
   /* What contacts and frictions come to at the start has held before. */
   if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
   settlement->has_started = true;

@@ -118,7 +118,9 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
                               size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
-  const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
+  const struct SampleFacts *sample = sample_of(lagrangian.switches, indicator);
+  double moment = sample != NULL ? sample_time(instance, sample) : time; /* the same to rounding */
+  const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
   const char *obstacle = start_anew(instance, step, time);
   return problem != NULL ? problem : obstacle;
 }
@@ -284,6 +286,15 @@ static const char *refuse_gathering(struct Instance *instance, const struct Comm
   return flutter;
 }
 
+/* Whether a sample is meant to be at the end of the communication step, which rounding has made a little earlier. */
+static bool ends_at_sample(const struct Instance *instance, double end, size_t *branch) {
+  for (size_t i = 0; i < lagrangian.switches->sample_count; i++) {
+    *branch = lagrangian.switches->samples[i].branch;
+    if (fabs(sample_time(instance, &lagrangian.switches->samples[i]) - end) <= time_rounding * fabs(end)) return true;
+  }
+  return false;
+}
+
 /* Search, pass, settle, go on. */
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
@@ -293,6 +304,10 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->situation->searched = progress->searched;
   instance->situation->gathered = 0;
+  if (!is_found && end == step->end && ends_at_sample(instance, end, &indicator)) {
+    is_found = true;
+    time = end;
+  }
   if (!is_found) return NULL;
   if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
   count_event(instance, step, time, indicator, progress);

@@ -9,6 +9,7 @@
 #include "events/chebyshev.h"
 #include "events/indicators.h"
 #include "events/window.h"
+#include "instance/time_laws.h"
 
 /* Windows that a search may look at. Where one that is not exact takes more than a few, it is left to the exact one. */
 enum { WINDOW_LIMIT = 5000, FEW_WINDOWS = 24 };
@@ -336,6 +337,22 @@ static void hold_nodes(struct Search *search, size_t indicator, double from, dou
     search->samples[k * count + indicator] = search->held[k * count + indicator];
 }
 
+/*
+ * The time of the first sample up to an end, and its branch; INFINITY where all are later. One that lies before the beginning was
+ * passed by the rounding of communication points, and happens there.
+ */
+static double first_sample(const struct Instance *instance, double from, double to, size_t *branch) {
+  double first = INFINITY;
+  for (size_t i = 0; i < lagrangian.switches->sample_count; i++) {
+    const struct SampleFacts *sample = &lagrangian.switches->samples[i];
+    double time = fmax(sample_time(instance, sample), from);
+    if (!(time <= to && time < first)) continue;
+    first = time;
+    *branch = sample->branch;
+  }
+  return first;
+}
+
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
                       enum Exactness exactness, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
@@ -344,9 +361,10 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   search.windows = search.is_exact ? WINDOW_LIMIT : FEW_WINDOWS;
   bool knows_noise = false;
   sample_window(&search, from, to, samples);
-  *time = INFINITY;
+  *time = first_sample(instance, from, to, indicator);
   bool leaves = false; /* it is a zero at which the indicator rested */
   for (size_t i = 0; i < count; i++) {
+    if (sample_of(lagrangian.switches, i) != NULL) continue;
     double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
@@ -370,6 +388,8 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   }
   search.projects = false;
   if (!isfinite(*time)) return false;
+  instance->was_at_zero = false;
+  if (sample_of(lagrangian.switches, *indicator) != NULL) return true;
   double before = value_at(&search, *indicator, 0.5 * (from + *time));
   instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
   return true;

@@ -10,7 +10,7 @@
 #include "events/search.h"
 
 size_t settlement_value_count(const struct SwitchTable *switches) {
-  return plane_place(switches, switches->plane_count);
+  return sample_place(switches, switches->sample_count, 0);
 }
 
 static size_t rows_of_matrix(void) {

@@ -9,8 +9,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "evaluation/inputs.h"
 #include "evaluation/services.h"
 #include "instance/snapshot.h"
+#include "instance/time_laws.h"
 
 /* What is kept of the last step: with the same step and parameters, its matrix serves again. */
 struct Exact {
@@ -20,6 +22,7 @@ struct Exact {
   /* exp(Z h) = diag(identity) + matrix. The first state_count rows of both, size columns. */
   double *identity, *matrix;
   double *extended, *linear;
+  double *state;           /* at the start of the step */
   double *next, *next_low; /* the state at the end of the step, and what rounding left of it */
   /* Workspace for the exponential, size x size by rows, and size powers of two. */
   long double *generator, *term, *product, *sum;
@@ -57,13 +60,14 @@ static void divide_block(struct Exact *exact, size_t size) {
   exact->extended = exact->matrix + states * size;
   exact->next = exact->extended + size;
   exact->next_low = exact->next + states;
-  exact->linear = exact->next_low + states;
+  exact->state = exact->next_low + states;
+  exact->linear = exact->state + states;
   exact->exponent = (int *)(exact->linear + states * (states + lagrangian.input_count + 1));
 }
 
 static bool create(struct Instance *instance) {
   size_t states = lagrangian.state_count, size = extended_size(1 + INPUT_ORDER);
-  size_t doubles = lagrangian.parameter_count + size + states * (size + states + lagrangian.input_count + 4);
+  size_t doubles = lagrangian.parameter_count + size + states * (size + states + lagrangian.input_count + 5);
   struct Exact *exact = instance->memory.allocate(1, sizeof *exact);
   if (exact != NULL) {
     instance->solver_memory = exact;
@@ -237,19 +241,28 @@ static bool prepare_matrix(struct Instance *instance, struct Exact *exact, doubl
   return exact->step != 0.0;
 }
 
+/* The inputs and their derivatives of orders below count at a time, by orders. */
+static void fill_inputs(const struct Instance *instance, double time, size_t count, double *values) {
+  double coefficient[INPUT_ORDER + 1];
+  static const double factorial[INPUT_ORDER + 1] = {1.0, 1.0, 2.0, 6.0};
+  for (size_t i = 0; i < lagrangian.input_count; i++) {
+    expand_input(instance, i, time, coefficient);
+    for (size_t order = 0; order < count; order++)
+      values[order * lagrangian.input_count + i] = factorial[order] * coefficient[order];
+  }
+}
+
 /*
  * Computes next = exp(Z h) extended from the state, and what rounding takes from that sum. False where it is not finite.
  */
 static bool compute_next(struct Instance *instance, struct Exact *exact, double step) {
-  size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
+  size_t states = lagrangian.state_count;
   if (!prepare_matrix(instance, exact, step)) return false;
   size_t n = extended_size(exact->order);
   const double *low = instance->saved;
-  memcpy(exact->extended, instance->state, states * sizeof(double));
+  memcpy(exact->extended, exact->state, states * sizeof(double));
   exact->extended[states] = 1.0;
-  memcpy(exact->extended + states + 1, instance->input, inputs * sizeof(double));
-  if (exact->order > 1)
-    memcpy(exact->extended + states + 1 + inputs, instance->input_derivatives, INPUT_ORDER * inputs * sizeof(double));
+  fill_inputs(instance, instance->situation->last_step.start, exact->order, exact->extended + states + 1);
   double total = 0.0;
   const double *element = exact->matrix, *extended = exact->extended;
   for (size_t i = 0; i < states; i++) {
@@ -274,15 +287,28 @@ static double longest_step(struct Instance *instance, struct Exact *exact, doubl
   return possible;
 }
 
-/* The whole communication step, or the part of it whose end is finite. */
+static bool restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
+  struct Exact *exact = instance->solver_memory;
+  (void)step;
+  memcpy(exact->state, state, lagrangian.state_count * sizeof *state);
+  memcpy(exact->next, state, lagrangian.state_count * sizeof *state);
+  return true;
+}
+
+/* To the end of the communication step or the next sample, or as far as the state is finite. */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Exact *exact = instance->solver_memory;
   struct Span *span = &instance->situation->last_step;
-  bool is_whole = compute_next(instance, exact, step->length);
-  double possible = is_whole ? step->length : longest_step(instance, exact, step->length);
-  span->end = is_whole ? step->end : span->start + possible;
+  double sample = next_sample(instance, span->end);
+  span->start = span->end;
+  memcpy(exact->state, exact->next, lagrangian.state_count * sizeof(double));
+  bool is_all = span->start == step->start && sample >= step->end;
+  double end = fmin(sample, step->end), length = is_all ? step->length : end - span->start;
+  bool is_whole = compute_next(instance, exact, length);
+  double possible = is_whole ? length : longest_step(instance, exact, length);
+  span->end = is_whole ? end : span->start + possible;
   if (!is_whole && (possible == 0.0 || !compute_next(instance, exact, possible))) {
-    memcpy(exact->next, instance->state, lagrangian.state_count * sizeof(double));
+    memcpy(exact->next, exact->state, lagrangian.state_count * sizeof(double));
     return "the motion grows without bound";
   }
   memcpy(instance->saved, exact->next_low, lagrangian.state_count * sizeof(double));
@@ -293,8 +319,9 @@ static const char *advance(struct Instance *instance, const struct Communication
 /* A step has no states inside: its end is all that advance() computes. */
 static bool interpolate(struct Instance *instance, double time, double *state) {
   const struct Exact *exact = instance->solver_memory;
-  if (time != instance->situation->last_step.end) return false;
-  memcpy(state, exact->next, lagrangian.state_count * sizeof(double));
+  const struct Span *span = &instance->situation->last_step;
+  if (time != span->start && time != span->end) return false;
+  memcpy(state, time == span->end ? exact->next : exact->state, lagrangian.state_count * sizeof(double));
   return true;
 }
 
@@ -305,5 +332,6 @@ const struct Solver solver_exact = {.name = "the matrix exponential",
                                     .could_save = could_save,
                                     .create = create,
                                     .destroy = destroy,
+                                    .restart = restart,
                                     .advance = advance,
                                     .interpolate = interpolate};

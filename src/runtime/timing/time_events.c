@@ -3,21 +3,19 @@
  * t - f(t)/b from any t. Near the zero f(t) is a difference of close numbers, which is exact, and a second step from there
  * gives the number next to -a/b.
  */
-#include <float.h>
+#include "timing/time_events.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "events/settlement.h"
 #include "instance/time_laws.h"
+#include "timing/samples.h"
 
 /* Newton steps: one to the zero, and those that take away the rounding of the way there. */
 enum { ZERO_STEPS = 3 };
 
-/* Relative: how far from an event an importer may be who has come to it. */
-static const double TIME_ROUNDING = 4.0 * DBL_EPSILON;
-
-/* value[] of the switch table at a time. The branches are no function of the accelerations, which are 0 here. */
-static void values_at_time(struct Settlement *settlement, double time) {
+/* With accelerations of 0. */
+void time_events_values(struct Settlement *settlement, double time) {
   struct Point point = instance_point(settlement->instance);
   size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   point.time = time;
@@ -50,13 +48,14 @@ static size_t first_to_turn(const struct Settlement *settlement) {
 static bool find_next_time(struct Instance *instance, double *time) {
   struct Settlement settlement = settlement_of(instance);
   double present = instance->situation->time;
-  values_at_time(&settlement, present);
+  time_events_values(&settlement, present);
   size_t branch = first_to_turn(&settlement);
   if (branch == settlement.switches->branch_count) return false;
-  *time = present;
-  for (int i = 0; i < ZERO_STEPS; i++) {
+  const struct SampleFacts *sample = sample_of(settlement.switches, branch);
+  *time = sample != NULL ? sample_time(instance, sample) : present;
+  for (int i = 0; i < ZERO_STEPS && sample == NULL; i++) {
     *time += time_to_zero(&settlement, branch);
-    values_at_time(&settlement, *time);
+    time_events_values(&settlement, *time);
   }
   *time = fmax(*time, present);
   return isfinite(*time);
@@ -65,10 +64,10 @@ static bool find_next_time(struct Instance *instance, double *time) {
 static bool is_due(struct Instance *instance) {
   struct Settlement settlement = settlement_of(instance);
   double present = instance->situation->time;
-  values_at_time(&settlement, present);
+  time_events_values(&settlement, present);
   size_t branch = first_to_turn(&settlement);
   return branch < settlement.switches->branch_count &&
-         time_to_zero(&settlement, branch) <= TIME_ROUNDING * fabs(present);
+         time_to_zero(&settlement, branch) <= time_rounding * fabs(present);
 }
 
-const struct TimeLaws time_laws = {.next = find_next_time, .is_due = is_due};
+const struct TimeLaws time_laws = {.next = find_next_time, .is_due = is_due, .start = samples_start};

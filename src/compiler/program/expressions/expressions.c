@@ -199,9 +199,13 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
   if (expressions->equations->constraints->count > 0)
     report_error(diagnostics, model->solver.line,
                  "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
-  if (model->switches.contact_count + model->switches.friction_count + model->switches.event_count > 0)
-    report_error(diagnostics, model->solver.line,
-                 "the method 'exact' cannot have events; expected another method for a system that switches");
+  const struct SwitchingExpressions *switching = expressions->equations->switching;
+  size_t samples = switching != NULL ? switching->sample_count : 0;
+  if (switching != NULL && (switching->indicator_count > samples || model->switches.event_count > samples))
+    report_error(
+        diagnostics, model->solver.line,
+        "the method 'exact' cannot have events but those of <sample>; expected another method for a system that "
+        "switches");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
 }
 

@@ -89,6 +89,26 @@ static void add_events(struct SwitchTable *facts, const struct Program *program)
   facts->assignments = assignments;
 }
 
+static size_t branch_with(const struct SwitchingExpressions *switching, Node mode) {
+  size_t branch = 0;
+  while (switching->branches[branch]->mode != mode) branch++;
+  return branch;
+}
+
+static const struct SampleFacts *samples_of(const struct Program *program) {
+  const struct SwitchingExpressions *switching = program->equations->switching;
+  const struct Switches *switches = &program->model->switches;
+  struct SampleFacts *facts = allocate(switching->sample_count, sizeof *facts);
+  size_t count = 0;
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct Sample *sample = &switches->events[i].sample;
+    if (switches->events[i].passage != PASSAGE_SAMPLES) continue;
+    facts[count++] = (struct SampleFacts){i, branch_with(switching, sample->branch), mode_index(program, sample->base),
+                                          mode_index(program, sample->count), mode_index(program, sample->period)};
+  }
+  return facts;
+}
+
 struct SwitchTable switch_facts_of(const struct Program *program) {
   const struct SwitchingExpressions *switching = program->equations->switching;
   const struct Switches *switches = &program->model->switches;
@@ -105,12 +125,14 @@ struct SwitchTable switch_facts_of(const struct Program *program) {
                               .has_sides = switching->has_sides,
                               .rests_on = switching->rests,
                               .timed = switching->timed,
-                              .timed_count = switching->timed_count};
+                              .timed_count = switching->timed_count,
+                              .sample_count = switching->sample_count};
   if (facts.branch_count > 0) facts.branches = branches_of(program);
   if (facts.contact_count > 0) facts.contacts = contacts_of(program);
   if (facts.friction_count > 0) facts.frictions = frictions_of(program);
   if (has_planes(switches)) add_planes(&facts, program);
   if (facts.event_count > 0) add_events(&facts, program);
+  if (facts.sample_count > 0) facts.samples = samples_of(program);
   if (program->watched_series != NULL) {
     facts.watched_rows = program->watched_series->row_count;
     facts.watched_acceleration_row = program->watched_series->acceleration_row;

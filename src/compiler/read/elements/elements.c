@@ -350,6 +350,7 @@ static const struct Element elements[] = {
     {"particle", number_body, collect_components, read_body, NULL, false},
     {"point", NULL, collect_components, read_body, NULL, false},
     {"potential", NULL, NULL, NULL, read_potential, false},
+    {"sample", NULL, NULL, NULL, read_sample, false},
     {"shape", declare_shape, NULL, place_shape, NULL, false},
     {"solver", read_solver, NULL, NULL, NULL, true},
     {"spring", NULL, collect_spring, NULL, read_spring, false},

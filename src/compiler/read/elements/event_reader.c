@@ -1,7 +1,8 @@
-/* <event> and <set>. */
+/* <event>, <sample> and <set>. */
 #include <string.h>
 
 #include "algebra/cone.h"
+#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/elements/switching_reader.h"
 #include "read/expressions/comparisons.h"
@@ -41,20 +42,46 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
     report_at(reader, node, "<set> of '%s', which is driven; expected another one", target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
     if (event->assignments[i].symbol == symbol)
-      report_at(reader, node, "a second <set> of '%s' in one <event>; expected one", target->name);
+      report_at(reader, node, "a second <set> of '%s' in one <%s>; expected one", target->name,
+                (const char *)node->parent->name);
+}
+
+static void append_assignment(struct Event *event, Node symbol, Node value) {
+  event->assignments = make_room(event->assignments, event->assignment_count, sizeof *event->assignments);
+  event->assignments[event->assignment_count++] = (struct Assignment){symbol, value};
 }
 
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   Node symbol = target_of(reader, node);
-  struct Quantity value = expression_text_of(reader, node, "the value of <set>", IN_EVENT);
+  bool is_of_sample = event->passage == PASSAGE_SAMPLES; /* whose values no event waits for */
+  struct Quantity value =
+      (is_of_sample ? whole_expression_of : expression_text_of)(reader, node, "the value of <set>", IN_EVENT);
   if (symbol == ZERO || reader->diagnostics->errors > 0) return;
   check_target(reader, node, event, symbol);
   const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
   const struct Quantity *target = scope_find(reader->scope, name);
   if (target != NULL && target->dimension.known)
     require_unit(reader, line_of(node), "the value of <set>", value, target->dimension);
-  event->assignments = make_room(event->assignments, event->assignment_count, sizeof *event->assignments);
-  event->assignments[event->assignment_count++] = (struct Assignment){symbol, value.node};
+  append_assignment(event, symbol, value.node);
+}
+
+static bool is_boolean_parameter(const struct Reader *reader, Node node) {
+  const struct Graph *graph = reader->model->graph;
+  if (graph->vertices[node].operation != SYMBOL) return false;
+  const struct Symbol *symbol = graph_symbol_of(graph, node);
+  return symbol->kind == PARAMETER && reader->model->parameters.items[symbol->index].type == TYPE_BOOLEAN;
+}
+
+/*
+ * A condition as a function of modes alone, so that an event knows whether it held before a parameter was set. One that modes and
+ * parameters decide on together is the branch of a number that is 1/2 where it holds, else -1/2.
+ */
+static Node condition_of_modes(struct Reader *reader, Node value, long line) {
+  struct Graph *graph = reader->model->graph;
+  if (!graph_depends_on(graph, value, PARAMETER)) return value;
+  if (!graph_depends_on(graph, value, MODE)) return tuned_condition(reader->scope, value, line);
+  Node holds = function(graph, GATE, value, ONE), half = graph_constant(graph, 0.5);
+  return tuned_condition(reader->scope, subtract(graph, holds, half), line);
 }
 
 /* A condition that comes to hold, or an expression that passes 0 in a direction. */
@@ -63,9 +90,9 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
   char *direction = attribute(node, "direction");
   Node value;
-  if (parse_when(reader->scope, attribute_in_lines(node, "when"), place, &value)) {
-    bool is_tuned = graph_is_constant_in_time(graph, value) && rests_on_parameters(graph, value);
-    event->condition = is_tuned ? tuned_condition(reader->scope, value, place.line) : value;
+  bool is_given = parse_when(reader->scope, attribute_in_lines(node, "when"), place, &value);
+  if (is_given || is_boolean_parameter(reader, value)) {
+    event->condition = condition_of_modes(reader, value, place.line);
     if (direction != NULL)
       report_at(reader, node,
                 "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
@@ -73,6 +100,8 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   } else if (value != ZERO) {
     event->condition = side_of(reader->scope, value, place.line);
     event->side = new_mode(reader, "side", when);
+    event->expression = value;
+    event->line = scope_line(reader->scope, place.line);
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;
     bool is_both = direction != NULL && strcmp(direction, "both") == 0;
     event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
@@ -102,6 +131,10 @@ static void collect_event(const struct Reader *reader, const struct Event *event
   }
 }
 
+static const char *words_for(const struct Event *event) {
+  return event->passage == PASSAGE_SAMPLES ? "a <sample>" : "an <event>";
+}
+
 /* Of accelerations, an event may look at the forces of contacts, frictions and constraints alone. */
 static void check_forces(const struct Reader *reader, struct Event *event, long line) {
   const struct Model *model = reader->model;
@@ -114,23 +147,72 @@ static void check_forces(const struct Reader *reader, struct Event *event, long 
   for (size_t i = 0; i < model->coordinates.count; i++)
     if (cone_has(model->graph->cone, model->unknowns.accelerations[i]))
       report_error(reader->diagnostics, line,
-                   "an <event> cannot depend on accelerations, but this one does on '%s'; expected velocities, or the "
+                   "%s cannot depend on accelerations, but this one does on '%s'; expected velocities, or the "
                    "force of a contact, a friction or a constraint such as ground.force",
-                   graph_symbol_of(model->graph, model->unknowns.accelerations[i])->name);
+                   words_for(event), graph_symbol_of(model->graph, model->unknowns.accelerations[i])->name);
+}
+
+/* What an event or a sample sets. */
+static void read_assignments(struct Reader *reader, xmlNodePtr node, struct Event *event) {
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, event);
+  if (event->assignment_count == 0 && reader->diagnostics->errors == 0)
+    report_at(reader, node, "%s that changes nothing; expected a <set>", words_for(event));
+  if (reader->diagnostics->errors == 0) check_forces(reader, event, line_of(node));
+}
+
+static void append_event(struct Reader *reader, const struct Event *event) {
+  struct Switches *switches = &reader->model->switches;
+  switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);
+  switches->events[switches->event_count++] = *event;
 }
 
 void read_event(struct Reader *reader, xmlNodePtr node) {
-  struct Switches *switches = &reader->model->switches;
-  char *when = attribute(node, "when");
-  if (when == NULL) return;
-  struct Event event = {.passage = PASSAGE_HOLDS};
-  read_condition(reader, node, when, &event);
-  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
-    if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, &event);
-  if (event.assignment_count == 0 && reader->diagnostics->errors == 0)
-    report_at(reader, node, "an <event> that changes nothing; expected a <set>");
-  if (reader->diagnostics->errors == 0) check_forces(reader, &event, line_of(node));
-  event.text = when;
-  switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);
-  switches->events[switches->event_count++] = event;
+  struct Event event = {.passage = PASSAGE_HOLDS, .text = attribute(node, "when")};
+  if (event.text == NULL) return;
+  read_condition(reader, node, event.text, &event);
+  read_assignments(reader, node, &event);
+  append_event(reader, &event);
+}
+
+/* A time in an attribute, of parameters and modes. */
+static Node read_time(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Quantity time = {.node = ZERO};
+  if (expression_attribute(reader, node, name, KIND(PARAMETER) | KIND(MODE), &time))
+    require_unit(reader, line_of_attribute(node, name), name, time, unit_of("s"));
+  return time.node;
+}
+
+/*
+ * The sample at base + count period counts on. Where the period was set anew since the last one, this one becomes the base, from
+ * which the new period counts.
+ */
+static void count_on(struct Graph *graph, struct Event *event) {
+  const struct Sample *sample = &event->sample;
+  Node present = add(graph, sample->base, multiply(graph, sample->count, sample->period));
+  Node change = function(graph, ABSOLUTE, subtract(graph, sample->every, sample->period), ZERO);
+  append_assignment(event, sample->base, choose_node(graph, change, present, sample->base));
+  append_assignment(event, sample->count, choose_node(graph, change, ONE, add(graph, sample->count, ONE)));
+  append_assignment(event, sample->period, sample->every);
+}
+
+void read_sample(struct Reader *reader, xmlNodePtr node) {
+  struct Graph *graph = reader->model->graph;
+  struct Event event = {
+      .passage = PASSAGE_SAMPLES, .text = attribute(node, "every"), .line = scope_line(reader->scope, line_of(node))};
+  if (event.text == NULL) return;
+  struct Sample *sample = &event.sample;
+  sample->every = read_time(reader, node, "every");
+  sample->offset = read_time(reader, node, "offset");
+  expect_size(reader, node, "every of <sample>", sample->every);
+  sample->base = new_mode(reader, "sample", "base");
+  sample->count = new_mode(reader, "sample", "count");
+  sample->period = new_mode(reader, "sample", "period");
+  Node next = add(graph, sample->base, multiply(graph, sample->count, sample->period));
+  Node left = subtract(graph, next, scope_find(reader->scope, "time")->node);
+  sample->branch = tuned_condition(reader->scope, left, line_of(node));
+  event.condition = subtract(graph, ONE, function(graph, GATE, sample->branch, ONE));
+  read_assignments(reader, node, &event);
+  count_on(graph, &event);
+  append_event(reader, &event);
 }

@@ -1,4 +1,4 @@
-/* <mode>, <event>, <stop>, <contact> and <friction>: what switches a system. */
+/* <mode>, <event>, <sample>, <stop>, <contact> and <friction>: what switches a system. */
 #pragma once
 
 #include "read/context/attributes.h"
@@ -27,6 +27,7 @@ void read_friction(struct Reader *reader, xmlNodePtr node);
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit);
 
 void read_event(struct Reader *reader, xmlNodePtr node);
+void read_sample(struct Reader *reader, xmlNodePtr node);
 
 /* After all expressions: what decides on branches has the displacements at 0; reports what turns just there. */
 void undisplace_branches(struct Reader *reader);

@@ -19,6 +19,27 @@ static bool accept_word(struct Parser *parser, const char *word) {
   return true;
 }
 
+static bool is_of_word(char letter) {
+  return isalnum((unsigned char)letter) || letter == '_';
+}
+
+/* Whether a word that joins conditions stands at a position behind the character before it. */
+static bool is_connective(char before, const char *text) {
+  static const char *const words[] = {"and", "or", "not"};
+  for (size_t i = 0; i < sizeof words / sizeof *words && !is_of_word(before) && before != '.'; i++) {
+    size_t length = strlen(words[i]);
+    if (strncmp(text, words[i], length) == 0 && !is_of_word(text[length])) return true;
+  }
+  return false;
+}
+
+bool is_condition(const char *text) {
+  char before = ' ';
+  for (; *text != '\0'; before = *text++)
+    if (*text == '<' || *text == '>' || is_connective(before, text)) return true;
+  return false;
+}
+
 static enum Comparison parse_comparison(struct Parser *parser) {
   bool is_more = accept_character(parser, '>'), is_less = !is_more && accept_character(parser, '<');
   bool or_equal = (is_more || is_less) && *parser->next == '=';
@@ -67,7 +88,7 @@ static bool is_group(const struct Parser *parser) {
   bool compares = false;
   do {
     depth += (*next == '(') - (*next == ')');
-    compares |= *next == '<' || *next == '>';
+    compares |= *next == '<' || *next == '>' || (*next != '(' && is_connective(next[-1], next));
     next++;
   } while (*next != '\0' && depth > 0);
   while (isspace((unsigned char)*next)) next++;

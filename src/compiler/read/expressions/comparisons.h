@@ -9,6 +9,9 @@
 /* A node that is constant between events, and positive where the condition holds. */
 Node parse_condition(struct Parser *parser);
 
+/* True if a text holds a comparison, or a word that joins conditions. */
+bool is_condition(const char *text);
+
 /*
  * Reads what an event waits for. True for a condition, see parse_condition(); false for an expression, or after reporting
  * an error, when it is ZERO.

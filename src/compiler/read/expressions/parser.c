@@ -472,7 +472,7 @@ static struct Quantity condition_as_quantity(struct Parser *parser) {
 }
 
 bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value) {
-  bool compares = strpbrk(text, "<>") != NULL;
+  bool compares = is_condition(text);
   struct Quantity quantity;
   bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
   *value = is_right ? quantity.node : ZERO;

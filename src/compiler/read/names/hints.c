@@ -104,6 +104,8 @@ static const struct Hint of_elements[] = {
     {"impact", "write <contact gap=\"...\" restitution=\"...\"/>"},
     {"limit", "write <stop coordinate=\"...\" min=\"...\" max=\"...\"/>"},
     {"when", "write <event when=\"...\"> with <set> in it"},
+    {"clock", "write <sample every=\"...\"> with <set> in it"},
+    {"sampler", "write <sample every=\"...\"> with <set> in it"},
     {"integrator", "write <state name=\"z\" rate=\"...\"/>"},
     {"filter", "write <state name=\"z\" rate=\"(u - z)/T\"/>"},
 };

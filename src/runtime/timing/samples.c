@@ -1,0 +1,33 @@
+#include "timing/samples.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "events/settlement.h"
+#include "instance/time_laws.h"
+#include "timing/time_events.h"
+
+/* The number of the first sample from a time on: the quotient alone may be off by the rounding of its division. */
+static double first_count(double time, double offset, double period) {
+  double count = fmax(0.0, floor((time - offset) / period));
+  double latest = time - time_rounding * fabs(time);
+  while (offset + count * period < latest) count += 1.0;
+  return count;
+}
+
+/* A period that is no positive number is refused as the simulation starts, see conditions.c; the sample is then at the start. */
+void samples_start(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Settlement settlement = settlement_of(instance);
+  double time = instance->situation->time;
+  time_events_values(&settlement, time);
+  for (size_t i = 0; i < switches->sample_count; i++) {
+    const struct SampleFacts *sample = &switches->samples[i];
+    double period = settlement.value[sample_place(switches, i, SAMPLE_EVERY)];
+    double offset = settlement.value[sample_place(switches, i, SAMPLE_OFFSET)];
+    bool is_right = period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time;
+    instance->parameter[sample->base] = is_right ? offset : time;
+    instance->parameter[sample->count] = is_right ? first_count(time, offset, period) : 0.0;
+    instance->parameter[sample->period] = is_right ? period : 0.0;
+  }
+}
