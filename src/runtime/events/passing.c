@@ -290,7 +290,7 @@ static const char *refuse_gathering(struct Instance *instance, const struct Comm
 static bool ends_at_sample(const struct Instance *instance, double end, size_t *branch) {
   for (size_t i = 0; i < lagrangian.switches->sample_count; i++) {
     *branch = lagrangian.switches->samples[i].branch;
-    if (fabs(sample_time(instance, &lagrangian.switches->samples[i]) - end) <= time_rounding * fabs(end)) return true;
+    if (fabs(sample_time(instance, &lagrangian.switches->samples[i]) - end) <= rounding_of_time(end)) return true;
   }
   return false;
 }

@@ -7,8 +7,10 @@
 
 #include "instance/instance.h"
 
-/* Relative: how far from an event a time may be that is meant to be its time. */
-static const double time_rounding = 4.0 * DBL_EPSILON;
+/* In s: how far from an event at this time another one may be that is meant to be the same. */
+static inline double rounding_of_time(double time) {
+  return 4.0 * DBL_EPSILON * fabs(time);
+}
 
 struct TimeLaws {
   /* Finds the next time, from that of the situation on, at which time alone turns a branch. False for none. */

@@ -10,7 +10,7 @@
 /* The number of the first sample from a time on: the quotient alone may be off by the rounding of its division. */
 static double first_count(double time, double offset, double period) {
   double count = fmax(0.0, floor((time - offset) / period));
-  double latest = time - time_rounding * fabs(time);
+  double latest = time - rounding_of_time(time);
   while (offset + count * period < latest) count += 1.0;
   return count;
 }

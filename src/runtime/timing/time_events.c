@@ -66,8 +66,7 @@ static bool is_due(struct Instance *instance) {
   double present = instance->situation->time;
   time_events_values(&settlement, present);
   size_t branch = first_to_turn(&settlement);
-  return branch < settlement.switches->branch_count &&
-         time_to_zero(&settlement, branch) <= time_rounding * fabs(present);
+  return branch < settlement.switches->branch_count && time_to_zero(&settlement, branch) <= rounding_of_time(present);
 }
 
 const struct TimeLaws time_laws = {.next = find_next_time, .is_due = is_due, .start = samples_start};
