@@ -26,7 +26,7 @@ REFUSED = {
     "WrongSide": ('<constraint name="C">y - 0.5</constraint><friction name="F" coordinate="x" force="0.3*C.force"/><force coordinate="x">4</force>'
                   + WEIGHT.format("y"), "the force of the friction 'F' is -2.943"),
     "TornApart": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set></event>',
-                  "an event sets coordinates so that the constraints do not hold"),
+                  "an event sets coordinates so that the constraint 'C' does not hold"),
     "Sunk": ('<contact name="g" gap="x"/><event when="time &gt; 1"><set coordinate="x">-1</set></event>', "the contact 'g' is penetrated at an event"),
     "Climbing": ('<potential>if(x &lt; 0.5, 1, 0)</potential><force coordinate="x">-1</force>',
                  r"a condition, line \d+ of system.xml, jumps there in an energy or a position"),
@@ -36,7 +36,7 @@ REFUSED = {
     # The momentum along y would have to stay, and by the coordinates it does not.
     "Corner": ('<particle mass="1" x="x" y="abs(x - 0.5) + y"/><force coordinate="x">-1</force>', "abs, line .* jumps there in an energy"),
     "Grabbed": ('<mode name="on"/><constraint name="C">if(on, v - w, 0)</constraint><force coordinate="x">-1</force>'
-                '<event when="time &gt; 0.4"><set mode="on">1</set></event>', "an event sets modes so that the constraints do not hold"),
+                '<event when="time &gt; 0.4"><set mode="on">1</set></event>', "an event sets modes so that the constraint 'C' does not hold"),
     "ToAndFro": ('<force coordinate="x">-sign(x + v*abs(v)/2)</force><solver maxSteps="5000"/>',
                  r"there were \d+ events in the step, the last of (abs|sign), line \d+"),
     "DryBySign": ('<force coordinate="x">1 - 3*sign(v - 0.2)</force>', r"sign, line \d+ of system.xml, jumps back and forth there"),

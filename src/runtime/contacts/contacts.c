@@ -143,6 +143,17 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   return done && let_stopped_head(settlement);
 }
 
+/* Singular equations name no contact by themselves; other reasons were logged with theirs. */
+static const char *refuse_singular_impact(const struct Settlement *settlement, size_t contact) {
+  if (settlement->instance->singular != 0)
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the contact '%s' cannot take an impact, as the equations of motion are singular while all that "
+        "touch are open; expected masses for all that moves without contacts",
+        settlement->time, settlement->switches->contacts[contact].name);
+  return no_impact;
+}
+
 /* Whether an open contact that touches would come back at once. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
@@ -427,7 +438,7 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   bool hits = contact<switches->contact_count, is_tried = settlement->impacts> IMPACT_LIMIT;
   if (hits && is_tried && closes_clearly(settlement, contact))
     return contact_forces_refuse_crushed(settlement, contact);
-  if (hits && !is_tried) return take_impact(settlement, contact) ? NULL : no_impact;
+  if (hits && !is_tried) return take_impact(settlement, contact) ? NULL : refuse_singular_impact(settlement, contact);
   if (close_contacts(settlement)) return let_rest(settlement);
   bool lifts;
   if (!lift(settlement, &lifts)) return refuse_rest(settlement);

@@ -21,6 +21,14 @@ const char *evaluate_kind(size_t constraint) {
   return "constraint";
 }
 
+void log_unkept(const struct Instance *instance, enum Status status, double time, size_t constraint) {
+  log_message(
+      instance, status,
+      "time %g: the %s '%s' cannot be kept there with the others; expected constraints that agree as the motion "
+      "goes on, and have no jumps, or other start values or parameters",
+      time, evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
+}
+
 void log_singularity(const struct Instance *instance, enum Status status, double time) {
   if (instance->singular == 0) {
     log_message(

@@ -31,6 +31,9 @@ const char *evaluate_name(enum VariableKind kind, size_t index);
 /* The element that a constraint is of, in messages: "constraint", "contact" or "friction". */
 const char *evaluate_kind(size_t constraint);
 
+/* Says that a constraint cannot be kept with the others. */
+void log_unkept(const struct Instance *instance, enum Status status, double time, size_t constraint);
+
 /* What prepare() makes of the parameters, brought up to date. Discards after logging a singular matrix. */
 enum Status evaluate_prepare(struct Instance *instance);
 

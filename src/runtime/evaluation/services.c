@@ -94,7 +94,9 @@ const char *solver_project(struct Instance *instance, double time, double *state
   static const char problem[] = "a constraint cannot be kept there";
   if (!solver_is_held(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
-  return moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10) ? NULL : problem;
+  bool is_kept = moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10);
+  instance->unkept = is_kept ? 0 : 1 + lagrangian.constraints.projection->unkept(instance, time);
+  return is_kept ? NULL : problem;
 }
 
 void solver_free_memory(struct Instance *instance) {

@@ -17,8 +17,12 @@ const char *continuity_begin(struct Settlement *settlement) {
   bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
   if (lagrangian.constraints.projection == NULL || !can_matter) return NULL;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return constraints_not_kept;
-  double moved = lagrangian.constraints.projection->project(settlement->instance, settlement->time, settlement->state);
-  return isfinite(moved) ? NULL : constraints_not_kept;
+  const struct Projection *laws = lagrangian.constraints.projection;
+  double moved = laws->project(settlement->instance, settlement->time, settlement->state);
+  if (isfinite(moved)) return NULL;
+  log_unkept(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+             settlement->time, laws->unkept(settlement->instance, settlement->time));
+  return constraints_not_kept;
 }
 
 void continuity_note(struct Settlement *settlement, size_t branch) {
@@ -128,17 +132,19 @@ static const char *check_constraints(struct Settlement *settlement) {
                         : lagrangian.constraints.projection->project(instance, settlement->time, settlement->state);
   if (moved <= continuity_allowed_share(settlement)) return NULL;
   enum Status status = starts || settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
+  size_t unkept = lagrangian.constraints.projection->unkept(instance, settlement->time);
+  const char *name = lagrangian.constraints.names[unkept];
   if (settlement->set_mode || settlement->moved)
     log_message(instance, status,
-                "time %g: an event sets %s so that the constraints do not hold; expected values of <set> for all "
-                "coordinates and velocities that they move, which fulfil them",
-                settlement->time, settlement->moved ? "coordinates" : "modes");
+                "time %g: an event sets %s so that the %s '%s' does not hold; expected values of <set> for all "
+                "coordinates and velocities that it moves, which fulfil it",
+                settlement->time, settlement->moved ? "coordinates" : "modes", evaluate_kind(unkept), name);
   else if (!continuity_explain_corner(settlement, (size_t)(settlement->switched - settlement->switches->branches)))
     log_message(instance, status,
-                "time %g: %s, line %ld of %s, turns or jumps there in a constraint, and positions or velocities would "
+                "time %g: %s, line %ld of %s, turns or jumps there in the %s '%s', and positions or velocities would "
                 "have to jump with it; expected one without kinks",
                 settlement->time, settlement->switched->function, settlement->switched->line,
-                settlement->switched->file);
+                settlement->switched->file, evaluate_kind(unkept), name);
   return constraints_not_kept;
 }
 

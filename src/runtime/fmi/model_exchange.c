@@ -131,8 +131,11 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, instance->state);
-  if (!isfinite(moved))
-    return log_error(instance, "time %g: the constraints cannot be fulfilled here", instance->situation->time);
+  if (!isfinite(moved)) {
+    double time = instance->situation->time;
+    log_unkept(instance, STATUS_ERROR, time, lagrangian.constraints.projection->unkept(instance, time));
+    return log_error(instance, "time %g: the constraints cannot be fulfilled here", time);
+  }
   *states_changed |= moved > 0.0;
   return STATUS_DONE;
 }

@@ -95,6 +95,7 @@ struct Instance {
   bool told_other_impulses;   /* that an impact has other outcomes, since the last reset */
   uint64_t told_singularity;  /* the checksum of the situation whose lack of accelerations was logged last */
   int singular;               /* 1 + the coordinate in which the mass matrix was found singular last, 0 for none */
+  size_t unkept;              /* 1 + the constraint that kept the last projection from success; 0 for none */
   const char *limited_by;     /* the elementary function that shortened the solver's last step; NULL for none */
   double *work;               /* 3 state_count + 2 input_count + parameter_count, for evaluations */
   double *point_work;         /* lagrangian.work_count, for generated functions */

@@ -23,6 +23,8 @@ struct Projection {
    * discards the step why the constraints cannot be fulfilled; the state is then as it was.
    */
   bool (*follow_change)(struct Instance *instance);
+  /* The constraint that lacks most of those that the last project() or drift() at this time could not keep, or not by a small move. */
+  size_t (*unkept)(struct Instance *instance, double time);
   /* The name of the constraint that has least hold on a state, as at the limit of a mechanism; NULL where unknown. */
   const char *(*weakest)(struct Instance *instance, double time, const double *state);
 };
@@ -32,7 +34,7 @@ extern const struct Projection projection;
 /* Numbers of workspace that an instance needs for it. */
 static inline size_t projection_work_count(void) {
   if (lagrangian.constraints.projection == NULL) return 0;
-  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 2 * lagrangian.state_count +
+  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count +
          indicator_count(lagrangian.switches);
 }
 

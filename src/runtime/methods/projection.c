@@ -32,6 +32,7 @@ struct Work {
   double *lack, *pivot, *slope; /* of each constraint */
   double *moved;                /* state_count: the coordinates so far */
   double *before;               /* state_count */
+  double *start;                /* state_count: from where project() moves a state */
   double *first_slope;          /* of each constraint */
   double *rounding;             /* what rounding may make of what each indicator looks at */
 };
@@ -43,7 +44,8 @@ static struct Work work_of(const struct Instance *instance) {
   work.slope = work.pivot + lagrangian.constraints.count;
   work.moved = work.slope + lagrangian.constraints.count;
   work.before = work.moved + lagrangian.state_count;
-  work.first_slope = work.before + lagrangian.state_count;
+  work.start = work.before + lagrangian.state_count;
+  work.first_slope = work.start + lagrangian.state_count;
   work.rounding = work.first_slope + lagrangian.constraints.count;
   return work;
 }
@@ -144,6 +146,7 @@ static bool holds_velocities_alone(void) {
 static double project(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = INFINITY, before;
+  memcpy(work.start, state, lagrangian.state_count * sizeof *state);
   if (holds_velocities_alone()) return project_velocities(instance, time, state);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
@@ -192,6 +195,20 @@ static size_t find_lacking(const struct Work *work, const double *state, size_t 
     }
   }
   return worst;
+}
+
+/* What is left behind it counts first, and then what was lacking before. */
+static size_t unkept(struct Instance *instance, double time) {
+  struct Work work = work_of(instance);
+  int singular = instance->singular;
+  size_t found = find_lacking(&work, work.start, 0);
+  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  if (found == lagrangian.constraints.count && evaluate_lack(instance, time, work.start, POSITIONS))
+    found = find_lacking(&work, work.start, 0);
+  if (found == lagrangian.constraints.count && evaluate_lack(instance, time, work.start, VELOCITIES))
+    found = find_lacking(&work, work.start, lagrangian.coordinate_count);
+  instance->singular = singular;
+  return found < lagrangian.constraints.count ? found : 0;
 }
 
 /*
@@ -411,4 +428,5 @@ const struct Projection projection = {.project = project,
                                       .drift = drift,
                                       .make_consistent = make_consistent,
                                       .follow_change = follow_change,
+                                      .unkept = unkept,
                                       .weakest = weakest};

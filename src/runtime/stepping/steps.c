@@ -185,12 +185,14 @@ static void log_stop(const struct Instance *instance, const struct Communication
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                             bool ends_at_event, double reached) {
   const struct EventLaws *laws = lagrangian.event_laws;
+  size_t unkept = instance->unkept;
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* Where the constraints fail, the state is that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   bool is_explained = ends_at_event || (laws != NULL && laws->explain_stop(instance, reached));
+  if (!is_explained && unkept > 0) log_unkept(instance, STATUS_DISCARD, reached, unkept - 1);
   if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
   instance->situation->changed = CHANGED_VALUES;
@@ -294,6 +296,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
   guides_begin_step(instance);
+  instance->unkept = 0;
   struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
   enum StepResult result = run(instance, &step, &reached);
