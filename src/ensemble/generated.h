@@ -20,6 +20,7 @@
 #define atanh(x) lanes_atanh(LANES_OF(x))
 #define exp(x) lanes_exp(LANES_OF(x))
 #define log(x) lanes_log(LANES_OF(x))
+#define floor(x) lanes_floor(LANES_OF(x))
 #define fabs(x) lanes_absolute(LANES_OF(x))
 #define pow(x, y) lanes_pow(LANES_OF(x), LANES_OF(y))
 #define atan2(y, x) lanes_atan2(LANES_OF(y), LANES_OF(x))

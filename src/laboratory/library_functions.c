@@ -7,9 +7,10 @@
 static const struct {
   const char *name;
   FunctionOfOne *function;
-} functions_of_one[] = {{"sin", sin},   {"cos", cos},     {"tan", tan},     {"asin", asin}, {"acos", acos},
-                        {"atan", atan}, {"sinh", sinh},   {"cosh", cosh},   {"tanh", tanh}, {"asinh", asinh},
-                        {"exp", exp},   {"acosh", acosh}, {"atanh", atanh}, {"fabs", fabs}, {"log", log}};
+} functions_of_one[] = {{"sin", sin},     {"cos", cos},     {"tan", tan},   {"asin", asin},
+                        {"acos", acos},   {"atan", atan},   {"sinh", sinh}, {"cosh", cosh},
+                        {"tanh", tanh},   {"asinh", asinh}, {"exp", exp},   {"acosh", acosh},
+                        {"atanh", atanh}, {"fabs", fabs},   {"log", log},   {"floor", floor}};
 
 static const struct {
   const char *name;

@@ -337,7 +337,7 @@ def rows(title):
     """Pairs of (line, message) of a table."""
     part = REFERENCE[REFERENCE.index(title) :]
     table = re.search(r"\| line \| message \|\n.*?\n((?:\|.*\n)+)", part).group(1)
-    return re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)
+    return [(line.replace("\\|", "|"), said.replace("\\|", "|")) for line, said in re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)]
 
 
 def compile_with(line, folder):

@@ -351,4 +351,6 @@ const struct Function functions[OPERATION_COUNT] = {
               .auxiliary = operand,
               .has_pieces = true,
               .auxiliary_limit = "sign"},
+    [FLOOR] =
+        {.name = "floor", .is_internal = true, .of_one = floor, .recurrence = PIECEWISE_CONSTANT, .auxiliary = operand},
 };

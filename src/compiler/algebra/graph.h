@@ -39,6 +39,7 @@ enum Operation {
   LOGARITHM,
   ABSOLUTE,
   SIGN,
+  FLOOR,
   OPERATION_COUNT
 };
 

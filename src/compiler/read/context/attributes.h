@@ -73,8 +73,8 @@ enum {
   WITH_RATES = 1 << 30, /* of the inputs, which must be there: what depends on them is moved */
   IN_POSITION = IN_INERTIA | KIND(INPUT) | WITH_RATES,
   IN_ENERGY = IN_POSITION | KIND(VELOCITY),
-  IN_CONSTRAINT =
-      KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT) | WITH_RATES,
+  /* which derivatives of inputs it needs depends on whether it is one of velocities: see constraint_checks.h */
+  IN_CONSTRAINT = KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(VELOCITY) | KIND(INPUT),
   IN_POTENTIAL = IN_ENERGY | KIND(STATE),
   IN_FORCE = IN_INERTIA | KIND(VELOCITY) | KIND(STATE) | KIND(INPUT),
   IN_RATE = (IN_FORCE | KIND(ACCELERATION) | KIND(REACTION)) & ~KIND(DISPLACEMENT),

@@ -35,6 +35,7 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
                  "the constraint '%s' needs the %s derivative of '%s'; expected %s", constraint->name,
                  needed == 1 ? "time" : "second", model->inputs.items[input].name,
                  is_input_rate(model, input) ? "the <input> itself in place of its derivative"
+                 : needed == 1               ? "derivatives=\"1\" of this <input>"
                                              : "derivatives=\"2\" of this <input>");
   }
 }

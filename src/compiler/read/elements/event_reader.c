@@ -54,8 +54,8 @@ static void append_assignment(struct Event *event, Node symbol, Node value) {
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   Node symbol = target_of(reader, node);
   bool is_of_sample = event->passage == PASSAGE_SAMPLES; /* whose values no event waits for */
-  struct Quantity value =
-      (is_of_sample ? whole_expression_of : expression_text_of)(reader, node, "the value of <set>", IN_EVENT);
+  struct Quantity value = (is_of_sample ? whole_expression_of : expression_text_of)(reader, node, "the value of <set>",
+                                                                                    IN_EVENT | AT_INSTANT);
   if (symbol == ZERO || reader->diagnostics->errors > 0) return;
   check_target(reader, node, event, symbol);
   const char *name = graph_symbol_of(reader->model->graph, symbol)->name;

@@ -308,6 +308,30 @@ static const struct Table *find_table(const struct Parser *parser, const char *n
   return table;
 }
 
+/* One or two arguments up to the closing parenthesis. */
+static void parse_operands(struct Parser *parser, const char *name, int arity, struct Quantity *a, struct Quantity *b) {
+  *a = parse_sum(parser);
+  *b = nothing;
+  if (arity == 2) {
+    expect_character(parser, ',', format_text("between the two arguments of %s", name));
+    if (!parser->failed) *b = parse_sum(parser);
+  }
+  expect_character(parser, ')', format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name));
+}
+
+static bool is_rounding(const char *name) {
+  static const char *const names[] = {"floor", "ceil", "round", "mod"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strcmp(name, names[i]) == 0) return true;
+  return false;
+}
+
+static struct Quantity parse_rounding(struct Parser *parser, const char *name) {
+  struct Quantity a, b;
+  parse_operands(parser, name, strcmp(name, "mod") == 0 ? 2 : 1, &a, &b);
+  return parser->failed ? nothing : quantity_rounded(parser, name, a, b);
+}
+
 static struct NamedFunction *find_named_function(const struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   struct NamedFunction *named = function_named(parser->scope, full_name);
@@ -325,6 +349,7 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (strcmp(name, "diff") == 0) return parse_partial_derivative(parser);
   if (strcmp(name, "integral") == 0) return parse_integral(parser);
   if (strcmp(name, "if") == 0) return parse_choice(parser);
+  if (is_rounding(name)) return parse_rounding(parser, name);
   if (is_function_of_vectors(name)) return parse_function_of_vectors(parser, name);
   bool is_root = strcmp(name, "sqrt") == 0;
   enum Operation operation = is_root ? POWER : find_function(name);
@@ -332,13 +357,8 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
     report_unknown_function(parser, name);
     return nothing;
   }
-  int arity = is_root ? 1 : operation_arity(operation);
-  struct Quantity a = parse_sum(parser), b = nothing;
-  if (arity == 2) {
-    expect_character(parser, ',', format_text("between the two arguments of %s", name));
-    if (!parser->failed) b = parse_sum(parser);
-  }
-  expect_character(parser, ')', format_text("after the %s of %s", arity == 1 ? "argument" : "two arguments", name));
+  struct Quantity a, b;
+  parse_operands(parser, name, is_root ? 1 : operation_arity(operation), &a, &b);
   if (parser->failed) return nothing;
   if (is_root) b = (struct Quantity){.node = graph_constant(parser->graph, 0.5), .dimension = dimension_one};
   return operation == POWER ? quantity_power(parser, a, b) : quantity_function(parser, operation, a, b);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
@@ -143,6 +144,31 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
   if (functions[operation].units != UNIT_KEPT) return result;
   result.dimension = common;
   result.factor = has_two ? factor_of_sum(a, b) : a.factor;
+  return result;
+}
+
+/* In <set> it is a value, elsewhere it switches. */
+static Node floor_in_place(struct Parser *parser, Node node) {
+  bool is_value = (parser->place.kinds & AT_INSTANT) != 0;
+  return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));
+}
+
+struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b) {
+  struct Graph *graph = parser->graph;
+  struct Quantity result = {.dimension = dimension_one, .literal = a.literal};
+  if (strcmp(name, "mod") == 0) {
+    result.dimension = common_dimension(parser, a, b, "mod");
+    result.literal = a.literal && b.literal;
+    if (b.node == ZERO) FAIL(parser, "%s: mod(..., 0) has no value; expected another divisor", parser->place.what);
+    Node whole = floor_in_place(parser, divide(graph, a.node, b.node));
+    result.node = subtract(graph, a.node, multiply(graph, b.node, whole));
+    return result;
+  }
+  require_dimensionless(parser, a, format_text("the argument of %s", name));
+  bool is_ceiling = strcmp(name, "ceil") == 0, is_nearest = strcmp(name, "round") == 0;
+  Node half = graph_constant(graph, 0.5), argument = is_ceiling ? negate(graph, a.node) : a.node;
+  Node floor = floor_in_place(parser, is_nearest ? add(graph, argument, half) : argument);
+  result.node = is_ceiling ? negate(graph, floor) : floor;
   return result;
 }
 

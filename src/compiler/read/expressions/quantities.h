@@ -13,6 +13,9 @@ struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, stru
 struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct Quantity b);
 struct Quantity quantity_power(struct Parser *parser, struct Quantity base, struct Quantity exponent);
 
+/* floor, ceil, round or mod; b is ignored for one argument. */
+struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b);
+
 /* A function of the language other than a power; b is ignored for one argument. */
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
                                   struct Quantity b);

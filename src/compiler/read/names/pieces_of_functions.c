@@ -1,5 +1,7 @@
 #include "read/names/pieces_of_functions.h"
 
+#include <math.h>
+
 #include "algebra/cone.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
@@ -93,6 +95,27 @@ Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node ri
   }
 }
 
+/* The even or odd number that is nearest to a node: 2 floor(x/2 + 1/2) or, of x - 1, one more. */
+static Node nearest_of_parity(struct Graph *graph, Node node, double parity) {
+  Node half = scale(graph, 0.5, add(graph, node, graph_constant(graph, 1.0 - parity)));
+  Node twice = scale(graph, 2.0, function(graph, FLOOR, half, ZERO));
+  return add(graph, twice, graph_constant(graph, parity));
+}
+
+/*
+ * Between two zeros of sin(pi x), x - 1/2 is next to floor(x), and no other number of its parity is nearer than 3/2: so the value
+ * is right for all x in the piece, and somewhat beyond. Where x rests on a whole number, it is the nearest one.
+ */
+Node floor_of(struct Scope *scope, Node node, long line) {
+  struct Graph *graph = scope->graph;
+  if (keeps_whole(scope) || graph_is_constant_in_time(graph, node)) return function(graph, FLOOR, node, ZERO);
+  Node sine = function(graph, SINE, scale(graph, acos(-1.0), node), ZERO);
+  Node sign = branch_of(scope, sine, "floor", line), middle = subtract(graph, node, graph_constant(graph, 0.5));
+  Node at_rest = function(graph, FLOOR, add(graph, node, graph_constant(graph, 0.5)), ZERO);
+  Node odd = choose_node(graph, negate(graph, sign), nearest_of_parity(graph, middle, 1.0), at_rest);
+  return choose_node(graph, sign, nearest_of_parity(graph, middle, 0.0), odd);
+}
+
 /* As derivatives of min and max need it. */
 static Node pieces_of_less(struct Scope *scope, Node left, Node right, long line) {
   Node difference = subtract(scope->graph, right, left);
@@ -107,6 +130,7 @@ static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, No
   case MULTIPLY: return multiply(graph, left, right);
   case POWER: return power(graph, left, right);
   case LESS: return pieces_of_less(scope, left, right, line);
+  case FLOOR: return floor_of(scope, left, line);
   default:
     return functions[operation].has_pieces ? pieces_of(scope, operation, left, right, line)
                                            : function(graph, operation, left, right);

@@ -24,6 +24,9 @@ Node tuned_condition(struct Scope *scope, Node node, long line);
 /* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
 enum { CONTACT_STATE = 1 << 29 };
 
+/* Another one, of places: the expression is read at events alone, so that its roundings are values there. */
+enum { AT_INSTANT = 1 << 28 };
+
 /* The kinds of symbols that a node rests on, also by what decides on its pieces; CONTACT_STATE among them. */
 unsigned kinds_that_decide(const struct Scope *scope, Node node);
 
@@ -31,6 +34,12 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node);
  * A node that was read while the scope keeps expressions whole, by its pieces, unless it still does; line: for messages.
  */
 Node with_pieces(struct Scope *scope, Node node, long line);
+
+/*
+ * The largest whole number that is not above a node. Along the motion it switches at zeros of sin(pi x), whose sign says whether
+ * it is even or odd.
+ */
+Node floor_of(struct Scope *scope, Node node, long line);
 
 /* abs, sign, min or max of nodes, by their pieces. */
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);

@@ -13,16 +13,15 @@
 static char *meaning_of(const xmlError *error) {
   const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
   if (strstr(message, "EntityRef") != NULL)
-    return copy_text("'&' stands in a text; write &amp; for the sign itself, and min, max, abs or sign for conditions");
+    return copy_text("'&' stands in a text; write &amp; for the sign itself, or 'and' between conditions");
   if (strstr(message, "not proper UTF-8") != NULL)
     return copy_text("the file has letters in an encoding other than UTF-8; save it in UTF-8");
   switch (error->code) {
   case XML_ERR_NAME_REQUIRED:
-    return copy_text("'<' begins an element or stands in a text; write &lt; for the sign itself, and min, max, abs or "
-                     "sign for conditions");
+    return copy_text("'<' begins an element or stands in a text; write &lt; for the sign itself, or 0 > x for x < 0");
   case XML_ERR_LT_IN_ATTRIBUTE:
-    return copy_text("'<' stands in an attribute, or a quote is missing before it; write &lt; for the sign itself, and "
-                     "min, max, abs or sign for conditions");
+    return copy_text("'<' stands in an attribute, or a quote is missing before it; write &lt; for the sign itself, or "
+                     "0 > x for x < 0");
   case XML_ERR_ATTRIBUTE_NOT_STARTED:
     return copy_text("the value of an attribute is not in straight quotes; expected name=\"value\"");
   case XML_ERR_ATTRIBUTE_WITHOUT_VALUE:
