@@ -118,6 +118,71 @@ def test_what_is_no_equilibrium(command, tmp_path):
     assert "the point is not an equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
 
 
+# A block that its friction holds against a spring, with a pendulum on it.
+STUCK = """\
+<system name="Stuck"><coordinate name="x" velocity="v" unit="m" start="0.3"/><coordinate name="phi" velocity="omega" unit="rad"/>
+  <input name="u" unit="N"/> <particle name="block" mass="2" x="x"/> <particle name="bob" mass="0.5" x="x + 0.4*sin(phi)" y="-0.4*cos(phi)"/>
+  <gravity y="-9.81"/> <potential>8*x^2/2</potential> <force coordinate="x">u</force>
+  <friction name="rub" velocity="v" force="10"/> <output name="held">rub.force</output>
+</system>
+"""
+# A body in a hollow, which is as a spring across, with a pendulum on it.
+RESTING = """\
+<system name="Resting"><coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/><coordinate name="phi" velocity="omega" unit="rad"/>
+  <particle name="body" mass="2" x="x" y="y"/> <particle name="bob" mass="0.5" x="x + 0.4*sin(phi)" y="y - 0.4*cos(phi)"/>
+  <gravity y="-9.81"/> <contact name="ground" gap="y - 0.05*x^2" restitution="0.5"/> <output name="load">ground.force</output>
+</system>
+"""
+# A box on two corners, with a mass on a spring above it.
+STANDING = """\
+<system name="Standing"><coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m" start="0.2"/><coordinate name="phi" velocity="omega" unit="rad"/>
+  <coordinate name="s" velocity="r" unit="m" start="-0.7*9.81/50"/> <input name="u" unit="N"/>
+  <body name="box" mass="2" inertia="0.02" x="x" y="y" angle="phi"/> <particle name="top" mass="0.7" x="x" y="y + s + 0.4"/>
+  <gravity y="-9.81"/> <potential>50*s^2/2</potential> <force coordinate="s">u - 0.3*r*abs(r)</force>
+  <contact name="left" gap="y - 0.3*sin(phi) - 0.2*cos(phi)"/> <contact name="right" gap="y + 0.3*sin(phi) - 0.2*cos(phi)"/>
+  <friction name="rub" velocity="vx" force="0.5*(left.force + right.force)"/> <output name="load">left.force</output>
+</system>
+"""
+
+
+@pytest.fixture(scope="module")
+def resting():
+    build_systems("resting", {"Stuck": STUCK, "Resting": RESTING, "Standing": STANDING})
+
+
+@pytest.mark.parametrize("name, constraints, A, B, load", [
+    ("Stuck", "rub", [[0, 0, 0], [0, 0, 1], [0, -9.81 / 0.4, 0]], [[0], [0], [0]], [-8, 0.5 * 9.81, 0]),  # x stays, v is 0
+    ("Resting", "ground", np.block([[np.zeros((2, 2)), np.eye(2)],
+        [np.linalg.solve([[2.5, 0.2], [0.2, 0.08]], -np.diag([2.5 * 9.81 * 0.1, 0.5 * 9.81 * 0.4])), np.zeros((2, 2))]]), None, [0, 0, 0, 0]),
+    ("Standing", "left, right, rub", [[0, 0, 0], [0, 0, 1], [0, -50 / 0.7, 0]], [[0], [0], [1 / 0.7]], [0, -25, 0]),
+])  # fmt: skip
+def test_closed_contacts_and_sticking_frictions_are_constraints(resting, command, tmp_path, name, constraints, A, B, load):
+    """The linearized motion stays on them, whose forces are outputs; the result names them."""
+    result = command("linearize", fmu.archive(name), cwd=tmp_path)
+    text = succeed(result)
+    np.testing.assert_allclose(matrix("A", text), A, rtol=1e-8, atol=1e-8)
+    if B is not None:
+        np.testing.assert_allclose(matrix("B", text), B, rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(matrix("C", text)[-1], load, rtol=1e-8, atol=1e-8)
+    assert f"contacts that stay closed and frictions that stay stuck: {constraints}\n" in text and result.stderr == ""
+
+
+@pytest.mark.parametrize("name, text", [("Weightless", RESTING.replace("-9.81", "0")), ("Kink", RESTING.replace("x^2", "abs(x)"))])
+def test_where_nothing_presses_and_at_kinks_there_is_no_linearization(command, tmp_path, name, text):
+    build_systems("resting", {name: text.replace("Resting", name)})
+    result = command("linearize", fmu.archive(name), cwd=tmp_path)
+    assert result.returncode == 1 and f"{name} has no linearization at this point: beside it, something switches, such as a contact that touches without force; expected a point" in result.stderr
+
+
+def test_near_a_contact_the_steps_are_small(resting, command, tmp_path):
+    """A body 0.1 mm above the ground falls freely."""
+    text = succeed(command("linearize", fmu.archive("Resting"), "--at", "y=1e-4", cwd=tmp_path))
+    A = np.linalg.solve([[2.5, 0, 0.2], [0, 2.5, 0], [0.2, 0, 0.08]], -np.diag([0, 0, 0.5 * 9.81 * 0.4]))
+    A[:, 2] = [0, 0, 0]  # the pendulum falls with the body
+    np.testing.assert_allclose(matrix("A", text)[3:, :3], A, rtol=1e-8, atol=1e-8)
+    assert "stay closed" not in text
+
+
 def test_signals_and_what_is_recorded(command, tmp_path):
     """A force on a cart without a pendulum, which is t: x = t^3/6; whichever the version of FMI."""
     (tmp_path / "F.csv").write_text("time,F\n0,0\n1,1\n")

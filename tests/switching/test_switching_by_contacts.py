@@ -1,6 +1,7 @@
 """Contacts that open at edges, events that look at contacts, frictions and forces, and what is told as soon as an input is set."""
 
 import re
+from ctypes import c_double
 
 import fmpy
 import numpy as np
@@ -145,6 +146,18 @@ def test_what_falls_lands_below(open_fmu):
     instance.step(1.5)
     assert instance.get("x", "y", "vy", "hits", "lands", "starts") == pytest.approx([1.5, -0.8, 0, instance.get("hits"), 1, 1], abs=1e-12)
     assert instance.get("weight") == pytest.approx(10) and value(instance, "table.closed") == 1
+
+
+@pytest.mark.parametrize("state", [{"v": -1e-6}, {"v": 1e-6}, {"h": 1e-7, "v": -1e-5}, {"h": -1e-7}])
+def test_what_an_integrator_leaves_of_a_closed_contact_is_no_impact(open_fmu, state):
+    """A ball at rest, whose restitution is 0.8, is at rest behind event mode."""
+    instance = open_fmu("BouncingBall", kind=FMU2Model).initialize({"h": 0})
+    instance.fmu.newDiscreteStates()
+    instance.fmu.enterContinuousTimeMode()
+    instance.fmu.setContinuousStates((c_double * 2)(state.get("h", 0), state.get("v", 0)), 2)
+    instance.fmu.enterEventMode()
+    instance.fmu.newDiscreteStates()
+    assert instance.get("h", "v") == pytest.approx([0, 0], abs=1e-15) and value(instance, "ground.closed") == 1
 
 
 # --- Inputs ---

@@ -4,10 +4,14 @@ import warnings
 from typing import NamedTuple
 
 import numpy as np
+from fmpy.fmi1 import FMICallException
 
 from .model_exchange import opened
+from .problem import Problem
 
 STEP = 1e-3  # of differences of fourth order, in which what is cut off and roundings are both about 1e-12
+HALVINGS = 8  # of the step, behind which roundings are 3e-10
+UNEVEN = 1e-6  # by which the square of a projection may differ from it
 
 
 class Linearization(NamedTuple):
@@ -24,20 +28,49 @@ class Linearization(NamedTuple):
     inputs: list[str]
     outputs: list[str]
     point: dict[str, float]  # x0, as initialization moved it, and u0, by name
+    constraints: list[str]  # the contacts that are closed and the frictions that stick at x0, by name: they stay so
+
+
+def _column(point, at, i, share):
+    """What moving the state i by a share of it does to the states that fulfil the constraints, to first order; or None, and why there is no such column."""
+    step = np.eye(len(at))[i] * share * max(1.0, abs(at[i]))
+    moved, logged = {}, len(point.messages)
+    for k in (1, -1, 2, -2):
+        try:
+            moved[k] = point.held(at, at + k * step)
+        except FMICallException as problem:
+            return None, "; ".join(point.messages[logged:] or [str(problem)])
+        if moved[k] is None:
+            return None, "a contact that is closed opens, or a friction that sticks slides"
+    return (8 * (moved[1] - moved[-1]) - (moved[2] - moved[-2])) / (12 * step[i]), None
+
+
+def _projection(point, at, share):
+    """What moving each state does, by columns; or None, and why there is no such matrix. Where nothing switches on the way its square is the same."""
+    columns = []
+    for i in range(len(at)):
+        column, problem = _column(point, at, i, share)
+        if column is None:
+            return None, f"where '{point.states[i]}' moves by {share:.1g}, {problem}"
+        columns.append(column)
+    projection = np.array(columns).T
+    if point.indicator_count and not np.allclose(projection @ projection, projection, rtol=0.0, atol=UNEVEN * np.abs(projection).max()):
+        return None, "something switches, such as a contact that touches without force"
+    return projection, None
 
 
 def _tangents(point, at):
     """
-    The directions in which the states can move, as orthonormal columns. States are projected onto those that fulfil the constraints;
-    what that does to first order is a projection onto these directions, whose singular values are 0, or 1 and more.
+    The directions in which the states can move, as orthonormal columns. States are projected onto those that fulfil the constraints, among
+    them closed contacts and sticking frictions; what that does to first order is a projection onto these directions, whose singular values are 0, or 1
+    and more. The steps are the largest ones at which what is closed stays closed, and what is open open.
     """
-    columns = []
-    for i in range(len(at)):
-        step = np.eye(len(at))[i] * STEP * max(1.0, abs(at[i]))
-        one, two = (point.held(at + k * step) - point.held(at - k * step) for k in (1, 2))
-        columns.append((8 * one - two) / (12 * step[i]))
-    left, singular, _ = np.linalg.svd(np.array(columns).T)
-    return left[:, : np.count_nonzero(singular > 0.5)]
+    for halving in range(HALVINGS + 1):
+        projection, problem = _projection(point, at, STEP / 2**halving)
+        if projection is not None:
+            left, singular, _ = np.linalg.svd(projection)
+            return left[:, : np.count_nonzero(singular > 0.5)]
+    raise Problem(f"{point.name} has no linearization at this point: beside it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
 def independent(tangents):
@@ -58,6 +91,7 @@ def linearize(system, at=None, method=None):
 
 def _linearization(point):
     at = point.start()
+    constraints = point.constraining()
     tangents = _tangents(point, at) if len(at) else np.empty((0, 0))
     chosen = independent(tangents)
     basis = tangents @ np.linalg.inv(tangents[chosen])
@@ -76,4 +110,5 @@ def _linearization(point):
         point.inputs,
         point.outputs,
         dict(zip(point.states, at.tolist())) | dict(zip(point.inputs, point.read(point.inputs).tolist())),
+        constraints,
     )

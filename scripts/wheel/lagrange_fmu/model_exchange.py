@@ -14,6 +14,7 @@ from .simulation import check_start, described, units_of
 from .variables import settable
 
 ADJOINT = ("--adjoint",)  # words for lagc
+RESTS = {".closed": 1, ".sliding": 0}  # ends of names of modes, with the value of one that constrains the motion
 COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # what is discrete beside modes
 
 
@@ -83,13 +84,24 @@ class Point:
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
 
-    def held(self, states):
-        """The nearest states that fulfil the constraints. Initialization keeps fixed coordinates, event mode moves them too, but what can switch may do so there."""
-        if self.numbers or self.switches or self.indicator_count:
+    def held(self, at, states):
+        """
+        The nearest states to these that fulfil the constraints, among them the contacts that are closed and the frictions that stick in the states `at`; None
+        where one of these does not stay so. Initialization keeps fixed coordinates, event mode moves them too, but what else can switch may do so there.
+        """
+        self.start(at)
+        constraining = self.constraining()
+        if self.indicator_count and not constraining:
             return self.start(states)
         self.set_states(states)
         self.model.enterEventMode()
-        return self._go_on()
+        moved = self._go_on()
+        return moved if self.constraining() == constraining else None
+
+    def constraining(self):
+        """The contacts that are closed and the frictions that stick, by name."""
+        modes = dict(zip([*self.numbers, *self.switches], self.modes()))
+        return [name.removesuffix(end) for name, mode in modes.items() for end, rest in RESTS.items() if name.endswith(end) and mode == rest]
 
     def modes(self):
         """Of what switches; the same list where that does the same."""

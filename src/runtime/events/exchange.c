@@ -8,6 +8,7 @@
 #include "events/indicators.h"
 #include "events/settle.h"
 #include "events/settlement.h"
+#include "instance/projection.h"
 
 enum { APPROACH_LIMIT = 20 };
 
@@ -201,10 +202,30 @@ static void release_frictions(struct Instance *instance) {
   if (settlement_evaluate(&settlement)) laws->release(&settlement);
 }
 
+/* What an integrator may leave of the constraints, in units of the scales of the state; a state further away was set. */
+static const double largest_deviation = 1e-3;
+
+/*
+ * Takes the state onto the constraints of the present modes before these are judged: what an integrator leaves of them is no
+ * motion, and a closed contact would take a rate of -1e-6 m/s of its gap for an impact.
+ */
+static void return_to_constraints(struct Instance *instance, bool *changed) {
+  double *state = instance->event_state;
+  size_t size = lagrangian.state_count * sizeof *state;
+  if (lagrangian.constraints.projection == NULL || instance->situation->changed == CHANGED_VALUES) return;
+  if (evaluate_prepare(instance) != STATUS_DONE) return;
+  memcpy(state, instance->state, size);
+  double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, state);
+  if (!(moved > 0.0 && moved <= largest_deviation)) return;
+  memcpy(instance->state, state, size);
+  *changed = true;
+}
+
 const char *exchange_settle(struct Instance *instance, bool *changed) {
   const char *problem = NULL;
   bool passes = may_turn_back(instance), others;
   *changed = false;
+  return_to_constraints(instance, changed);
   for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes, changed);
   if (problem != NULL) return problem;
   release_frictions(instance);

@@ -24,6 +24,8 @@ def run(arguments):
 
     found = linearize(arguments.system, dict(arguments.at + arguments.set))
     print("at " + ", ".join(f"{name} = {value:.9g}" for name, value in found.point.items()))
+    if found.constraints:
+        print(f"contacts that stay closed and frictions that stay stuck: {', '.join(found.constraints)}")
     rates = [f"der({state})" for state in found.states]
     for name, matrix, rows, columns in (
         ("A", found.A, rates, found.states),
