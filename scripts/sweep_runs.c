@@ -1,4 +1,11 @@
-/* The runs of a sweep: the functions of an FMU that is there already, called for one set of values after another. */
+/*
+ * The runs of a sweep: the functions of an FMU that is there already, called for one set of values after another. What is recorded
+ * of a run is found as it goes: a largest value between three samples is that of the parabola through them. An event parts the
+ * samples; its time is found by halving the step from its saved beginning, and the run goes on from the end of the step as if nobody had looked.
+ */
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
 #include <time.h>
 
 #include "fmi2.h"
@@ -19,6 +26,11 @@ struct Functions {
   fmi2Status (*exit)(fmi2Component component);
   fmi2Status (*step)(fmi2Component component, fmi2Real time, fmi2Real size, fmi2Boolean is_final);
   fmi2Status (*get)(fmi2Component component, const fmi2ValueReference references[], size_t count, fmi2Real values[]);
+  fmi2Status (*get_integer)(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                            fmi2Integer values[]);
+  fmi2Status (*save)(fmi2Component component, fmi2FMUstate *state);
+  fmi2Status (*restore)(fmi2Component component, fmi2FMUstate state);
+  fmi2Status (*forget)(fmi2Component component, fmi2FMUstate *state);
 };
 
 struct Variables {
@@ -26,12 +38,26 @@ struct Variables {
   const fmi2ValueReference *references;
 };
 
+enum RecordKind { RECORD_VALUE, RECORD_MAXIMUM, RECORD_MINIMUM, RECORD_EVENTS, RECORD_FIRST };
+
+/* A column of the result: of one of the sampled variables, at a time; or the number of events, or the time of the first. */
+struct Record {
+  size_t kind, variable;
+  double time;
+};
+
 /* Of arrays over runs, each has a row for every one. */
 struct Sweep {
-  struct Variables varied, watched, ends;
+  struct Variables varied, watched, ends, sampled;
   const double *values;         /* of what varies: runs x varied */
-  double tolerance, stop;       /* tolerance: 0 for the FMU's own */
-  size_t steps;                 /* communication steps a run */
+  double tolerance;             /* 0 for the FMU's own */
+  size_t time_count;
+  const double *times;          /* ends of the communication steps, ascending */
+  struct Variables counter;     /* of events; none where nobody asks for their times */
+  size_t record_count;
+  const struct Record *records;
+  double *recorded;             /* runs x records */
+  double *samples;              /* workspace: 3 x sampled */
   double *before, *after;       /* of what is watched: runs x watched, behind the initialization and at the end */
   double *end_values, *seconds; /* runs x ends; runs */
 };
@@ -40,6 +66,133 @@ static double now(void) {
   struct timespec time;
   timespec_get(&time, TIME_UTC);
   return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* A run as it goes: the last three samples that no event parts, the latest one first. */
+struct Course {
+  const struct Functions *f;
+  fmi2Component component;
+  const struct Sweep *sweep;
+  double *recorded; /* the row of the run */
+  double time[3];
+  size_t count;
+};
+
+/* By how much the parabola through three samples exceeds the one in the middle, which it has to exceed by its vertex. */
+static double excess_of(const double *time, double late, double middle, double early) {
+  double before = (middle - early) / (time[1] - time[2]), after = (late - middle) / (time[0] - time[1]);
+  double curvature = (after - before) / (time[0] - time[2]), slope = before + curvature * (time[1] - time[2]);
+  return curvature < 0.0 ? -slope * slope / (4.0 * curvature) : 0.0;
+}
+
+/* The largest value that the newest sample makes known, of the variable times a sign. */
+static double peak_of(const struct Course *course, size_t variable, double sign) {
+  size_t n = course->sweep->sampled.count;
+  const double *value = course->sweep->samples + variable;
+  double late = sign * value[0];
+  if (course->count < 3) return late;
+  double middle = sign * value[n], early = sign * value[2 * n];
+  if (middle < late || middle < early) return late;
+  return fmax(late, middle + excess_of(course->time, late, middle, early));
+}
+
+static void record(const struct Course *course, size_t i) {
+  const struct Record *record = &course->sweep->records[i];
+  double *result = &course->recorded[i];
+  if (record->kind == RECORD_VALUE && record->time == course->time[0])
+    *result = course->sweep->samples[record->variable];
+  if (record->kind == RECORD_MAXIMUM) *result = fmax(*result, peak_of(course, record->variable, 1.0));
+  if (record->kind == RECORD_MINIMUM) *result = fmin(*result, -peak_of(course, record->variable, -1.0));
+}
+
+/* Records what is sampled at the present time. False where it cannot be read. */
+static bool sample(struct Course *course, double time) {
+  const struct Variables *sampled = &course->sweep->sampled;
+  double *samples = course->sweep->samples;
+  memmove(samples + sampled->count, samples, 2 * sampled->count * sizeof *samples);
+  memmove(course->time + 1, course->time, 2 * sizeof *course->time);
+  course->time[0] = time;
+  if (course->count < 3) course->count++;
+  if (course->f->get(course->component, sampled->references, sampled->count, samples) > fmi2Warning) return false;
+  for (size_t i = 0; i < course->sweep->record_count; i++) record(course, i);
+  return true;
+}
+
+static int events_of(const struct Course *course) {
+  const struct Variables *counter = &course->sweep->counter;
+  fmi2Integer count = 0;
+  if (counter->count > 0) course->f->get_integer(course->component, counter->references, 1, &count);
+  return count;
+}
+
+/* Records the number of events until now, and the time of the first one. */
+static void record_events(const struct Course *course, double time, int count) {
+  for (size_t i = 0; i < course->sweep->record_count; i++) {
+    if (course->sweep->records[i].kind == RECORD_EVENTS) course->recorded[i] = count;
+    if (course->sweep->records[i].kind == RECORD_FIRST && isnan(course->recorded[i])) course->recorded[i] = time;
+  }
+}
+
+static bool go(const struct Course *course, fmi2FMUstate state, double begin, double end) {
+  return course->f->restore(course->component, state) <= fmi2Warning &&
+         (end <= begin || course->f->step(course->component, begin, end - begin, fmi2False) <= fmi2Warning);
+}
+
+enum { CROWD = 100 }; /* events of a step whose times are found */
+static const double found = 1e-10; /* of a step: how well */
+
+/*
+ * Samples just before and just behind each event of the step from a saved state at begin, which had so many events, to end. The FMU is
+ * somewhere in the step then. A step that is too short for the FMU ends the search.
+ */
+static void sample_events(struct Course *course, fmi2FMUstate *state, double begin, double end, int total, int count) {
+  double enough = found * (end - begin);
+  for (int i = 0; i < CROWD && count < total; i++) {
+    double low = begin, high = end;
+    while (high - low > enough) {
+      double middle = 0.5 * (low + high);
+      if (middle <= low || middle >= high || !go(course, *state, begin, middle)) break;
+      if (events_of(course) == count) low = middle;
+      else high = middle;
+    }
+    if (!go(course, *state, begin, low) || (low > course->time[0] && !sample(course, low))) return;
+    course->count = 0;
+    if (!go(course, *state, begin, high) || !sample(course, high)) return;
+    count = events_of(course);
+    record_events(course, high, count);
+    begin = high;
+    if (course->f->save(course->component, state) > fmi2Warning) return;
+  }
+}
+
+/* A communication step, with what is recorded of it. NULL, or the name of the function that fails. */
+static const char *step(struct Course *course, double begin, double end) {
+  const struct Functions *f = course->f;
+  fmi2FMUstate first = NULL, last = NULL;
+  bool looks = course->sweep->counter.count > 0, fails = looks && f->save(course->component, &first) > fmi2Warning;
+  int before = events_of(course), after;
+  if (fails || f->step(course->component, begin, end - begin, looks ? fmi2False : fmi2True) > fmi2Warning) {
+    if (first != NULL) f->forget(course->component, &first);
+    return fails ? "fmi2GetFMUstate" : "fmi2DoStep";
+  }
+  after = events_of(course);
+  if (after > before && f->save(course->component, &last) <= fmi2Warning) {
+    sample_events(course, &first, begin, end, after, before);
+    fails = f->restore(course->component, last) > fmi2Warning;
+    record_events(course, end, after);
+  }
+  if (first != NULL) f->forget(course->component, &first);
+  if (last != NULL) f->forget(course->component, &last);
+  if (fails) return "fmi2SetFMUstate";
+  bool is_sampled = course->sweep->sampled.count == 0 || course->time[0] == end || sample(course, end);
+  return is_sampled ? NULL : "fmi2GetReal";
+}
+
+static void begin_records(const struct Sweep *sweep, double *recorded) {
+  for (size_t i = 0; i < sweep->record_count; i++) {
+    size_t kind = sweep->records[i].kind;
+    recorded[i] = kind == RECORD_MAXIMUM ? -INFINITY : kind == RECORD_MINIMUM ? INFINITY : kind == RECORD_EVENTS ? 0.0 : NAN;
+  }
 }
 
 /* Until a function fails: its name then, and NULL where all went well. */
@@ -54,10 +207,13 @@ static const char *run(const struct Functions *f, fmi2Component component, const
   if (f->exit(component) > fmi2Warning) return "fmi2ExitInitializationMode";
   if (f->get(component, watched->references, watched->count, sweep->before + k * watched->count) > fmi2Warning)
     return "fmi2GetReal";
-  for (size_t i = 0; i < sweep->steps; i++) {
-    double time = sweep->stop * (double)i / (double)sweep->steps,
-           next = sweep->stop * (double)(i + 1) / (double)sweep->steps;
-    if (f->step(component, time, next - time, fmi2True) > fmi2Warning) return "fmi2DoStep";
+  struct Course course = {
+      .f = f, .component = component, .sweep = sweep, .recorded = sweep->recorded + k * sweep->record_count};
+  begin_records(sweep, course.recorded);
+  if (sweep->sampled.count > 0 && !sample(&course, 0.0)) return "fmi2GetReal";
+  for (size_t i = 0; i < sweep->time_count; i++) {
+    const char *failed = step(&course, i > 0 ? sweep->times[i - 1] : 0.0, sweep->times[i]);
+    if (failed != NULL) return failed;
   }
   if (f->get(component, ends->references, ends->count, sweep->end_values + k * ends->count) > fmi2Warning ||
       f->get(component, watched->references, watched->count, sweep->after + k * watched->count) > fmi2Warning)

@@ -29,5 +29,6 @@ def sweep_words(parser, output):
     parser.add_argument("--stop-time", "--stop", type=float, metavar="S", help="the end of each run; else that of the FMU")
     parser.add_argument("--step", type=float, metavar="S", help="the communication step; else the whole run")
     parser.add_argument("--tolerance", type=float, help="the relative tolerance; else that of the FMU")
+    parser.add_argument("--record", action="append", metavar="ITEM,...", help="columns beside the states at the end: NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first; of a single contact NAME.events, NAME.first")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; else a thread for each core")
     parser.add_argument("--output", type=Path, metavar="FILE.parquet", help=f"else {output}")

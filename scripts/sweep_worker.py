@@ -5,7 +5,7 @@ import io
 import tempfile
 import threading
 import time
-from ctypes import CDLL, Structure, byref, c_char_p, c_double, c_size_t, c_void_p, cast
+from ctypes import CDLL, Structure, addressof, byref, c_char_p, c_double, c_size_t, c_void_p, cast
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -41,7 +41,7 @@ class Instance:
         self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
         self.slave.instantiate(callbacks=self.callbacks)
-        called = ("Reset", "SetupExperiment", "SetReal", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal")
+        called = ("Reset", "SetupExperiment", "SetReal", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal", "GetInteger", "GetFMUstate", "SetFMUstate", "FreeFMUstate")
         self.functions = (c_void_p * len(called))(*(cast(getattr(self.slave.dll, f"fmi2{name}"), c_void_p) for name in called))
         self.runner = CDLL(str(place / "runner"))
         self.runner.sweep_runs.restype = c_size_t
@@ -49,6 +49,9 @@ class Instance:
     def references(self, names):
         known = {variable.name: variable.valueReference for variable in self.description.modelVariables}
         return np.array([known[name] for name in names], dtype=np.uintc)
+
+    def counts_events(self):
+        return any(variable.name == "events" and variable.type == "Integer" for variable in self.description.modelVariables)
 
     def run(self, sweep, count):
         """What went wrong in each of the runs."""
@@ -63,13 +66,26 @@ class Instance:
         return problems
 
 
+VALUE, EVENTS = 0, 3  # enum RecordKind of sweep_runs.c; what is less than EVENTS is of a variable
+
+
+class Record(Structure):
+    """That of sweep_runs.c."""
+
+    _fields_ = [("kind", c_size_t), ("variable", c_size_t), ("time", c_double)]
+
+
+def variables_fields(name):
+    return (f"{name}_count", c_size_t), (f"{name}_references", c_void_p)
+
+
 class Sweep(Structure):
     """That of sweep_runs.c."""
 
     _fields_ = [
-        *((f"{variables}_{what}", kind) for variables in ("varied", "watched", "ends") for what, kind in (("count", c_size_t), ("references", c_void_p))),
-        ("values", c_void_p), ("tolerance", c_double), ("stop", c_double), ("steps", c_size_t),
-        *((name, c_void_p) for name in ("before", "after", "end_values", "seconds")),
+        *(field for name in ("varied", "watched", "ends", "sampled") for field in variables_fields(name)),
+        ("values", c_void_p), ("tolerance", c_double), ("time_count", c_size_t), ("times", c_void_p), *variables_fields("counter"),
+        ("record_count", c_size_t), *((name, c_void_p) for name in ("records", "recorded", "samples", "before", "after", "end_values", "seconds")),
     ]  # fmt: skip
 
 
@@ -96,11 +112,12 @@ def states_of(description):
 
 @dataclass
 class Results:
-    """Arrays over runs: what is watched at both ends, the states at the end, the run times, and what went wrong."""
+    """Arrays over runs: what is watched at both ends, the states at the end, what is recorded, the run times, and what went wrong."""
 
     before: np.ndarray
     after: np.ndarray
     ends: np.ndarray
+    recorded: np.ndarray
     seconds: np.ndarray
     problems: np.ndarray  # of texts, None where all went well
 
@@ -109,23 +126,36 @@ class Results:
             getattr(self, name)[runs] = values
 
 
+def sampled_of(settings):
+    """The names of the variables that records are of, each once."""
+    return list(dict.fromkeys(name for _, kind, name, _ in settings["records"] if kind < EVENTS))
+
+
 def run_by_fmi(instance, rows, names, settings):
     """One run after another, by the functions of FMI."""
-    states, watched, count = states_of(instance.description), lawful_energies(instance.description), len(rows)
-    variables = [instance.references(of) for of in (names, watched, states)]
+    states, watched, sampled, records = states_of(instance.description), lawful_energies(instance.description), sampled_of(settings), settings["records"]
+    variables, count = [instance.references(of) for of in (names, watched, states, sampled)], len(rows)
+    counter = instance.references(["events"] if any(kind != VALUE for _, kind, _, _ in records) and instance.counts_events() else [])
     before, after = (np.full((count, len(watched)), np.nan) for _ in range(2))
     ends, seconds, rows = np.full((count, len(states)), np.nan), np.zeros(count), np.ascontiguousarray(rows, dtype=float)
-    sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data,
-                  settings["tolerance"] or 0.0, settings["stop"], settings["steps"], *(a.ctypes.data for a in (before, after, ends, seconds)))  # fmt: skip
-    return Results(before, after, ends, seconds, np.array(instance.run(sweep, count), dtype=object))
+    recorded, samples, times = np.full((count, len(records)), np.nan), np.zeros((3, len(sampled))), np.array(settings["times"], dtype=float)
+    wanted = (Record * len(records))(*((kind, sampled.index(name) if name in sampled else 0, time) for _, kind, name, time in records))
+    sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data, settings["tolerance"] or 0.0, len(times), times.ctypes.data,
+                  len(counter), counter.ctypes.data, len(records), addressof(wanted), *(a.ctypes.data for a in (recorded, samples, before, after, ends, seconds)))  # fmt: skip
+    problems = np.array(instance.run(sweep, count), dtype=object)
+    recorded[problems != None] = np.nan  # noqa: E711: of each element
+    return Results(before, after, ends, recorded, seconds, problems)
 
 
 def run_in_lanes(ensemble, instance, rows, names, settings):
-    """Many runs at once, which have equal shares of the time; those that the lanes leave, by FMI."""
-    begin, states = time.perf_counter(), len(states_of(instance.description))
+    """Many runs at once, which have equal shares of the time; those that the lanes leave, by FMI. What is recorded are values at times."""
+    begin, states, watched = time.perf_counter(), len(states_of(instance.description)), len(lawful_energies(instance.description))
     values, is_left = ensemble.run(rows)
-    seconds = np.full(len(rows), (time.perf_counter() - begin) / len(rows))
-    results = Results(values[:, 0, states:], values[:, 1, states:], values[:, 1, :states], seconds, np.full(len(rows), None))
+    seconds, sampled, times = np.full(len(rows), (time.perf_counter() - begin) / len(rows)), sampled_of(settings), list(ensemble.times)
+    energies = values[:, :, states : states + watched]
+    columns = [values[:, times.index(at), states + watched + sampled.index(name)] for _, _, name, at in settings["records"]]
+    recorded = np.stack(columns, axis=1) if columns else np.empty((len(rows), 0))
+    results = Results(energies[:, 0], energies[:, -1], values[:, -1, :states], recorded, seconds, np.full(len(rows), None))
     if is_left.any():
         results.replace(is_left, run_by_fmi(instance, rows[is_left], names, settings))
     return results
@@ -141,6 +171,7 @@ def run_chunk(archive, runner, numbers, rows, names, settings, ensemble=None):
     results = run_in_lanes(ensemble, instance, *one) if ensemble else run_by_fmi(instance, *one)
     columns = {"run": np.array(numbers)} | dict(zip(names, rows.T))
     columns |= {f"{state}_end": column for state, column in zip(states_of(instance.description), results.ends.T)}
+    columns |= {column: values for (column, *_), values in zip(settings["records"], results.recorded.T)}
     columns |= {"energyError": energy_errors(results.before, results.after), "runTime": results.seconds}
     columns |= {"problem": pa.array(results.problems, pa.string())}
     buffer = io.BytesIO()

@@ -25,6 +25,7 @@ from .ensembles import Ensemble, lanes_here, source_of
 from .problem import Problem
 from .progress import Progress
 from .simulation import described
+from .sweep_records import VALUE, records_of, times_of
 from .variables import settable, why_not
 from .whole_files import replace
 
@@ -151,8 +152,9 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
     if not library:
         return None
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
-    varied, asked = ([references[name] for name in some] for some in (names, [*states, *sweep_worker.lawful_energies(description)]))
-    ensemble = Ensemble(library, varied, asked, [0.0, settings["stop"]], settings["tolerance"])
+    asked = [*states, *sweep_worker.lawful_energies(description), *sweep_worker.sampled_of(settings)]
+    times = sorted({0.0, settings["stop"], *(time for *_, time in settings["records"])})
+    ensemble = Ensemble(library, *([references[name] for name in some] for some in (names, asked)), times, settings["tolerance"])
     return ensemble if ensemble.serves() else None
 
 
@@ -269,12 +271,13 @@ def sweep(path, folder, words, runner, compile_ensemble):
     rows = points(words.vary, words.random, words.seed)
     experiment = description.defaultExperiment
     stop = words.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
-    steps = max(1, round(stop / words.step)) if words.step else 1
-    settings = {"stop": stop, "steps": steps, "tolerance": words.tolerance}
+    records = records_of(words.record, description, stop)
+    settings = {"stop": stop, "times": times_of(records, description, stop, words.step).tolist(), "tolerance": words.tolerance, "records": records}
     output = Path(words.output or Path(folder) / f"{description.modelName}-sweep.parquet")
     archive = Path(path).read_bytes()
     ensemble = None
-    if len(rows) >= LANES_FROM and not words.scheduler:  # a cluster's workers may have other processors
+    at_times = all(kind == VALUE for _, kind, *_ in records)  # lanes have no extremes and no events
+    if len(rows) >= LANES_FROM and at_times and not words.scheduler:  # a cluster's workers may have other processors
         ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:

@@ -96,6 +96,57 @@ def test_a_damped_ball(count, ball, sweep):
         assert [table["h_end"][run], table["v_end"][run]] == pytest.approx(ball.at(1.4 - begin, *start), rel=1e-7, abs=1e-8)
 
 
+def test_bounces_are_recorded(sweep):
+    """A ball bounces at t0 (1 + 2 e + ... + 2 e^n), t0 = sqrt(2 h/g), to the height e^2n h and with the speed e^n sqrt(2 g h); the value at a time lies between."""
+    table, _ = sweep(archive("BouncingBall"), "--vary", "h=1,2", "--vary", "e=0.6,0.7,0.8", "--vary", "v=0,2", "--stop", "2", "--record", "h.max,h.min,v.max, v.min,h@0.3", "--record", "ground.events,ground.first,events,totalEnergy")
+    for h, e, v, *found in zip(*(table[name] for name in ("h", "e", "v", "h.max", "h.min", "v.max", "v.min", "h@0.3", "ground.first", "ground.events", "events", "totalEnergy@end"))):
+        speed = np.sqrt(v**2 + 2 * 9.81 * h)
+        first = (v + speed) / 9.81
+        expected = [h + v**2 / (2 * 9.81), 0, max(v, e * speed), -speed, h + v * 0.3 - 9.81 * 0.3**2 / 2, first]
+        assert found[:6] == pytest.approx(expected, rel=1e-8, abs=1e-8)
+        bounces = first + 2 * speed / 9.81 * np.cumsum([0, *(e ** np.arange(1, 40))])
+        count = np.count_nonzero(bounces < 2)
+        assert found[6] == found[7] and (found[6] == count if count < 40 else found[6] > 15)
+        assert found[8] == pytest.approx(9.81 * h + v**2 / 2 if count == 0 else e ** (2 * count) * speed**2 / 2, rel=1e-7, abs=1e-9)
+
+
+def test_extremes_between_samples(sweep):
+    """Of a pendulum: omega at the lowest point is sqrt(2 g/l (1 - cos theta0)), which lies between samples."""
+    table, _ = sweep(archive("SimplePendulum"), "--vary", "theta=0.5:3:5", "--stop", "20", "--step", "0.01", "--record", "omega.max,omega.min,theta.min,theta.max")
+    starts = np.linspace(0.5, 3, 5)
+    for name, expected in (("omega.max", np.sqrt(2 * 9.81 * (1 - np.cos(starts)))), ("theta.max", starts)):
+        np.testing.assert_allclose(table[name], expected, rtol=1e-6)
+        np.testing.assert_allclose(table[name.replace("max", "min")], -expected, rtol=1e-6)
+
+
+def test_values_at_times_in_lanes(sweep):
+    """Of many runs: those of a free fall with a push up."""
+    table, _ = sweep(archive("BouncingBall"), "--vary", "h=10:20:2000", "--stop", "1", "--record", "h@0.25,v@0.5,h,h@0")
+    h = np.linspace(10, 20, 2000)
+    for name, expected in (("h@0.25", h - 9.81 / 32), ("v@0.5", np.full(2000, -9.81 / 2)), ("h@end", h - 9.81 / 2), ("h@0", h)):
+        np.testing.assert_allclose(table[name], expected, rtol=1e-9)
+    assert len(set(table["runTime"])) < 20
+
+
+@pytest.mark.parametrize("record, message", [
+    ("quux.max", "'quux.max' of record is not known in BouncingBall; expected NAME.max, NAME.min, NAME@end"),
+    ("h.maxi", "'h.maxi' of record is not known in BouncingBall; did you mean 'h.max'?"),
+    ("totalEnegy@1", "'totalEnegy@1' of record is not known in BouncingBall; did you mean 'totalEnergy@1'?"),
+    ("h@3", "'h@3' of record has no time from 0 to 2 s; expected NAME@end or NAME@TIME"),
+    ("groud.events", "'groud' of 'groud.events' is neither a contact nor a friction of BouncingBall; did you mean 'ground'?"),
+])  # fmt: skip
+def test_what_cannot_be_recorded(command, tmp_path, record, message):
+    words = [*command[0], archive("BouncingBall"), "--vary", "h=1,2", "--stop", "2", "--record", record, "--output", tmp_path / "runs.parquet"]
+    result = subprocess.run(list(map(str, words)), env=command[1], capture_output=True, text=True)
+    assert result.returncode == 1 and message in result.stderr and not (tmp_path / "runs.parquet").exists(), result.stderr
+
+
+def test_events_of_several_contacts_are_not_told_apart(command, tmp_path):
+    words = [*command[0], archive("NewtonsCradle"), "--vary", "g=9,10", "--record", "touch[2].events", "--output", tmp_path / "runs.parquet"]
+    result = subprocess.run(list(map(str, words)), env=command[1], capture_output=True, text=True)
+    assert result.returncode == 1 and "the events of 'touch[2]' are not known apart from others of NewtonsCradle; expected events, of them all" in result.stderr
+
+
 @pytest.mark.release
 def test_all_systems_over_lanes(assembled, tmp_path):
     """Each library of the package is complete: it can be loaded with all that it refers to, wherever the clone's can."""

@@ -94,7 +94,8 @@ def linearize(
     """
     The matrices A (n x n), B (n x m), C (p x n), D (p x m) of an FMU or a system to first order, for n states, m inputs and p outputs, as a
     named tuple, which also has the names `states`, `inputs`, `outputs` and the `point`. `at` gives coordinates, velocities and inputs
-    where they are not their start values. Where there are constraints, the states are as many as are independent.
+    where they are not their start values. Where there are constraints, the states are as many as are independent; `constraints` names
+    the contacts that are closed and the frictions that stick at the point, and are taken as constraints.
     """
     from .linearization import linearize
 
@@ -198,6 +199,7 @@ def sweep(
     stop_time: float | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    record: str | Sequence[str] | None = None,
     scheduler: str | None = None,
     output: str | PathLike[str] | None = None,
 ) -> Path:
@@ -208,11 +210,13 @@ def sweep(
     vary: by name a range, which is a tuple (FROM, TO, COUNT), or a list or an array of values; several make a grid
     random: the number of runs of a random sample in place of the grid, from ranges (FROM, TO) and among values; seed: of the sample
     stop_time, step: in s; tolerance: relative. Else to the end of the FMU's experiment, in one step, and the FMU's tolerance
+    record: columns beside the states at the end: "NAME.max", "NAME.min", "NAME@end", "NAME@TIME", "events", "events.first", and of a single contact or friction "NAME.events",
+        "NAME.first"; extremes are sampled at each `step`, else at the FMU's step size
     scheduler: the address of a Dask cluster, which runs them in place of this machine's cores
     """
     from .sweeps import sweep
 
-    return sweep(system, vary, random=random, seed=seed, stop_time=stop_time, step=step, tolerance=tolerance, scheduler=scheduler, output=output)
+    return sweep(system, vary, random=random, seed=seed, stop_time=stop_time, step=step, tolerance=tolerance, record=record, scheduler=scheduler, output=output)
 
 
 def words(word: str | None = None) -> str:
