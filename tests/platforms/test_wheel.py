@@ -128,7 +128,7 @@ def test_a_page_to_write_in(tmp_path):
     page = (tmp_path / "Mine-edit.html").read_text()
     assert '"laboratory":"' in page and '<system name=\\"Mine\\"' in page.replace("\\u003c", "<") and len(page) < 925_000
     result = wheel.run("live", "Mine.fmu", "--edit", cwd=tmp_path)
-    assert result.returncode != 0 and "Mine.fmu is an FMU; with --edit expected the system.xml that it was made of" in result.stderr
+    assert result.returncode != 0 and "Mine.fmu is an FMU; to edit it expected the system.xml that it was made of" in result.stderr
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
