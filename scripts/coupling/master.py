@@ -8,7 +8,9 @@ import numpy as np
 
 from coupling.slaves import FMUS, Slave
 
-ITERATIONS = 60
+
+SCHEMES = {"jacobi": "Jacobi", "gauss_seidel": "Gauss-Seidel", "fixed_point": "fixed point", "newton": "Newton"}
+DEGREES = {0: "held", 1: "linear", 2: "quadratic"}
 
 
 class Diverged(Exception):
@@ -26,8 +28,22 @@ def derivatives_at_start(times, values):
     return coefficients * [1.0, 1.0, 2.0, 6.0][: len(coefficients)]
 
 
+def extrapolated(time, times, values):
+    """The polynomial through the points (times, values), at another time."""
+    return np.polynomial.polynomial.polyval(time, polynomial(times, values))
+
+
+def push(body, name, derivatives, end):
+    """Steps a body with a polynomial as an input."""
+    body.set(**{name: derivatives[0]})
+    body.set_derivatives(name, derivatives[1:])
+    body.step_to(end)
+
+
 class Master:
     """Two ParticleCartesian on the x axis, and a SpringDamper that has no state: force F on the left, -F on the right."""
+
+    iterations = 60  # at most, of one communication step
 
     def __init__(self, m1, m2, k, c, own=0.0, l0=0.0):
         body = dict(ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0, kx=own)
@@ -51,11 +67,17 @@ class Master:
         self.spring.set(x1=x1, v1=v1, x2=x2, v2=v2)
         return self.spring.get("F1")
 
-    def push(self, body, derivatives, end):
-        """Steps a body under the force polynomial."""
-        body.set(Fx=derivatives[0])
-        body.set_derivatives("Fx", derivatives[1:])
-        body.step_to(end)
+    def advance(self, times, values, end):
+        """Steps both bodies under the polynomial through these forces; the spring's force at the end."""
+        force = derivatives_at_start(times, values)
+        push(self.left, "Fx", force, end)
+        push(self.right, "Fx", -force, end)
+        return self.force(*self.state())
+
+    def observe(self):
+        """What later extrapolations need, the coupling force first."""
+        x1, v1, x2, v2 = self.state()
+        return self.force(x1, v1, x2, v2), x2, v2
 
     def known(self, column, count, step):
         """Times before the step's start and values there of F, x2 or v2: the present, then the past."""
@@ -64,27 +86,23 @@ class Master:
 
     def step(self, scheme, degree, step):
         """One communication step; remembers what later extrapolations need."""
-        x1, v1, x2, v2 = self.state()
-        self.past.insert(0, (self.force(x1, v1, x2, v2), x2, v2))
+        self.past.insert(0, self.observe())
         # Where the past is too short to extrapolate from, a step that needs less of it keeps the order.
         getattr(self, scheme if len(self.past) > degree else "newton")(degree, step)
         del self.past[3:]
 
     def jacobi(self, degree, step):
         """Both bodies under the extrapolated force; they could run in parallel."""
-        force = derivatives_at_start(*self.known(0, degree + 1, step))
-        end = self.left.time + step
-        self.push(self.left, force, end)
-        self.push(self.right, -force, end)
+        self.advance(*self.known(0, degree + 1, step), self.left.time + step)
 
     def gauss_seidel(self, degree, step):
         """The left body first; the right one under the force that the left one's new place gives, interpolated."""
         end = self.left.time + step
-        self.push(self.left, derivatives_at_start(*self.known(0, degree + 1, step)), end)
-        ahead = [np.polynomial.polynomial.polyval(step, polynomial(*self.known(column, degree + 1, step))) for column in (1, 2)]
+        push(self.left, "Fx", derivatives_at_start(*self.known(0, degree + 1, step)), end)
+        ahead = [extrapolated(step, *self.known(column, degree + 1, step)) for column in (1, 2)]
         new = self.force(*self.left.get("x", "vx"), *ahead)
         times, values = self.known(0, degree, step)
-        self.push(self.right, -derivatives_at_start([step, *times], [new, *values]), end)
+        push(self.right, "Fx", -derivatives_at_start([step, *times], [new, *values]), end)
 
     def fixed_point(self, degree, step):
         self.iterate(degree, step, lambda residual: residual)
@@ -99,15 +117,12 @@ class Master:
         self.iterate(degree, step, lambda residual: residual / (1.0 - slope))
 
     def iterate(self, degree, step, correction):
-        """Repeats the step from saved states until the spring's force at its end is the one that was assumed."""
+        """Repeats the step from saved states until the coupling force at its end is the one that was assumed."""
         times, values = self.known(0, degree, step)
         new, end = self.past[0][0], self.left.time + step
-        for _ in range(ITERATIONS):
+        for _ in range(self.iterations):
             saved = self.left.save(), self.right.save()
-            force = derivatives_at_start([step, *times], [new, *values])
-            self.push(self.left, force, end)
-            self.push(self.right, -force, end)
-            residual = self.force(*self.state()) - new
+            residual = self.advance([step, *times], [new, *values], end) - new
             if abs(residual) <= 1e-11 * max(1.0, abs(new)):
                 for body, (state, _) in zip((self.left, self.right), saved):
                     body.fmu.freeFMUstate(state)

@@ -14,12 +14,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 from scipy.linalg import expm
 
-from coupling.master import Diverged, Master
+from coupling import hinge
+from coupling.master import DEGREES, SCHEMES, Diverged, Master
 from coupling.slaves import ROOT
 from html_page import page, paragraphs, svg, table, write_csv
 
-SCHEMES = {"jacobi": "Jacobi", "gauss_seidel": "Gauss-Seidel", "fixed_point": "fixed point", "newton": "Newton"}
-DEGREES = {0: "held", 1: "linear", 2: "quadratic"}
 COLOURS = {"jacobi": "#2a6f97", "gauss_seidel": "#588157", "fixed_point": "#f4a261", "newton": "#c1121f"}
 FOLDER = ROOT / "build" / "report"
 
@@ -170,7 +169,12 @@ def main():
         ("Orders", table(["scheme", "theory", "order found", "at a step of [s]", "error [m]", "run time [s]"], summary)),
         ("Largest stable step times omega, by mass ratio", table(["scheme", *(f"{ratio:g}" for ratio in ratios)], table_rows)),
     ]
-    (FOLDER / "coupling.html").write_text(page(sections))
+    head, hinge_rows, hinge_sections = hinge.sections()
+    print("cart and pendulum, split at the hinge: largest m/M, theory and found")
+    for name, theory, found, *_ in hinge_rows:
+        print(f"  {name:24}{theory:>10}{found:>10}")
+    write_csv(FOLDER / "coupling_hinge.csv", head, hinge_rows)
+    (FOLDER / "coupling.html").write_text(page(sections + hinge_sections))
     print(f"report  {FOLDER / 'coupling.html'}")
 
 

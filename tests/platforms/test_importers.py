@@ -8,86 +8,95 @@ successfully"), FMI++ (builds against Boost and SWIG: "Failed building wheel for
 FMPy, so it would prove nothing more).
 """
 
+import os
 import subprocess
 import sys
 
-import fmpy
 import numpy as np
 import pytest
 
 import fmi3
 import fmu
 from fmu import BUILD, ROOT
+from importing import packages, programs
 
 pytestmark = pytest.mark.release
 
-END, STEP = 0.5, 0.01
-NANOSECONDS = 10**9  # libcosim counts time in them
+END, STEP = 0.5, packages.STEP
+NANOSECONDS = packages.NANOSECONDS
+ARCHIVES = {2: fmu.archive, 3: fmi3.archive}
+SMOOTH = ["DampedPendulum", "FourBar", "MotorPendulum", "ParticleSpherical"]
 
 
-def outputs_by_fmpy(name, end=END):
-    """The outputs at the end after steps of STEP, by FMPy."""
+def check(run, version, kind, name, bound, end=END):
+    """The outputs at the end beside those of FMPy's co-simulation."""
     outputs = fmu.names_of(name, "output")
-    result = fmpy.simulate_fmu(
-        str(fmu.unpacked(name)), stop_time=end, output_interval=STEP, output=outputs, fmi_type="CoSimulation"
-    )
-    assert result["time"][-1] == pytest.approx(end)
-    return outputs, np.array([result[output][-1] for output in outputs])
+    expected = packages.fmpy(fmu.archive(name), 2, "CS", end, outputs)
+    values = run(ARCHIVES[version](name), version, kind, end, outputs)
+    np.testing.assert_allclose(np.array(values, float), expected, rtol=bound, atol=bound)
 
 
 @pytest.mark.parametrize("name", fmu.small_names())
 def test_fmpy_model_exchange(name):
     """FMPy's CVode integrates our derivatives; at its tolerance the outputs agree with our own solver."""
     end = 0.02 if name == "AndrewsSqueezer" else END  # its crank turns a thousand times faster than others
-    outputs, expected = outputs_by_fmpy(name, end)
-    result = fmpy.simulate_fmu(
-        str(fmu.unpacked(name)), stop_time=end, output_interval=STEP, output=outputs, fmi_type="ModelExchange",
-        relative_tolerance=1e-8,
-    )
-    ours = np.array([result[output][-1] for output in outputs])
-    np.testing.assert_allclose(ours, expected, rtol=1e-4, atol=1e-5)
+    check(packages.fmpy, 2, "ME", name, 1e-4, end)
 
 
-def test_libcosim(name):
-    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
-    from libcosimpy.CosimExecution import CosimExecution
-    from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimSlave import CosimLocalSlave
-
-    log_output_level(CosimLogLevel.FATAL)
-    outputs, expected = outputs_by_fmpy(name)
-    execution = CosimExecution.from_step_size(round(STEP * NANOSECONDS))
-    slave = execution.add_local_slave(CosimLocalSlave(str(fmu.archive(name)), name))
-    observer = CosimObserver.create_last_value()
-    execution.add_observer(observer)
-    assert execution.simulate_until(round(END * NANOSECONDS))
-    references = fmu.references(name)
-    values = observer.last_real_values(slave, [references[output] for output in outputs])
-    np.testing.assert_allclose(values, expected, rtol=1e-9, atol=1e-9)
+@pytest.mark.parametrize("version, run", [(2, packages.libcosim), (2, packages.ecos), (3, packages.ecos)])
+def test_masters(name, version, run):
+    check(run, version, "CS", name, 1e-9)
 
 
-def values_by_ecos(name, archive, outputs):
-    from ecospy import EcosSimulation, EcosSimulationStructure
-
-    structure = EcosSimulationStructure()
-    structure.add_model(name, str(archive))
-    with EcosSimulation(STEP, structure=structure) as simulation:
-        simulation.init()
-        simulation.step(round(END / STEP))
-        values = [simulation.get_real(f"{name}::{output}") for output in outputs]
-        simulation.terminate()
-    return values
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", ["SimplePendulum", "FourBar", "BouncingBall"])
+def test_pathsim(name, version):
+    check(packages.pathsim, version, "ME", name, 1e-6)
 
 
-def test_ecos(name):
-    outputs, expected = outputs_by_fmpy(name)
-    np.testing.assert_allclose(values_by_ecos(name, fmu.archive(name), outputs), expected, rtol=1e-9, atol=1e-9)
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("name", SMOOTH)
+def test_casadi(name, version):
+    """CVODES of CasADi with the Jacobians of the FMU."""
+    check(packages.casadi, version, "ME", name, 1e-5)
 
 
-@pytest.mark.parametrize("name", ["DampedPendulum", "FourBar", "ParticleCartesian", "StateFeedback"])
-def test_ecos_with_fmi3(name):
-    outputs, expected = outputs_by_fmpy(name)
-    np.testing.assert_allclose(values_by_ecos(name, fmi3.archive(name), outputs), expected, rtol=1e-9, atol=1e-9)
+def test_table(capfd, monkeypatch):
+    """What is no FMU and what is not installed is an error with the names that there are; an importer that dies is a sentence."""
+    from importing import __main__ as table
+
+    for words, message in ((["--by", "Nobody"], "Nobody is not installed; here are FMPy"), (["Nothing"], "no FMU is called Nothing")):
+        monkeypatch.setattr(sys, "argv", ["scripts/importers", *words])
+        with pytest.raises(SystemExit):
+            table.main()
+        assert message in capfd.readouterr().err
+    assert table.simulated(lambda: os._exit(3)) == "the process ended with code 3"
+    assert table.simulated(lambda: 1 / 0) == "ZeroDivisionError: division by zero"
+    rows = [["FMPy", 2, "CS", "One", 2e-9], ["FMPy", 2, "CS", "Other", "error 1.0e+00"]]
+    assert table.table(rows, {"FMPy": "1.2"})[2] == "| FMPy | 1.2 | 1 of 2, 2e-09 | – | – | – |"
+
+
+PROGRAM = """#!/bin/sh
+{check}
+cat > {file} <<'END'
+{rows}
+END
+"""
+
+
+@pytest.mark.parametrize("program, run, check, file, rows", [
+    ("OMSimulator", programs.omsimulator, "", "out.csv", 'time, model.root.fmu.y\n0, 1\n0.5, 7.5'),
+    ("fmusim", programs.fmusim, "", "out.csv", '"time","y"\n0,1\n0.5,7.5'),
+    ("fmi4ctest", programs.fmi4c, "", "out.csv", "time,y\n0,1\n0.5,7.5"),
+    ("MasterSimulator", programs.mastersim, 'grep -q \'simulator 0 0 fmu .* "X.fmu"\' project.msim && mkdir -p project/results || exit 1',
+     "project/results/values.csv", "Time [s]\tfmu.y [m]\n0\t1\n0.5\t7.5"),
+])  # fmt: skip
+def test_programs_on_the_path(program, run, check, file, rows, tmp_path, monkeypatch):
+    """A stand-in for each program, which writes the kind of file that its manual describes: names, units and quotes are read."""
+    (tmp_path / program).write_text(PROGRAM.format(check=check, file=file, rows=rows))
+    (tmp_path / program).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    assert run("X.fmu", 2, "CS", 0.5, ["y"]) == [7.5]
 
 
 def check_by_toolbox(archive, version):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fmpy.ssp.ssd import read_ssd
 
-from coupling import balance, foreign, oscillator
+from coupling import balance, foreign, hinge, oscillator
 from coupling.master import Diverged, Master
 from coupling.slaves import FMUS, Slave
 from fmu import ROOT, unpacked
@@ -158,6 +158,30 @@ def test_fixed_point_says_where_it_ends():
     master = Master(1.0, 1.0, 1e4, 1.0)
     with pytest.raises(Diverged):
         master.run("fixed_point", 1, [1.0, 0.0, 0.0, 0.0], 1.0, 10)
+
+
+@pytest.fixture(scope="session")
+def hinged_pendulum():
+    words = [f"-DSYSTEMS={ROOT / 'scripts' / 'coupling' / 'HingedPendulum'}", f"-DTOOLS={ROOT / 'build'}"]
+    subprocess.run([ROOT / "scripts" / "build", "build/coupling", *words], check=True)
+
+
+@pytest.mark.parametrize("scheme, degree, ratio", [
+    ("jacobi", 0, 1.0), ("gauss_seidel", 0, 1.0), ("gauss_seidel", 1, 1 / 3), ("gauss_seidel", 2, 1 / 7), ("fixed_point", 1, 1.0),
+    ("newton", 2, np.inf),
+])  # fmt: skip
+def test_limits_of_the_hinge(hinged_pendulum, scheme, degree, ratio):
+    """z^(p+1) = -m/M ((p+1) z^p - ...): for Gauss-Seidel z = -1 at m/M = 1 / (2^(p+1) - 1). No step is short enough beyond it."""
+    assert hinge.theory(scheme, degree) == pytest.approx(ratio, rel=0.01)
+    assert hinge.limit(scheme, degree) == pytest.approx(ratio, rel=0.03)
+
+
+@pytest.mark.parametrize("scheme, ratio", [("fixed_point", 0.5), ("newton", 0.5), ("newton", 2.0)])
+def test_orders_at_the_hinge(hinged_pendulum, scheme, ratio):
+    """Against the equations of the whole system."""
+    for degree in oscillator.DEGREES:
+        coarse, fine = (hinge.error_of(ratio, scheme, degree, steps) for steps in (200, 400))
+        assert np.log2(coarse / fine) == pytest.approx(degree + 1, abs=0.25)
 
 
 @pytest.mark.parametrize("by", [foreign.by_fmpy, foreign.by_libcosim, foreign.by_ecos])

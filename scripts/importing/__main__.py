@@ -1,0 +1,139 @@
+"""
+Simulates every FMU in every importer that is installed, and prints the table of fmu/IMPORTING.md.
+
+An FMU counts where the outputs at the end are within BOUND of the reference: FMPy's co-simulation at a tolerance of
+REFERENCE. The error is the largest |value - reference| / (1 + |reference|) of those that count.
+"""
+
+import argparse
+import multiprocessing
+import os
+from pathlib import Path
+
+import fmpy
+import numpy as np
+
+from html_page import write_csv
+from importing import packages, programs
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = {2: ROOT / "build" / "fmu", 3: ROOT / "build" / "fmi3"}
+IMPORTERS = packages.IMPORTERS | programs.IMPORTERS
+END, FAST = 0.5, {"AndrewsSqueezer": 0.02}  # s; its crank turns a thousand times faster than others
+BOUND, REFERENCE = 1e-4, 1e-10
+PATIENCE = 60  # s for one FMU
+
+
+def installed():
+    """Version by the name of each importer that is here."""
+    found = {}
+    for name, (version, _, _) in IMPORTERS.items():
+        try:
+            found[name] = version()
+        except ModuleNotFoundError:
+            pass
+    return found
+
+
+def quietly(sender, run, *arguments):
+    """In a process of its own: sends the values, or what went wrong. Foreign programs print much."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    os.dup2(1, 2)
+    try:
+        sender.send(np.array(run(*arguments), float))
+    except BaseException as problem:
+        sender.send(f"{type(problem).__name__}: {problem}")
+
+
+def simulated(run, *arguments):
+    """The values of run, or a sentence."""
+    receiver, sender = multiprocessing.Pipe(duplex=False)
+    process = multiprocessing.get_context("fork").Process(target=quietly, args=(sender, run, *arguments))
+    process.start()
+    sender.close()
+    try:
+        return receiver.recv() if receiver.poll(PATIENCE) else f"no end after {PATIENCE} s"
+    except EOFError:
+        process.join()
+        return f"the process ended with code {process.exitcode}"
+    finally:
+        process.kill()
+        process.join()
+
+
+def error_of(values, expected):
+    """The relative error, or a sentence."""
+    if isinstance(values, str):
+        return values
+    if not len(expected):
+        return 0.0
+    error = float(np.max(np.abs(values - expected) / (1 + np.abs(expected))))
+    return error if error <= BOUND else f"error {error:.1e}"
+
+
+def compare(names, importer, report):
+    """Rows (importer, FMI, kind, FMU, error or sentence) of one importer."""
+    _, kinds, run = IMPORTERS[importer]
+    rows = []
+    for version, kind in kinds:
+        for name in names:
+            archive = FOLDERS[version] / f"{name}.fmu"
+            outputs, end, expected = reference(name)
+            error = error_of(simulated(run, archive, version, kind, end, outputs), expected)
+            rows.append([importer, version, kind, name, error])
+            if isinstance(error, str):
+                report(f"  {importer}, FMI {version}, {kind}, {name}: {error.splitlines()[0][:150]}")
+    return rows
+
+
+def reference(name, known={}):
+    """Outputs, end, and the outputs at the end, for an FMU."""
+    if name not in known:
+        archive, end = FOLDERS[2] / f"{name}.fmu", FAST.get(name, END)
+        outputs = [v.name for v in fmpy.read_model_description(archive).modelVariables if v.causality == "output"]
+        known[name] = outputs, end, np.array(packages.fmpy(archive, 2, "CS", end, outputs, REFERENCE), float)
+    return known[name]
+
+
+def cell(rows):
+    """n of all and the worst error."""
+    if not rows:
+        return "–"
+    errors = [row[4] for row in rows if not isinstance(row[4], str)]
+    return f"{len(errors)} of {len(rows)}" + (f", {max(errors):.0e}" if errors else "")
+
+
+def table(rows, versions):
+    """Lines of Markdown."""
+    columns = [(2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
+    lines = ["| importer | version | " + " | ".join(f"FMI {version} {kind}" for version, kind in columns) + " |", "|---" * 6 + "|"]
+    for name, version in versions.items():
+        cells = [cell([row for row in rows if row[:3] == [name, *column]]) for column in columns]
+        lines.append(f"| {name} | {version} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/importers", description=__doc__)
+    parser.add_argument("fmus", nargs="*", metavar="FMU", help="names of FMUs; all where none is given")
+    parser.add_argument("--by", action="append", metavar="IMPORTER", help="this importer alone; may be given more than once")
+    words = parser.parse_args()
+    names = words.fmus or sorted(path.stem for path in FOLDERS[2].glob("*.fmu"))
+    unknown = [name for name in names if not (FOLDERS[2] / f"{name}.fmu").exists()]
+    if unknown:
+        parser.error(f"no FMU is called {unknown[0]}; build/fmu holds those that there are")
+    versions = installed()
+    missing = [name for name in words.by or [] if name not in versions]
+    if missing:
+        parser.error(f"{missing[0]} is not installed; here are {', '.join(versions)}")
+    if words.by:
+        versions = {name: versions[name] for name in words.by}
+    rows = [row for importer in versions for row in compare(names, importer, lambda text: print(text, flush=True))]
+    folder = ROOT / "build" / "report"
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(folder / "importers.csv", ["importer", "FMI", "kind", "FMU", "error"], rows)
+    print("\n".join(["", *table(rows, versions)]))
+
+
+if __name__ == "__main__":
+    main()

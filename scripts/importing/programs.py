@@ -1,0 +1,101 @@
+"""
+Importers that are programs on the PATH: each simulates an FMU and writes a CSV file, of which the last row counts.
+Functions are as in packages.py. Their options are those that their manuals give.
+"""
+
+import csv
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from importing.packages import BOTH, STEP, TOLERANCE
+
+
+def last_row(path, delimiter=","):
+    """The last values by the name of the column, without quotes and units."""
+    with open(path, newline="") as file:
+        rows = [row for row in csv.reader(file, delimiter=delimiter) if row]
+    names = [re.sub(r"\s*\[[^\]]*\]$", "", name.strip()) for name in rows[0]]
+    return dict(zip(names, map(float, rows[-1])))
+
+
+def call(*words, cwd):
+    result = subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=cwd)
+    if result.returncode != 0:
+        raise RuntimeError((result.stderr or result.stdout).strip().splitlines()[-1:] or [f"exit code {result.returncode}"])
+
+
+def values_of(row, outputs):
+    """Of a row whose names may have the path of the FMU before them, as model.root.fmu.x."""
+    found = []
+    for output in outputs:
+        names = [name for name in row if name == output or name.endswith("." + output)]
+        found.append(row[min(names, key=len)])
+    return found
+
+
+def fmusim(archive, version, kind, end, outputs):
+    with tempfile.TemporaryDirectory() as folder:
+        solver = ("--solver", "cvode") if kind == "ME" else ()
+        call("fmusim", "--interface-type", kind.lower(), *solver, "--stop-time", end, "--output-interval", min(STEP, end),
+             "--output-file", "out.csv", archive, cwd=folder)  # fmt: skip
+        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+
+
+def omsimulator(archive, version, kind, end, outputs):
+    with tempfile.TemporaryDirectory() as folder:
+        call("OMSimulator", f"--mode={kind.lower()}", f"--stopTime={end}", f"--interval={min(STEP, end)}", "--solver=cvode",
+             f"--tolerance={TOLERANCE}", f"--tempDir={folder}", "--resultFile=out.csv", archive, cwd=folder)  # fmt: skip
+        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+
+
+def fmi4c(archive, version, kind, end, outputs):
+    """By fmi4ctest, whose method for model exchange is Euler's, of order 1."""
+    with tempfile.TemporaryDirectory() as folder:
+        call("fmi4ctest", "-m", kind.lower(), "-s", end, "-h", min(STEP, end), "-o", "out.csv", archive, cwd=folder)
+        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+
+
+PROJECT = """tStart 0 s
+tEnd {end} s
+hStart {step} s
+hMax {step} s
+hMin 1e-9 s
+hOutputMin {step} s
+adjustStepSize no
+MasterMode GAUSS_JACOBI
+ErrorControlMode NONE
+maxIterations 1
+simulator 0 0 fmu #ff808080 "{archive}"
+"""
+
+
+def mastersim(archive, version, kind, end, outputs):
+    with tempfile.TemporaryDirectory() as folder:
+        project = Path(folder) / "project.msim"
+        project.write_text(PROJECT.format(end=end, step=min(STEP, end), archive=archive))
+        call("MasterSimulator", project, cwd=folder)
+        return values_of(last_row(Path(folder) / "project" / "results" / "values.csv", "\t"), outputs)
+
+
+def on_path(program):
+    """The version that a program prints, where it is on the PATH."""
+
+    def version():
+        if shutil.which(program) is None:
+            raise ModuleNotFoundError(program)
+        text = subprocess.run([program, "--version"], capture_output=True, text=True).stdout
+        number = re.search(r"\d+(\.\d+)+", text)
+        return number[0] if number else "?"
+
+    return version
+
+
+IMPORTERS = {
+    "fmusim": (on_path("fmusim"), BOTH, fmusim),
+    "OMSimulator": (on_path("OMSimulator"), BOTH, omsimulator),
+    "MasterSim": (on_path("MasterSimulator"), [(2, "CS")], mastersim),
+    "fmi4c": (on_path("fmi4ctest"), BOTH, fmi4c),
+}

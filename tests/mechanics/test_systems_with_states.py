@@ -1,0 +1,189 @@
+"""The systems of fmu/ with states of first order, against closed forms and SciPy."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import jv, yv
+
+
+def rows_of(instance, end, step, *names):
+    return np.array(instance.run(end, step, *names))
+
+
+# PidController: K = 2, Ti = 0.5, Td = 0.1, N = 10, Tt = 0.2 and limits of 5 by default.
+
+
+def test_pid_ramp(open_fmu):
+    """A measurement y = t that an input polynomial follows: P = -K t, I = -K/Ti t^2/2, D = -K Td (1 - exp(-N t/Td))."""
+    instance = open_fmu("PidController").initialize(dict(r=0.0, uMin=-1e3, uMax=1e3), 1e-10)
+    for i in range(20):
+        time = 0.05 * i
+        instance.set(y=time)
+        instance.fmu.setRealInputDerivatives(instance.vr("y"), [1], [1.0])
+        instance.step(0.05)
+        t = instance.time
+        instance.set(y=t)
+        assert instance.get("u") == pytest.approx(-2 * t - 2 * t**2 - 0.2 * -np.expm1(-100 * t), rel=1e-8)
+
+
+def test_pid_winds_up_to_its_end(open_fmu):
+    """r = 1: I = K t/Ti until K + I = 5 at 0.75 s; then I -> 5 - K + Tt K/Ti = 3.8 with Tt. At 2 s the measurement ends it."""
+    instance = open_fmu("PidController").initialize({}, 1e-10)
+    rows = rows_of(instance, 2.0, 0.05, "I", "u")
+    t = rows[:, 0]
+    integral = np.where(t < 0.75, 4 * t, 3.8 - 0.8 * np.exp(-(t - 0.75) / 0.2))
+    np.testing.assert_allclose(rows[:, 1], integral, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(rows[:, 2], np.minimum(5, 2 + 4 * t), rtol=1e-9)
+    instance.set(y=1.0)  # the error is 0: the derivative pushes the output to its lower limit, P = 0
+    assert instance.get("u") == -5
+    instance.step(1.0)
+    assert instance.get("u") == pytest.approx(instance.get("I"), rel=1e-9)  # between the limits, D has died away
+
+
+def test_pid_without_wind_up_would_take_longer(open_fmu):
+    """The time at which the output leaves its limit: with Tt it is at once, by Tt = 1e6 s after the integral has run down."""
+    slow, fast = (open_fmu("PidController").initialize(dict(Tt=Tt, Td=1e-3), 1e-10) for Tt in (1e6, 0.2))
+    for instance in (slow, fast):
+        instance.step(2.0)
+        instance.set(r=-1.0)
+        instance.step(0.5)
+    # I(2) = 4 t = 8 without anti-windup, and falls by 4/s: P + I = -2 + 6 at 2.5 s, against -2 + 3.8 - ...
+    assert slow.get("u") == pytest.approx(4.0, rel=1e-5)
+    assert fast.get("u") == pytest.approx(-2 + (3.8 - 0.8 * np.exp(-1.25 / 0.2)) - 2.0, rel=1e-9)
+
+
+# BristleFriction
+
+
+def bristles(t, y, values):
+    x, v, z = y
+    g = values["Fc"] + (values["Fs"] - values["Fc"]) * np.exp(-((v / values["vs"]) ** 2))
+    rate = v - values["sigma0"] * abs(v) / g * z
+    friction = values["sigma0"] * z + values["sigma1"] * rate + values["sigma2"] * v
+    return [v, (values["k"] * (values["vPull"] * t - x) - friction) / values["m"], rate]
+
+
+PAPER = dict(m=1.0, k=2.0, vPull=0.1, sigma0=1e5, sigma1=np.sqrt(1e5), sigma2=0.4, Fc=1.0, Fs=1.5, vs=1e-3)
+
+
+def test_stick_slip_of_bristles(open_fmu):
+    """The experiment of the paper's figure 3, by Radau in SciPy."""
+    rows = rows_of(open_fmu("BristleFriction").initialize({}, 1e-9), 20.0, 0.05, "x", "v", "z")
+    solution = solve_ivp(bristles, (0, 20), [0, 0, 0], method="Radau", args=(PAPER,), t_eval=rows[:, 0], rtol=1e-9,
+                         atol=[1e-11, 1e-11, 1e-14], max_step=0.05)  # fmt: skip
+    np.testing.assert_allclose(rows[:, 1], solution.y[0], atol=3e-6)
+    moving = rows[:, 2] > 0.05
+    assert 0.1 < np.mean(moving) < 0.9  # it sticks, and it slips
+
+
+def test_presliding(open_fmu):
+    """Up to Fs, z = F/sigma0 and dx = dz/(1 - F/Fs): the block creeps by -Fs/sigma0 log(1 - F/Fs), some micrometres."""
+    instance = open_fmu("BristleFriction").initialize({}, 1e-9)
+    for force in (0.2, 0.6, 1.0, 1.2):
+        instance.step(force / 0.2 - instance.time)
+        assert instance.get("x") == pytest.approx(-1.5e-5 * np.log(1 - force / 1.5), rel=5e-3)
+
+
+def test_steady_sliding_of_bristles(open_fmu):
+    """At a constant velocity the friction is Fc + (Fs - Fc) exp(-(v/vs)^2) + sigma2 v, Stribeck's curve."""
+    for velocity in (5e-4, 1e-3, 2e-3, 0.1):
+        start = dict(k=1e6, vPull=velocity, v=velocity, sigma2=2000.0)  # against the falling part of the curve
+        instance = open_fmu("BristleFriction").initialize(start, 1e-9)
+        instance.step(2.0)
+        assert instance.get("v") == pytest.approx(velocity, rel=1e-5)
+        assert instance.get("frictionForce") == pytest.approx(1 + 0.5 * np.exp(-((velocity / 1e-3) ** 2)) + 2000 * velocity, rel=1e-5)
+
+
+# HydraulicCylinder
+
+OIL = dict(m=50.0, A1=2e-3, A2=1.2e-3, length=0.5, dead=1e-4, E=1.4e9, rho=870.0, pSupply=1.6e7, pTank=1e5, opening=1e-5, alpha=0.7,
+           dpLaminar=1e5, leak=1e-12, b=500.0)  # fmt: skip
+
+
+def cylinder(t, y, u, F, o=OIL):
+    x, v, p1, p2 = y
+    edge = lambda dp: o["alpha"] * o["opening"] * np.sqrt(2 / o["rho"]) * dp / (dp**2 + o["dpLaminar"] ** 2) ** 0.25
+    q1 = u * edge(o["pSupply"] - p1 if u > 0 else p1 - o["pTank"])
+    q2 = -u * edge(p2 - o["pTank"] if u > 0 else o["pSupply"] - p2)
+    leak = o["leak"] * (p1 - p2)
+    return [v, (p1 * o["A1"] - p2 * o["A2"] - F - o["b"] * v) / o["m"],
+            o["E"] / (o["dead"] + o["A1"] * x) * (q1 - o["A1"] * v - leak),
+            o["E"] / (o["dead"] + o["A2"] * (o["length"] - x)) * (q2 + o["A2"] * v + leak)]  # fmt: skip
+
+
+@pytest.mark.parametrize("u, F", [(0.5, 0.0), (0.5, 8000.0), (-0.4, 0.0), (0.0, 500.0)])
+def test_cylinder(u, F, open_fmu):
+    """Out, out against a load, back, and held by a closed valve, by SciPy."""
+    rows = rows_of(open_fmu("HydraulicCylinder").initialize(dict(u=u, F=F), 1e-9), 0.4, 0.01, "x", "v", "p1", "p2")
+    solution = solve_ivp(cylinder, (0, 0.4), [0.1, 0, 5e6, 8e6], method="Radau", args=(u, F), t_eval=rows[:, 0], rtol=1e-10,
+                         atol=[1e-12, 1e-12, 1e-3, 1e-3])  # fmt: skip
+    for column, scale in enumerate([1e-8, 1e-6, 20.0, 20.0]):
+        np.testing.assert_allclose(rows[:, 1 + column], solution.y[column], atol=scale, rtol=1e-6)
+
+
+def test_cylinder_ends_at_its_stop(open_fmu):
+    """With the valve open, it comes to the end, where the pressures are those of supply and tank and the stop carries the rest."""
+    instance = open_fmu("HydraulicCylinder").initialize(dict(u=1.0, leak=0.0), 1e-8)
+    instance.step(4.0)
+    x, v, p1, p2, force = instance.get("x", "v", "p1", "p2", "x.max.force")
+    assert (x, v) == (pytest.approx(0.5, abs=1e-12), pytest.approx(0.0, abs=1e-12))
+    assert (p1, p2) == (pytest.approx(1.6e7, rel=1e-6), pytest.approx(1e5, rel=1e-3))
+    assert force == pytest.approx(p1 * 2e-3 - p2 * 1.2e-3, rel=1e-9)
+
+
+def test_steady_speed_of_the_cylinder(open_fmu):
+    """Without load and friction p1 A1 = p2 A2 and q1 A2 = q2 A1: (ps - p1) (A2/A1)^2 = p2 - pt, by Merritt."""
+    values = dict(length=50.0, b=0.0, leak=0.0, dpLaminar=1.0, u=1.0, x=5.0)
+    instance = open_fmu("HydraulicCylinder").initialize(values, 1e-9)
+    instance.step(8.0)
+    p1 = (1.6e7 * (1.2 / 2) ** 2 + 1e5) / (2 / 1.2 + (1.2 / 2) ** 2)
+    assert instance.get("p1") == pytest.approx(p1, rel=1e-4)
+    assert instance.get("v") == pytest.approx(0.7 * 1e-5 * np.sqrt(2 / 870 * (1.6e7 - p1)) / 2e-3, rel=1e-4)
+
+
+# GantryCrane
+
+
+def test_rope_of_changing_length(open_fmu):
+    """
+    A load that is lowered at a constant speed by a trolley that stands: l theta'' + 2 l' theta' + g theta = 0 for small angles, with
+    l = l0 + w t. In s = 2 sqrt(g l)/w it is Bessel's equation: theta = (a J1(s) + b Y1(s))/s.
+    """
+    w, l0, g = 0.25, 4.0, 9.81
+    start = dict(trolleySpeed=0.0, hoistSpeed=w, theta=1e-4, l=l0, w=w, d=0.0, M=1e9, kl=1e9, Fl=1e9)
+    rows = rows_of(open_fmu("GantryCrane").initialize(start, 1e-10), 20.0, 0.1, "theta", "l")
+    s = lambda t: 2 * np.sqrt(g * (l0 + w * t)) / w
+    # d/ds (Z1(s)/s) = -Z2(s)/s
+    a, b = np.linalg.solve([[jv(1, s(0)) / s(0), yv(1, s(0)) / s(0)], [-jv(2, s(0)) / s(0), -yv(2, s(0)) / s(0)]], [1e-4, 0])
+    t = rows[:, 0]
+    np.testing.assert_allclose(rows[:, 2], l0 + w * t, rtol=1e-5)
+    np.testing.assert_allclose(rows[:, 1], (a * jv(1, s(t)) + b * yv(1, s(t))) / s(t), atol=3e-8)
+
+
+def test_crane_between_its_switches(open_fmu):
+    """The drive accelerates with its whole force while the speed lags by more than Fx/kx; the trolley ends at the stop."""
+    instance = open_fmu("GantryCrane").initialize(dict(trolleySpeed=2.0, m=1e-3, J=0.0, d=0.0, Fx=400.0), 1e-9)
+    instance.step(1.0)
+    assert instance.get("v") == pytest.approx(0.5, rel=1e-4)  # 400 N on 800 kg
+    instance.step(20.0)
+    x, v, force = instance.get("x", "v", "x.max.force")
+    assert (x, v) == (pytest.approx(20.0, abs=1e-9), pytest.approx(0.0, abs=1e-9)) and force == pytest.approx(400.0, rel=1e-3)
+
+
+def test_crane_in_numbers(open_fmu):
+    """All drives at work, by SciPy from Lagrange's equations written out."""
+    M, m, J, g, d, kx, Fx, kl, Fl = 800.0, 1500.0, 200.0, 9.81, 30.0, 20000.0, 6000.0, 60000.0, 30000.0
+
+    def rates(t, y):
+        x, l, a, v, w, o = y
+        s, c = np.sin(a), np.cos(a)
+        fx, fl = np.clip(kx * (1.0 - v), -Fx, Fx), np.clip(m * g + kl * (w + 0.3), -Fl, Fl)
+        ux, uy = v + w * s + l * o * c, -w * c + l * o * s  # velocity of the load
+        mass = np.array([[M + m, m * s, m * l * c], [m * s, m + J, 0], [m * l * c, 0, m * l**2]])
+        right = [fx - m * (2 * w * o * c - l * o**2 * s) - d * ux, m * l * o**2 + m * g * c - fl - d * (ux * s - uy * c),
+                 -2 * m * l * w * o - m * g * l * s - d * l * (ux * c + uy * s)]  # fmt: skip
+        return [v, w, o, *np.linalg.solve(mass, right)]
+
+    rows = rows_of(open_fmu("GantryCrane").initialize(dict(hoistSpeed=-0.3), 1e-9), 8.0, 0.1, "x", "l", "theta")
+    solution = solve_ivp(rates, (0, 8), [2, 8, 0, 0, 0, 0], method="Radau", t_eval=rows[:, 0], rtol=1e-10, atol=1e-12, max_step=0.01)
+    np.testing.assert_allclose(rows[:, 1:], solution.y[:3].T, atol=1e-6)
