@@ -88,6 +88,12 @@ def test_as_many_nodes_as_the_degree_needs(tmp_path, expression, nodes):
     assert re.findall(r"system.xml:2: note: integral\(s, 0, 2, (.*)\) is exact to 1e-13 by (\d+) node", result.stderr) == [(expression, str(nodes))]
 
 
+def test_parameters_that_are_0_hide_nothing(tmp_path):
+    """q = 0 at the start may be tuned: s^10 needs 6 nodes. Its limits hold: no root of a negative number is tried."""
+    content = '<parameter name="q" start="0" min="0"/><output name="o">integral(s, 0, 1, q*s^10 + sqrt(q))</output>'
+    assert "is exact to 1e-13 by 6 nodes" in said_of(tmp_path, content).stderr
+
+
 def test_a_kink_is_named_with_its_error(tmp_path):
     result = said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x))</output>')
     share = re.search(r"warning: integral\(s, 0, 1, abs\(s - 0.3\*x\)\) has a relative error of (\S+) by 32 nodes", result.stderr)

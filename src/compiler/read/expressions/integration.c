@@ -63,7 +63,8 @@ static double spread_of(const struct Model *model, const struct Symbol *symbol, 
   size_t index = (size_t)symbol->index;
   switch (symbol->kind) {
   case PARAMETER:
-    return index < model->parameters.count && model->parameters.items[index].type != TYPE_REAL ? 0.0 : 0.2 * start;
+    if (index < model->parameters.count && model->parameters.items[index].type != TYPE_REAL) return 0.0;
+    return start == 0.0 ? 1.0 : 0.2 * start; /* one that is 0 may leave nothing to see of what it stands before */
   case COORDINATE: return scale_of(&model->coordinates, index);
   case VELOCITY: return scale_of(&model->velocities, index);
   case STATE: return scale_of(&model->states, index);
@@ -73,6 +74,14 @@ static double spread_of(const struct Model *model, const struct Symbol *symbol, 
   case REACTION: return 1.0;
   default: return 0.0;
   }
+}
+
+/* Of a parameter; other values are as they are. */
+static double within_limits(const struct Model *model, const struct Symbol *symbol, double value) {
+  size_t index = (size_t)symbol->index;
+  if (symbol->kind != PARAMETER || index >= model->parameters.count) return value;
+  const struct Variable *parameter = &model->parameters.items[index];
+  return fmin(fmax(value, parameter->minimum), parameter->maximum); /* of which NaN sets none */
 }
 
 static double value_of(struct Sampling *sampling, Node node) {
@@ -86,9 +95,11 @@ static double value_of(struct Sampling *sampling, Node node) {
 static void choose_state(struct Sampling *sampling, double share) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
-  for (size_t i = 0; i < graph->symbol_count; i++)
-    sampling->symbols[i] = sampling->start[i] + share * random_number(sampling) *
-                                                    spread_of(scope->model, &graph->symbols[i], sampling->start[i]);
+  for (size_t i = 0; i < graph->symbol_count; i++) {
+    const struct Symbol *symbol = &graph->symbols[i];
+    double start = sampling->start[i], spread = spread_of(scope->model, symbol, start);
+    sampling->symbols[i] = within_limits(scope->model, symbol, start + share * random_number(sampling) * spread);
+  }
   for (size_t i = 0; i + 1 < scope->dummy_count; i++) {
     const struct Dummy *dummy = &scope->dummies[i];
     double low = value_of(sampling, dummy->low), high = value_of(sampling, dummy->high);
