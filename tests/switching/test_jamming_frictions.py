@@ -28,12 +28,22 @@ JAMS = {
 }
 # Here k = 3: while w > 0, f = 24/(k - c) = 24, and w' = -100 f stops w = 1 after 1/2400 s; then it turns back with f = 24/(k + c).
 TURNS = (0.02, AT_ONCE, "taylor")
+# From rest. Forwards there is no f as above, and stuck f = 0 holds nothing. Back it is k f + c |f| = 24, of which f = 24/(k + c) goes
+# on back, and f = -24/(c - k) does not: one motion for each k. One that moves back already may go on with either.
+AT_REST = {
+    f"WormRest{number}{method.title()}": (worm, load, method)
+    for number, (worm, load) in enumerate([(0.001, AT_ONCE), (0.02, AT_ONCE), (0.001, LATER), (0.001, "-24*time")])
+    for method in ("taylor", "radau")
+}
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
     systems = JAMS | {"WormTurns": TURNS}
     texts = {name: WORM.format(name=name, worm=worm, load=load, method=method) for name, (worm, load, method) in systems.items()}
+    for name, (worm, load, method) in AT_REST.items():
+        texts[name] = WORM.format(name=name, worm=worm, load=load, method=method).replace('velocityStart="1"', "").replace('velocityStart="0.1"', "")
+    texts["WormBack"] = WORM.format(name="WormBack", worm=0.001, load=AT_ONCE, method="taylor").replace('velocityStart="', 'velocityStart="-')
     build_systems("jamming-frictions", texts)
 
 
@@ -55,3 +65,22 @@ def test_a_worm_that_turns():
     result = fmpy.simulate_fmu(str(fmu.archive("WormTurns")), stop_time=1, output_interval=0.1, output=["w", "gear.force"])
     assert -result["gear.force"][1:] == pytest.approx(24 / 5, abs=1e-9)
     assert result["w"][-1] == pytest.approx(-100 * 24 / 5 * (1 - 1 / 2400), rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("name", AT_REST)
+def test_a_worm_at_rest_slides_back(name, kind):
+    worm, load, _ = AT_REST[name]
+    result = fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=1, output_interval=0.1, fmi_type=kind, output=["w", "gear.force"])
+    force = 24 / (1 + 100 * worm + 2)
+    impulse = 1 if load == AT_ONCE else 0.5
+    assert (-result["gear.force"][-1], result["w"][-1]) == pytest.approx((force, -100 * force * impulse), rel=1e-4 if kind == "ModelExchange" else 1e-8)
+
+
+def test_a_worm_with_two_motions():
+    messages = []
+    log = lambda *words: messages.append(words[-1].decode())
+    with pytest.raises(FMICallException):
+        fmpy.simulate_fmu(str(fmu.archive("WormBack")), stop_time=1, output_interval=0.1, logger=log)
+    assert any(m.startswith("time 0: the friction 'teeth', whose force follows from those of constraints, has more than one motion") for m in messages), messages
+    assert not any("no solution" in message for message in messages)

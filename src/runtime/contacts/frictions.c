@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "contacts/impact_outcomes.h"
+#include "contacts/jams.h"
 #include "contacts/planes.h"
 #include "contacts/pushes.h"
 #include "evaluation/evaluate.h"
@@ -194,8 +195,10 @@ const char *frictions_act(struct Settlement *settlement, bool *switched) {
     if (mode == state.mode) continue;
     double certainty = certainty_of(&state);
     if (would_go_back(settlement, i, mode, certainty)) continue;
-    if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT)
-      return frictions_refuse(settlement, i);
+    if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT) {
+      *switched = jams_resolve(settlement);
+      return *switched ? NULL : settlement->has_several_motions ? neither : frictions_refuse(settlement, i);
+    }
     settlement_set_mode(settlement, switches->frictions[i].mode, mode);
     settlement->last.friction = i;
     settlement->last.mode = state.mode;
@@ -387,5 +390,6 @@ const struct FrictionLaws friction_laws = {.act = frictions_act,
                                            .blame = frictions_blame,
                                            .check = frictions_check,
                                            .release = frictions_release,
+                                           .resolve_jam = jams_resolve,
                                            .explain_jam = frictions_explain_jam,
                                            .has_other_impulses = impact_has_others};

@@ -104,7 +104,11 @@ const char *branches_switch(struct Settlement *settlement, bool sides, bool *swi
     if (switches->branches[i].is_side != sides) continue;
     double mode = branch_mode(settlement, i);
     if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
-    if (++settlement->flips[i] > FLIP_LIMIT) return refuse_branch(settlement, i);
+    if (++settlement->flips[i] > FLIP_LIMIT) {
+      const struct FrictionLaws *laws = switches->friction_laws;
+      *switched = laws != NULL && laws->resolve_jam(settlement);
+      return *switched ? NULL : settlement->has_several_motions ? jammed : refuse_branch(settlement, i);
+    }
     continuity_note(settlement, i);
     settlement->rate[i] = settlement->value[branch_rate_place(switches, i)];
     settlement_set_mode(settlement, switches->branches[i].mode, mode);

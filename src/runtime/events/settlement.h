@@ -35,6 +35,8 @@ struct Settlement {
   bool is_evaluated;                   /* value[] and the noise are there */
   bool has_started;                    /* contacts and frictions are as they start, for AT_START */
   bool has_shared;                     /* what touches at rest shares the load */
+  bool has_several_motions;            /* frictions have, which was logged */
+  bool has_searched_jam;               /* all modes of frictions at rest were tried */
   bool has_found_forces;               /* modes were set by the forces of all at rest at once */
   int impacts, lifts;
   struct {
@@ -81,6 +83,8 @@ struct FrictionLaws {
   const char *(*check)(struct Settlement *settlement);
   /* Lets frictions slide that stick at a velocity which is not 0. */
   void (*release)(struct Settlement *settlement);
+  /* Finds the one motion of frictions that follow from forces; false where there is none. As jams_resolve(). */
+  bool (*resolve_jam)(struct Settlement *settlement);
   /* Logs a friction that jams a constraint; false where none does. As frictions_explain_jam(). */
   bool (*explain_jam)(struct Settlement *settlement, size_t branch);
   /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */

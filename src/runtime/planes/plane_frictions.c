@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "contacts/frictions.h"
+#include "contacts/jams.h"
 #include "evaluation/evaluate.h"
 #include "planes/cone_impulses.h"
 #include "planes/plane_forces.h"
@@ -182,6 +183,7 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .blame = frictions_blame,
                                                  .check = frictions_check,
                                                  .release = frictions_release,
+                                                 .resolve_jam = jams_resolve,
                                                  .explain_jam = frictions_explain_jam,
                                                  .guess = guess,
                                                  .set_plane = set_plane,
