@@ -207,13 +207,12 @@ static const double largest_deviation = 1e-3;
 
 /*
  * Takes the state onto the constraints of the present modes before these are judged: what an integrator leaves of them is no
- * motion, and a closed contact would take a rate of -1e-6 m/s of its gap for an impact.
+ * motion, and a closed contact would take a rate of -1e-6 m/s of its gap for an impact. So small a change of a parameter is followed, too.
  */
 static void return_to_constraints(struct Instance *instance, bool *changed) {
   double *state = instance->event_state;
   size_t size = lagrangian.state_count * sizeof *state;
-  if (lagrangian.constraints.projection == NULL || instance->situation->changed == CHANGED_VALUES) return;
-  if (evaluate_prepare(instance) != STATUS_DONE) return;
+  if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return;
   memcpy(state, instance->state, size);
   double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, state);
   if (!(moved > 0.0 && moved <= largest_deviation)) return;
