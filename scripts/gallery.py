@@ -20,6 +20,7 @@ from scripts.live_page.description import read_tree
 from scripts.live_page.editor import files_of, write_editor
 from scripts.live_page.page import write_page
 from scripts.problem import Problem
+from scripts.whole_files import write_whole
 
 BUILD = ROOT / "build"
 PAGES, SITE = BUILD / "gallery-pages", BUILD / "gallery"
@@ -61,8 +62,8 @@ def write_system(archive):
     name, folder = archive.stem, PAGES / "systems" / archive.stem
     folder.mkdir(parents=True)
     with zipfile.ZipFile(archive) as content:
-        (folder / "picture.png").write_bytes(content.read("model.png"))
-        (folder / "equations.html").write_bytes(content.read("documentation/index.html"))
+        write_whole(folder / "picture.png", content.read("model.png"))
+        write_whole(folder / "equations.html", content.read("documentation/index.html"))
     shutil.copy(archive, folder / f"{name}.fmu")
     links = {"equations": "equations.html", "FMU": f"{name}.fmu"}
     if (BUILD / "fmi3" / archive.name).exists():
@@ -107,10 +108,10 @@ def build_site(navigation):
                 "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search"],
                 "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
     file = BUILD / "mkdocs.json"  # which is YAML too
-    file.write_text(json.dumps(settings))
+    write_whole(file, json.dumps(settings))
     build(load_config(str(file), markdown_extensions=[{"toc": {"slugify": slug}}]))
     index = (SITE / "search" / "search_index.json").read_text()
-    (SITE / "search" / "search_index.js").write_text(f"window.searchIndex = {index};")
+    write_whole(SITE / "search" / "search_index.js", f"window.searchIndex = {index};")
 
 
 def main():
@@ -125,12 +126,15 @@ def main():
         cards = list(pool.map(write_system, archives))
     words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page. "
     words += write_laboratory([archive.stem for archive in archives])
-    (PAGES / "gallery.md").write_text(f'# Gallery\n\n{words}\n<div class="systems">\n{"".join(cards)}\n</div>\n', encoding="utf-8")
-    (PAGES / "style.css").write_text(STYLE)
+    write_whole(PAGES / "gallery.md", f'# Gallery\n\n{words}\n<div class="systems">\n{"".join(cards)}\n</div>\n')
+    write_whole(PAGES / "style.css", STYLE)
     navigation = [{title: [{t: p} for t, p in page.items()] if isinstance(page, dict) else page} for title, page in READ.items()]
     build_site(navigation)
     print(f"gallery    {SITE / 'index.html'}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Problem as problem:
+        sys.exit(f"scripts/gallery: {problem}")

@@ -11,6 +11,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from scripts.whole_files import write_whole
+
 STYLE = """
 :root { color-scheme: light dark; --text: #1d2433; --faint: #687085; --line: #d8dce6; --paper: #fff; --raised: #f4f6fa; --link: #1a5fb4; }
 @media (prefers-color-scheme: dark) { :root { --text: #dfe3ec; --faint: #939bb0; --line: #363d4d; --paper: #14181f; --raised: #1e242f; --link: #82b4f5; } }
@@ -114,9 +116,10 @@ def table(header, rows):
 
 
 def write_csv(path, header, rows):
-    """A table beside the page."""
-    with open(path, "w", newline="") as file:
-        csv.writer(file).writerows([header, *rows])
+    """A table beside the page, whole or not at all."""
+    text = io.StringIO(newline="")
+    csv.writer(text).writerows([header, *rows])
+    write_whole(path, text.getvalue())
 
 
 def paragraphs(sentences):

@@ -1,6 +1,5 @@
 """What scripts/realtime prints: the times of single communication steps of 1 ms."""
 
-import csv
 import importlib.util
 import re
 import shutil
@@ -15,6 +14,9 @@ from fmpy import extract, platform, read_model_description, sharedLibraryExtensi
 from fmpy.fmi2 import FMU2Slave
 
 from fmu import ROOT, archive, unpacked
+from html_page import write_csv
+
+from scripts.problem import Problem
 
 PROGRAM = ROOT / "build" / "bin" / "realtime"
 STEP, RUNS = 1e-3, 3
@@ -146,13 +148,12 @@ def main():
         rows.append(row)
         show(row)
     path = ROOT / "build" / "results" / "realtime.csv"
-    path.parent.mkdir(exist_ok=True)
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS)
-        writer.writeheader()
-        writer.writerows(rows)
+    write_csv(path, COLUMNS, ([row[column] for column in COLUMNS] for row in rows))
     print(f"CSV        {path}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Problem as problem:
+        sys.exit(f"scripts/realtime: {problem}")

@@ -5,8 +5,11 @@ FMPy script, by FMPy's SSP player and by libcosim, leaning at first or struck. L
 
 import re
 import subprocess
+import sys
+import tempfile
 import xml.etree.ElementTree as ElementTree
 import zipfile
+from pathlib import Path
 
 import matplotlib
 
@@ -19,6 +22,11 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 from scipy.linalg import solve_continuous_are
 
 from coupling.slaves import FMUS, ROOT, Slave
+from html_page import write_csv
+
+from scripts.problem import Problem
+from scripts.simulation import picture_of
+from scripts.whole_files import write_whole
 
 SSP = ROOT / "build" / "ssp" / "BalancedCart.ssp"
 STATES = ["x", "theta", "v", "omega"]
@@ -114,7 +122,7 @@ def draw(runs, path):
         axis.grid(alpha=0.3)
     axes[0].legend()
     figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    write_whole(path, picture_of(figure))
     plt.close(figure)
 
 
@@ -138,7 +146,10 @@ def animate(rows, path, length=0.5):
         clock.set_text(f"{time:.2f} s")
         return cart, rod, clock
 
-    FuncAnimation(figure, show, frames, interval=50).save(path, PillowWriter(fps=20))
+    with tempfile.TemporaryDirectory() as folder:
+        moving = Path(folder) / path.name
+        FuncAnimation(figure, show, frames, interval=50).save(moving, PillowWriter(fps=20))
+        write_whole(path, moving.read_bytes())
     plt.close(figure)
 
 
@@ -160,11 +171,14 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     paths = {kind: folder / f"BalancedCart.{kind}" for kind in ("csv", "png", "gif")}
     pushed = runs["leaning, pushed by 5 N from 5 s to 5.2 s"]
-    np.savetxt(paths["csv"], pushed, delimiter=",", header=",".join(["time", *STATES]), comments="", fmt="%.17g")
+    write_csv(paths["csv"], ["time", *STATES], ([f"{value:.17g}" for value in row] for row in pushed))
     draw(runs, paths["png"])
     animate(pushed, paths["gif"])
     print(f"SSP        {SSP}\nCSV        {paths['csv']}\nplot       {paths['png']}\nanimation  {paths['gif']}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Problem as problem:
+        sys.exit(f"scripts/balance: {problem}")

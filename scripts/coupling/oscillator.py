@@ -4,6 +4,7 @@ Error against communication step and run time for each scheme, and how far each 
 ratio grow. Leaves build/report/coupling.html with tables as CSV beside it.
 """
 
+import sys
 import time
 
 import matplotlib
@@ -18,6 +19,9 @@ from coupling import hinge
 from coupling.master import DEGREES, SCHEMES, Diverged, Master
 from coupling.slaves import ROOT
 from html_page import page, paragraphs, svg, table, write_csv
+
+from scripts.problem import Problem
+from scripts.whole_files import write_whole
 
 COLOURS = {"jacobi": "#2a6f97", "gauss_seidel": "#588157", "fixed_point": "#f4a261", "newton": "#c1121f"}
 FOLDER = ROOT / "build" / "report"
@@ -174,9 +178,12 @@ def main():
     for name, theory, found, *_ in hinge_rows:
         print(f"  {name:24}{theory:>10}{found:>10}")
     write_csv(FOLDER / "coupling_hinge.csv", head, hinge_rows)
-    (FOLDER / "coupling.html").write_text(page(sections + hinge_sections))
+    write_whole(FOLDER / "coupling.html", page(sections + hinge_sections))
     print(f"report  {FOLDER / 'coupling.html'}")
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Problem as problem:
+        sys.exit(f"scripts/couple: {problem}")

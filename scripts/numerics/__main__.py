@@ -27,6 +27,9 @@ from numerics.work_precision.peers import PEERS
 from numerics.work_precision.scenarios import check_of_reference
 from progress import Progress
 
+from scripts.problem import Problem
+from scripts.whole_files import write_whole
+
 FOLDER = ROOT / "build" / "report"
 
 
@@ -265,7 +268,7 @@ def write_page(sections):
     first = "".join(paragraphs([line]) if isinstance(line, str) else paragraphs([line[0]]) + bullets(line[1]) for line in [*summary, times])
     comparison = overview([run for section in sections.values() for run in section.runs])
     others = [(title, section.content) for title, section in sections.items()]
-    (FOLDER / "index.html").write_text(page([("lagrange-fmu: error against run time", comparison + folded("in words", first)), *others]))
+    write_whole(FOLDER / "index.html", page([("lagrange-fmu: error against run time", comparison + folded("in words", first)), *others]))
 
 
 def main(words=None):
@@ -289,4 +292,7 @@ def main(words=None):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except Problem as problem:
+        sys.exit(f"scripts/report: {problem}")

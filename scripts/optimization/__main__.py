@@ -1,6 +1,5 @@
 """What scripts/optimize prints: motions in least time and controllers in closed loop, each with a CSV and a plot."""
 
-import csv
 import sys
 import tempfile
 import time
@@ -13,9 +12,14 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
+from html_page import write_csv
 from optimization.closed_loop import CONTROLLERS, DELAY, NOISE, PERIOD, TRACK, plant_of, run
 from optimization.collocation import least_time, play_back
 from optimization.tasks import CART, TASKS
+
+from scripts.problem import Problem
+from scripts.simulation import picture_of
+from scripts.whole_files import write_whole
 
 BUILD = Path(__file__).resolve().parent.parent.parent / "build"
 FOLDER = BUILD / "results"
@@ -28,13 +32,10 @@ def archive(task):
     return next(path for path in places if path.exists())
 
 
-def write_csv(path, task, motion, played):
+def write_motion(path, task, motion, played):
     """A row for each end of an interval, with the inputs from there on."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["time", *task.inputs, *task.states, *(f"{name} played back" for name in task.states)])
-        inputs = [*motion.inputs, motion.inputs[-1]]
-        writer.writerows([now, *values, *states, *again] for now, values, states, again in zip(motion.times, inputs, motion.states, played))
+    header, inputs = ["time", *task.inputs, *task.states, *(f"{name} played back" for name in task.states)], [*motion.inputs, motion.inputs[-1]]
+    write_csv(path, header, ([now, *values, *states, *again] for now, values, states, again in zip(motion.times, inputs, motion.states, played)))
 
 
 def plot(path, task, motion, played):
@@ -51,7 +52,7 @@ def plot(path, task, motion, played):
     for axes in (places, inputs):
         axes.grid(alpha=0.3)
         axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    figure.savefig(path, dpi=120)
+    write_whole(path, picture_of(figure))
     plt.close(figure)
 
 
@@ -60,7 +61,7 @@ def find_fastest(name, unpacked):
     motion = least_time(unpacked, task)
     seconds, played = time.perf_counter() - begin, play_back(unpacked, task, motion)
     csv_path, plot_path = (FOLDER / f"fastest-{name}.{kind}" for kind in ("csv", "png"))
-    write_csv(csv_path, task, motion, played)
+    write_motion(csv_path, task, motion, played)
     plot(plot_path, task, motion, played)
     print(f"{task.fmu}: {motion.times[-1]:.6g} s; {motion.iterations} iterations of IPOPT in {seconds:.3g} s")
     print(f"  the co-simulation FMU plays it back to {abs(played - motion.states).max():.1g}\n  CSV   {csv_path}\n  plot  {plot_path}")
@@ -79,7 +80,7 @@ def plot_runs(path, runs):
     panels[0].set_title(f"The cart at {1 / PERIOD:g} Hz; measured to {NOISE[0] * 1e3:g} mm and {NOISE[1] * 1e3:g} mrad, {DELAY} periods late")
     panels[0].legend(frameon=False)
     panels[-1].set_xlabel("time [s]")
-    figure.savefig(path, dpi=120)
+    write_whole(path, picture_of(figure))
     plt.close(figure)
 
 
@@ -90,7 +91,7 @@ def control(unpacked):
     csv_path, plot_path = (FOLDER / f"closed-loop.{kind}" for kind in ("csv", "png"))
     columns = [f"{name} {variable}" for name in runs for variable in (*CART.states, "F")]
     rows = np.column_stack([next(iter(runs.values())).times, *(np.column_stack([found.states, found.forces]) for found in runs.values())])
-    np.savetxt(csv_path, rows, delimiter=",", header=",".join(["time", *columns]), comments="", fmt="%.9g")
+    write_csv(csv_path, ["time", *columns], ([f"{value:.9g}" for value in row] for row in rows))
     plot_runs(plot_path, runs)
     for name, found in runs.items():
         middle, late = 1e6 * np.quantile(found.seconds, (0.5, 0.999))
@@ -116,4 +117,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Problem as problem:
+        sys.exit(f"scripts/optimize: {problem}")

@@ -2,13 +2,16 @@
 
 import subprocess
 from contextlib import suppress
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import html_page
 import package
 from building import build_systems
 from fmu import archive
+from motions import lagrange_fmu  # noqa: F401
 from scripts.problem import Problem
 from scripts.whole_files import write_whole
 
@@ -35,6 +38,28 @@ def test_a_file_that_fails_leaves_the_one_before(tmp_path, monkeypatch):
     with pytest.raises(Problem, match="page.html cannot be written: No space left on device"):
         write_whole(path, "worse")
     assert path.read_text() == "good" and [file.name for file in tmp_path.iterdir()] == ["page.html"]
+
+
+def test_tables_and_systems_that_fail_leave_the_ones_before(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
+    """Those of reports, and what a fit writes."""
+    from lagrange_fmu import fit_result
+
+    table, system = tmp_path / "table.csv", tmp_path / "fitted.xml"
+    html_page.write_csv(table, ["a", "b"], [[1, 2]])
+    assert table.read_bytes() == b"a,b\r\n1,2\r\n"
+    system.write_text("good")
+    (tmp_path / "wall.xml").write_text(WALL)
+    fit = SimpleNamespace(system=tmp_path / "wall.xml", shared=["m"], values={"m": 2.0})
+
+    def full(*words):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(Problem, match="table.csv cannot be written: No space left on device"):
+        html_page.write_csv(table, ["a"], [[3]])
+    with pytest.raises(lagrange_fmu.Problem, match="fitted.xml cannot be written: No space left on device"):
+        fit_result.Fit.write_system(fit, system)
+    assert table.read_bytes() == b"a,b\r\n1,2\r\n" and system.read_text() == "good"
 
 
 def test_devices_and_links(tmp_path):

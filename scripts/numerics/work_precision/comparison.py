@@ -1,12 +1,12 @@
 """Error against run time: every system, solver, tolerance and communication step, and the same problems by others."""
 
-import csv
 import math
 import re
 from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
+from html_page import write_csv as write_csv_table
 from numerics.driver import SOLVERS, folder_of, step_repeatedly
 from numerics.failures import failure
 from numerics.work_precision.peers import PEERS
@@ -97,10 +97,7 @@ def collect(tasks, progress):
 
 
 def write_csv(samples, path, type_of_samples=Sample):
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(type_of_samples)])
-        writer.writeheader()
-        writer.writerows(asdict(sample) for sample in samples)
+    write_csv_table(path, [field.name for field in fields(type_of_samples)], (asdict(sample).values() for sample in samples))
 
 
 def best_seconds(samples, name, methods, level, steps=None):

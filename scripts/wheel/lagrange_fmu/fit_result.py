@@ -4,12 +4,12 @@ import base64
 import html
 import io
 from dataclasses import dataclass
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 
 from .problem import Problem
+from .whole_files import write_whole
 
 
 @dataclass(frozen=True, repr=False)
@@ -56,8 +56,9 @@ class Fit:
             if element is None:
                 raise Problem(f"{self.system} does not name '{name}' outside of <for> and <include>; expected a <parameter>, <input> or <coordinate>")
             element.set(attribute, repr(float(self.values[name])))
-        tree.write(path, encoding="unicode")
-        return Path(path)
+        text = io.StringIO()
+        tree.write(text, encoding="unicode")
+        return write_whole(path, text.getvalue())
 
     def write_page(self, path):
         """Data, fit and residuals, and the table of values."""
@@ -69,8 +70,7 @@ class Fit:
 <style>:root{{color-scheme:light dark}}body{{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}}td,th{{padding:.2rem 1rem .2rem 0;text-align:left}}img{{max-width:100%;background:#fff}}</style>
 </head><body><h1>Fit of {html.escape(self.name)}</h1><table><tr><th>name</th><th>value and standard deviation</th><th>95 % interval</th></tr>{rows}</table>{remarks}
 <img alt="data, fit and residuals" src="data:image/png;base64,{_picture(self)}"></body></html>"""
-        Path(path).write_text(text, encoding="utf-8")
-        return Path(path)
+        return write_whole(path, text)
 
 
 def in_words(direction):
