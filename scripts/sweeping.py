@@ -74,13 +74,37 @@ def read(path):
         return file.read()
 
 
+def lock_of(path, flags):
+    """The file or folder at the path, open and locked for this process; None while another process has it."""
+    while True:
+        lock = os.open(path, flags)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            return None
+        if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):
+            return lock
+        os.close(lock)  # another process has moved it
+
+
 class Parts:
-    """Finished chunks beside the result, in a folder whose name tells which plan they belong to."""
+    """
+    Finished chunks beside the result, in a folder whose name tells which plan they belong to; and the unfinished result, which is locked, so that
+    sweeps of different plans cannot write it at once.
+    """
 
     def __init__(self, output, plan):
         digest = hashlib.sha256(json.dumps(plan, sort_keys=True).encode()).hexdigest()[:16]
         self.folder = output.with_suffix("").parent / f"{output.stem}.parts-{digest}"
+        self.unfinished = output.with_suffix(".part")
         self.lock = self._locked()
+        self.output_lock = lock_of(self.unfinished, os.O_RDWR | os.O_CREAT) if fcntl else None
+        if fcntl and self.output_lock is None:
+            if not any(self.folder.iterdir()):
+                self.folder.rmdir()
+            os.close(self.lock)
+            raise Problem(f"another sweep to {output} runs already; expected another --output, or to wait for its end")
 
     def _locked(self):
         """The folder, created and locked for this process; an equal sweep that runs is waited for."""
@@ -124,19 +148,22 @@ class Parts:
 
     def join(self, output, count):
         """One file of all parts in the order of the runs, a part at a time."""
-        temporary, writer = output.with_suffix(".part"), None
+        writer = None
         for chunk in range(count):
             table = read(self.path(chunk))
-            writer = writer or pq.ParquetWriter(temporary, table.schema)
+            writer = writer or pq.ParquetWriter(self.unfinished, table.schema)
             writer.write_table(table)
         writer.close()
-        replace(temporary, output)
+        replace(self.unfinished, output)
         shutil.rmtree(self.folder)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *problem):
+        if self.output_lock is not None:
+            self.unfinished.unlink(missing_ok=True)
+            os.close(self.output_lock)
         if self.lock is not None:
             os.close(self.lock)
 

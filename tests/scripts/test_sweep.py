@@ -102,7 +102,7 @@ def interrupted(output, *words):
     whole = output.with_suffix(".part")
     whole.symlink_to("/dev/full")
     result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
-    whole.unlink()
+    whole.unlink(missing_ok=True)
     (line,) = result.stderr.splitlines()
     assert result.returncode == 1 and re.match("scripts/sweep: .*No space left on device.*the same command goes on", line), line
     (folder,) = output.parent.glob("*.parts-*")
@@ -211,3 +211,18 @@ def test_kills_at_random_times_lose_nothing(tmp_path):
     killed, _ = sweep(output, *words)
     assert {name: values for name, values in killed.items() if name != "runTime"} == {name: values for name, values in whole.items() if name != "runTime"}
     assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == []
+
+
+def test_two_different_sweeps_to_one_file(tmp_path):
+    """The second ends with a message, and the first is whole."""
+    output = tmp_path / "x.parquet"
+    words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "1500", "--stop"]
+    first = subprocess.Popen(command(output, *words, "200"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not output.with_suffix(".part").exists():
+        assert first.poll() is None
+        time.sleep(0.005)
+    second = subprocess.run(command(output, *words, "1"), capture_output=True, text=True)
+    assert second.returncode == 1 and second.stderr == f"scripts/sweep: another sweep to {output} runs already; expected another --output, or to wait for its end\n"
+    assert first.wait(timeout=120) == 0
+    table = pq.read_table(output)
+    assert table.num_rows == 1500 and [path.name for path in tmp_path.iterdir()] == ["x.parquet"]
