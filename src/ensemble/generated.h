@@ -24,6 +24,8 @@
 #define fabs(x) lanes_absolute(LANES_OF(x))
 #define pow(x, y) lanes_pow(LANES_OF(x), LANES_OF(y))
 #define atan2(y, x) lanes_atan2(LANES_OF(y), LANES_OF(x))
+#define random_uniform(x, y) lanes_random_uniform(LANES_OF(x), LANES_OF(y))
+#define random_gauss(x, y) lanes_random_gauss(LANES_OF(x), LANES_OF(y))
 #define fmin(x, y) lanes_smaller(LANES_OF(x), LANES_OF(y))
 #define fmax(x, y) lanes_larger(LANES_OF(x), LANES_OF(y))
 

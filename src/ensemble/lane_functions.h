@@ -3,6 +3,7 @@
 #define LANE_FUNCTIONS_H
 
 #include "lanes.h"
+#include "random_numbers.h"
 
 /* By their names in C. */
 #define lanes_fabs lanes_absolute
@@ -37,6 +38,8 @@ LANE_FUNCTION(log)
 LANE_FUNCTION(floor)
 LANE_FUNCTION_OF_TWO(pow)
 LANE_FUNCTION_OF_TWO(atan2)
+LANE_FUNCTION_OF_TWO(random_uniform)
+LANE_FUNCTION_OF_TWO(random_gauss)
 #undef LANE_FUNCTION
 #undef LANE_FUNCTION_OF_TWO
 

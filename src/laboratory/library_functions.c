@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "random_numbers.h"
+
 static const struct {
   const char *name;
   FunctionOfOne *function;
@@ -15,7 +17,12 @@ static const struct {
 static const struct {
   const char *name;
   FunctionOfTwo *function;
-} functions_of_two[] = {{"pow", pow}, {"atan2", atan2}, {"fmin", fmin}, {"fmax", fmax}};
+} functions_of_two[] = {{"pow", pow},
+                        {"atan2", atan2},
+                        {"fmin", fmin},
+                        {"fmax", fmax},
+                        {"random_uniform", random_uniform},
+                        {"random_gauss", random_gauss}};
 
 FunctionOfOne *function_of_one(const char *name) {
   for (size_t i = 0; i < sizeof functions_of_one / sizeof *functions_of_one; i++)

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/simplify.h"
+#include "random_numbers.h"
 
 /* --- Values on numbers, where C's math library has none or a less exact one --- */
 
@@ -353,4 +354,17 @@ const struct Function functions[OPERATION_COUNT] = {
               .auxiliary_limit = "sign"},
     [FLOOR] =
         {.name = "floor", .is_internal = true, .of_one = floor, .recurrence = PIECEWISE_CONSTANT, .auxiliary = operand},
+    [UNIFORM] = {.name = "uniform",
+                 .is_internal = true,
+                 .c_name = "random_uniform",
+                 .of_two = random_uniform,
+                 .is_never_negative = true,
+                 .recurrence = PIECEWISE_CONSTANT,
+                 .auxiliary = operand},
+    [GAUSS] = {.name = "gauss",
+               .is_internal = true,
+               .c_name = "random_gauss",
+               .of_two = random_gauss,
+               .recurrence = PIECEWISE_CONSTANT,
+               .auxiliary = operand},
 };

@@ -41,7 +41,7 @@ enum Recurrence {
 struct Function {
   const char *name;                 /* in formulas and messages; in the language too, unless it is internal */
   bool is_internal;                 /* the language has no function of this name */
-  const char *c_name;               /* in C's math library, where it is another; see function_in_c() */
+  const char *c_name;               /* in C's math library or include/, where it is another; see function_in_c() */
   double (*of_one)(double);         /* the value on numbers; both are NULL for leaves */
   double (*of_two)(double, double); /* either this or of_one is given, which tells the number of operands */
 

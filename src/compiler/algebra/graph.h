@@ -40,6 +40,8 @@ enum Operation {
   ABSOLUTE,
   SIGN,
   FLOOR,
+  UNIFORM, /* random numbers of a seed and a whole number: include/random_numbers.h */
+  GAUSS,
   OPERATION_COUNT
 };
 

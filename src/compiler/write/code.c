@@ -82,6 +82,14 @@ static const char *optimization_of(const struct Program *program) {
   return program->derivatives_are_table ? NULL : "Os";
 }
 
+static bool has_random_numbers(const struct Program *program) {
+  const struct Graph *graph = program->model->graph;
+  bool has = false;
+  for (Node node = 0; node < graph->count && !has; node++)
+    has = graph->vertices[node].operation == UNIFORM || graph->vertices[node].operation == GAUSS;
+  return has;
+}
+
 static void write_includes(FILE *file, const struct Program *program) {
   fprintf(file, "/* Equations of motion of %s, written by lagc. */\n", program->model->name);
   if (has_lanes(program))
@@ -96,6 +104,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
+  if (has_random_numbers(program)) fputs("#include \"random_numbers.h\"\n", file);
   fputs("\n", file);
 }
 

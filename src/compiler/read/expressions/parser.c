@@ -332,6 +332,12 @@ static struct Quantity parse_rounding(struct Parser *parser, const char *name) {
   return parser->failed ? nothing : quantity_rounded(parser, name, a, b);
 }
 
+static struct Quantity parse_random(struct Parser *parser, const char *name) {
+  struct Quantity seed, number;
+  parse_operands(parser, name, 2, &seed, &number);
+  return parser->failed ? nothing : quantity_random(parser, name, seed, number);
+}
+
 static struct NamedFunction *find_named_function(const struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   struct NamedFunction *named = function_named(parser->scope, full_name);
@@ -350,6 +356,7 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
   if (strcmp(name, "integral") == 0) return parse_integral(parser);
   if (strcmp(name, "if") == 0) return parse_choice(parser);
   if (is_rounding(name)) return parse_rounding(parser, name);
+  if (strcmp(name, "gauss") == 0 || strcmp(name, "uniform") == 0) return parse_random(parser, name);
   if (is_function_of_vectors(name)) return parse_function_of_vectors(parser, name);
   bool is_root = strcmp(name, "sqrt") == 0;
   enum Operation operation = is_root ? POWER : find_function(name);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "algebra/differentiate.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -170,6 +171,19 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
   Node floor = floor_in_place(parser, is_nearest ? add(graph, argument, half) : argument);
   result.node = is_ceiling ? negate(graph, floor) : floor;
   return result;
+}
+
+struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number) {
+  struct Graph *graph = parser->graph;
+  require_dimensionless(parser, seed, format_text("the seed of %s", name));
+  require_dimensionless(parser, number, format_text("the number of %s", name));
+  if (!graph_is_constant_in_time(graph, seed.node))
+    FAIL(parser, "%s: the seed of %s changes in time; expected a number or a parameter", parser->place.what, name);
+  bool is_whole = gradient_by_kinds(graph, number.node, ~(1u << PARAMETER | 1u << MODE)).count == 0;
+  Node half = graph_constant(graph, 0.5);
+  Node k = is_whole ? number.node : floor_in_place(parser, add(graph, number.node, half));
+  enum Operation operation = strcmp(name, "gauss") == 0 ? GAUSS : UNIFORM;
+  return (struct Quantity){.node = function(graph, operation, seed.node, k), .dimension = dimension_one};
 }
 
 static bool check_argument(struct Parser *parser, struct Dimension unit, const char *name, const char *which,

@@ -16,6 +16,9 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
 /* floor, ceil, round or mod; b is ignored for one argument. */
 struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b);
 
+/* uniform or gauss of a seed and a number, which is rounded to a whole one where it changes between events. */
+struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number);
+
 /* A function of the language other than a power; b is ignored for one argument. */
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
                                   struct Quantity b);

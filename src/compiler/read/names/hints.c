@@ -73,8 +73,10 @@ static const struct Hint of_functions[] = {
     {"deadzone", "; write x - min(d, max(-d, x))"},
     {"hypot", "; write sqrt(x^2 + y^2)"},
     {"delay", "; write <state name=\"z\" rate=\"(u - z)/T\"/> for a lag of T, or a <mode> that an <event> sets"},
-    {"rand", "; write values from outside as an <input>, or a <table> of time"},
-    {"random", "; write values from outside as an <input>, or a <table> of time"},
+    {"rand", "; write uniform(seed, k) with whole numbers k, such as floor(time/0.01)"},
+    {"random", "; write uniform(seed, k) with whole numbers k, such as floor(time/0.01)"},
+    {"randn", "; write gauss(seed, k) with whole numbers k, such as floor(time/0.01)"},
+    {"noise", "; write gauss(seed, k) with whole numbers k, such as floor(time/0.01)"},
     {"cbrt", "; write sign(x)*abs(x)^(1/3)"},
 };
 

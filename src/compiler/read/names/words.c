@@ -7,7 +7,7 @@
 
 const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or", "not", NULL};
 
-const char *const free_functions[] = {"diff", "integral", "floor", "ceil", "round", "mod", NULL};
+const char *const free_functions[] = {"diff", "integral", "floor", "ceil", "round", "mod", "gauss", "uniform", NULL};
 
 /* What all systems have values of: first what expressions can use, then results. */
 static const char *const values[] = {"pi",
