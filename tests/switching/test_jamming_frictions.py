@@ -36,6 +36,9 @@ AT_REST = {
     for method in ("taylor", "radau")
 }
 
+# k = 3, c = 1 + 4 t: f = 1/(k - c) grows up to 0.5 s, while w > 0 has lost 100 times its integral, some hundred at most.
+GROWS = WORM.replace("{worm}", "0.02").replace("2*abs", "(1 + 4*time)*abs").replace("{load}", "-1").replace('="1"', '="5000"').replace('="0.1"', '="500"')
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
@@ -44,6 +47,8 @@ def built():
     for name, (worm, load, method) in AT_REST.items():
         texts[name] = WORM.format(name=name, worm=worm, load=load, method=method).replace('velocityStart="1"', "").replace('velocityStart="0.1"', "")
     texts["WormBack"] = WORM.format(name="WormBack", worm=0.001, load=AT_ONCE, method="taylor").replace('velocityStart="', 'velocityStart="-')
+    for method in ("taylor", "radau", "bdf"):
+        texts[f"WormGrows{method.title()}"] = GROWS.format(name=f"WormGrows{method.title()}", method=method)
     build_systems("jamming-frictions", texts)
 
 
@@ -84,3 +89,12 @@ def test_a_worm_with_two_motions():
         fmpy.simulate_fmu(str(fmu.archive("WormBack")), stop_time=1, output_interval=0.1, logger=log)
     assert any(m.startswith("time 0: the friction 'teeth', whose force follows from those of constraints, has more than one motion") for m in messages), messages
     assert not any("no solution" in message for message in messages)
+
+
+@pytest.mark.parametrize("method", ["Taylor", "Radau", "Bdf"])
+def test_a_worm_that_jams_on_its_way(open_fmu, method):
+    instance = open_fmu(f"WormGrows{method}").initialize()
+    with instance.fails(fmu.DISCARD, "the force of the constraint 'gear' has no solution there, as the friction 'teeth', .* jam each other"):
+        instance.step(1.0)
+    text = next(text for _, _, text in instance.messages if "jam each other" in text)
+    assert float(text.split()[1][:-1]) == pytest.approx(0.5, abs=1e-4)

@@ -28,6 +28,9 @@ const double friction_held_share = 1e-6;
 /* Less of the largest force is rounding. */
 static const double negligible_force = 1e-12;
 
+/* In units of the forces while a friction sticks: larger ones while it slides are those of a jam. */
+static const double jammed_force = 1e6;
+
 static const char neither[] = "a friction switches back and forth there without end";
 
 /* What decides on the mode of a friction. */
@@ -352,16 +355,26 @@ static bool follows_from(struct Settlement *settlement, size_t friction, size_t 
   return turns && with[place] != without[place];
 }
 
-/* True if there are accelerations once the friction sticks. */
-static bool moves_without_sliding(struct Settlement *settlement, size_t friction) {
+/* The largest force of a constraint; INFINITY where there are no accelerations. */
+static double largest_force(struct Settlement *settlement) {
+  double largest = 0.0;
+  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return INFINITY;
+  if (!settlement_values(settlement, settlement->state, settlement->other_noise)) return INFINITY;
+  for (size_t j = 0; j < lagrangian.constraints.count; j++)
+    largest = fmax(largest, fabs(settlement->acceleration[lagrangian.coordinate_count + j]));
+  return largest;
+}
+
+/* True if forces are bounded once the friction sticks, and are not, or hardly, while it slides. */
+static bool is_freed_by_sticking(struct Settlement *settlement, size_t friction) {
   double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
+  double sliding = largest_force(settlement);
   *mode = 0.0;
   settlement->instance->prepared_is_stale = true;
-  bool moves = evaluate_prepare(settlement->instance) == STATUS_DONE &&
-               settlement_values(settlement, settlement->state, settlement->other_noise);
+  double sticking = largest_force(settlement);
   *mode = kept;
   settlement->instance->prepared_is_stale = true;
-  return moves;
+  return isfinite(sticking) && sliding > jammed_force * sticking;
 }
 
 bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
@@ -376,7 +389,7 @@ bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
            follows_from(settlement, friction, branch, constraint) &&
            sliding_speed(settlement, friction) > resting_speed(settlement);
   }
-  if (!jams || (branch == switches->branch_count && !moves_without_sliding(settlement, friction))) return false;
+  if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(settlement, friction))) return false;
   log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
               "time %g: the force of the %s '%s' has no solution there, as the friction '%s', which follows from it, "
               "slides, and both jam each other (Painleve's paradox); expected less friction, or another load",

@@ -353,5 +353,9 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
 }
 
 bool events_explain_stop(struct Instance *instance, double time) {
-  return settle_explain(instance, time, instance->state);
+  const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (settle_explain(instance, time, instance->state)) return true;
+  if (laws == NULL) return false;
+  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
+  return laws->explain_jam(&settlement, lagrangian.switches->branch_count);
 }
