@@ -207,7 +207,7 @@ def cantilever(t):
     return {"q1": q[0], "q2": q[1], "tip": q[0] + q[1], "turned": (2 * q[0] + 3 * q[1]) / 2}
 
 
-def digital_servo(t):
+def sampled_shaft(t):
     """Deadbeat: forth for one period, back for another, after one of waiting."""
     s = t / 0.01 - 1
     phi = 0.0 if s < 0 else s**2 / 2 if s < 1 else 1 - (2 - s) ** 2 / 2 if s < 2 else 1.0
@@ -259,7 +259,7 @@ MOTIONS = {
     "CueBall": (cue_ball, 1e-9),
     "DroppedBall": (dropped_ball, 1e-12),
     "Thermostat": (thermostat, 1e-9),
-    "DigitalServo": (digital_servo, 1e-12),
+    "SampledShaft": (sampled_shaft, 1e-12),
     "Latch": (lambda t: {"x": (10 * t**3 - 1.25) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0}, 1e-12),
     "MassChain": (chain, 1e-6),
     "CoupledMasses": (coupled, 1e-6),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from scipy.special import jv, yv
 
 
@@ -187,3 +188,99 @@ def test_crane_in_numbers(open_fmu):
     rows = rows_of(open_fmu("GantryCrane").initialize(dict(hoistSpeed=-0.3), 1e-9), 8.0, 0.1, "x", "l", "theta")
     solution = solve_ivp(rates, (0, 8), [2, 8, 0, 0, 0, 0], method="Radau", t_eval=rows[:, 0], rtol=1e-10, atol=1e-12, max_step=0.01)
     np.testing.assert_allclose(rows[:, 1:], solution.y[:3].T, atol=1e-6)
+
+
+# DigitalServo
+
+SERVO = dict(R=2.0, L=1e-3, k=0.05, J=2e-5, b=1e-5, Ts=1e-3, q=1e-3, kp=6.0, kd=0.08, uMax=24.0)
+
+
+def servo(period, s=SERVO):
+    """The motor over a period in which the voltage stays: x(t + period) = A x + B u of theta, omega, i."""
+    rates = np.zeros((4, 4))
+    rates[0, 1] = 1
+    rates[1, 1:3] = -s["b"] / s["J"], s["k"] / s["J"]
+    rates[2, 1:] = -s["k"] / s["L"], -s["R"] / s["L"], 1 / s["L"]
+    whole = expm(rates * period)
+    return whole[:3, :3], whole[:3, 3]
+
+
+@pytest.mark.parametrize("ref, q, uMax", [(1.0, 1e-3, 24.0), (1.0, 1e-3, 3.0), (0.02, 2e-3, 24.0)])
+def test_servo_is_its_recursion(ref, q, uMax, open_fmu):
+    """Between samples by the exponential of a matrix, at them by the counts: 200 samples, the voltage limited at first or never."""
+    instance = open_fmu("DigitalServo").initialize(dict(ref=ref, q=q, uMax=uMax), 1e-11)
+    A, B = servo(SERVO["Ts"])
+    x, u, late, count = np.zeros(3), 0.0, 0.0, 0.0
+    for k in range(200):
+        measured = q * np.round(x[0] / q)
+        u, late = late, np.clip(SERVO["kp"] * (ref - measured) - SERVO["kd"] * (measured - count) / SERVO["Ts"], -uMax, uMax)
+        count = measured
+        instance.step(SERVO["Ts"] / 2)  # a sample at the end of a step belongs to it
+        assert instance.get("voltage") == pytest.approx(u, rel=1e-12)
+        instance.step(SERVO["Ts"] / 2)
+        x = A @ x + B * u
+        np.testing.assert_allclose(instance.get("theta", "omega", "i"), x, rtol=1e-7, atol=1e-9)
+
+
+def test_servo_of_the_z_transform(open_fmu):
+    """
+    Without steps of the encoder the loop is linear. Its response to a step of the reference is that of the transfer function from
+    ref to theta, z^-1 P(z) kp/(1 + z^-1 P(z) (kp + kd (1 - z^-1)/Ts)), here as a sum over its poles.
+    """
+    A, B = servo(SERVO["Ts"])
+    kp, kd = SERVO["kp"], SERVO["kd"] / SERVO["Ts"]
+    # States theta, omega, i, the late voltage, the last count.
+    loop = np.zeros((5, 5))
+    loop[:3, :3], loop[:3, 3] = A, B
+    loop[3, 0], loop[3, 4], loop[4, 0] = -(kp + kd), kd, 1
+    poles, vectors = np.linalg.eig(loop)
+    assert np.abs(poles).max() < 1
+    rest = np.linalg.solve(np.eye(5) - loop, [0, 0, 0, kp, 0])
+    assert rest[0] == pytest.approx(1, rel=1e-9)
+    shares = np.linalg.solve(vectors, -rest)
+    instance = open_fmu("DigitalServo").initialize(dict(q=1e-14, uMax=1e9), 1e-11)
+    for k in range(1, 101):
+        instance.step(SERVO["Ts"])
+        assert instance.get("theta") == pytest.approx((rest + vectors @ (shares * poles**k))[0].real, abs=1e-8)
+
+
+# WormGear
+
+WORM = dict(J1=1e-3, J2=0.5, n=30.0, load=60.0)
+
+
+def worm(tau, c, back=1.0, s=WORM):
+    """
+    The acceleration of the worm, and the torque L of the teeth: J1 a'' = tau - L - back c L, J2 a''/n = n L - load for L > 0,
+    back = 1 while it lifts and -1 while it lowers.
+    """
+    loss = 1 + back * c
+    acceleration = (tau - loss * s["load"] / s["n"]) / (s["J1"] + loss * s["J2"] / s["n"] ** 2)
+    return acceleration, (s["load"] + s["J2"] * acceleration / s["n"]) / s["n"]
+
+
+@pytest.mark.parametrize("tau, c, omega", [(6.0, 1.5, 0.0), (5.2, 1.5, 3.0), (-1.5, 1.5, -3.0), (0.0, 0.2, 0.0), (3.0, 0.2, 0.0)])
+def test_worm_lifts_and_lowers(tau, c, omega, open_fmu):
+    """From rest or on the way: what lifts pays for the loss, what locks itself is driven down, what does not runs down."""
+    back = 1.0 if omega > 0 or tau > (1 + c) * 2 else -1.0
+    acceleration, _ = worm(tau, c, back)
+    instance = open_fmu("WormGear").initialize({"tau": tau, "c": c, "omega": omega, "W": omega / 30}, 1e-9)
+    instance.step(0.01)
+    assert instance.get("omega") == pytest.approx(omega + 0.01 * acceleration, rel=1e-9)
+    assert instance.get("phi") == pytest.approx((0.01 * omega + 0.01**2 / 2 * acceleration) / 30, rel=1e-8)
+
+
+@pytest.mark.parametrize("tau", [-0.9, 0.0, 2.0, 4.9])
+def test_worm_holds(tau, open_fmu):
+    """From (1 - c) load/n = -1 N.m to (1 + c) load/n = 5 N.m nothing moves."""
+    instance = open_fmu("WormGear").initialize({"tau": tau}, 1e-9)
+    instance.step(1.0)
+    assert instance.get("omega", "a", "phi") == pytest.approx([0, 0, 0], abs=1e-12)
+
+
+def test_efficiency_of_the_worm(open_fmu):
+    """The load gets 1/(1 + c) of the power of the motor that lifts it steadily, at any speed."""
+    instance = open_fmu("WormGear").initialize({"tau": 5.0, "omega": 12.0, "W": 0.4}, 1e-9)
+    instance.step(0.5)
+    assert instance.get("omega") == pytest.approx(12.0, rel=1e-9)
+    assert instance.get("power") / (5.0 * instance.get("omega")) == pytest.approx(1 / 2.5, rel=1e-9)

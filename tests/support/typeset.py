@@ -12,7 +12,7 @@ GREEK = dict(zip("αβγδεζηθκλμνξπρστφχψωΓΔΘΛΣΦΨΩ",
                  "Gamma Delta Theta Lambda Sigma Phi Psi Omega".split()))  # fmt: skip
 FUNCTIONS = {name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log sqrt abs sign".split()}
 FUNCTIONS |= dict(pow=pow, asin=np.arcsin, acos=np.arccos, atan=np.arctan, asinh=np.arcsinh, acosh=np.arccosh, atanh=np.arctanh,
-                  atan2=np.arctan2, min=min, max=max, erf=lambda x: x, gate=lambda opener, value, other: value if opener > 0 else other)  # fmt: skip
+                  atan2=np.arctan2, min=min, max=max, erf=lambda x: x, gate=lambda condition, value, other: value if condition else other)  # fmt: skip
 
 
 def infix(element):
@@ -72,7 +72,7 @@ def check(page):
     for equation in root.iter("div"):
         if equation.get("class") != "equation":
             continue
-        conditions = lambda side: re.sub(r"\bif\((.*?) ?> ?0, ?", r"gate(\1, ", side)
+        conditions = lambda side: re.sub(r"\bif\(", "gate(", side)
         typeset = conditions("".join(infix(math) for math in equation.find("p") if math.tag != "wbr")).split("=")
         text = [plain(conditions(side)) for side in equation.find("details/code").text.split(" = ")]
         names = {name: generator.uniform(0.1, 0.9) for name in sorted(set(re.findall(r"[A-Za-z_]\w*", " ".join(text))))}
