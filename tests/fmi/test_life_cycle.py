@@ -80,7 +80,7 @@ ME = {
     "fmi2NewDiscreteStates":        "-    -    x    -    -    -",
     "fmi2EnterContinuousTimeMode":  "-    -    x    -    -    -",
     "fmi2CompletedIntegratorStep":  "-    -    -    x    -    -",
-    "fmi2SetTime":                  "-    -    x    x    -    -",
+    "fmi2SetTime":                  "-    -    -    x    -    -",
     "fmi2SetContinuousStates":      "-    -    -    x    -    -",
     "fmi2GetDerivatives":           "-    x    x    x    x    x",
     "fmi2GetEventIndicators":       "-    x    x    x    x    x",

@@ -36,7 +36,7 @@ TABLE = {
     "fmi3UpdateDiscreteStates":       {"CS": "-    -    -    -    -    -", "ME": "-    -    x    -    -    -"},
     "fmi3EnterContinuousTimeMode":    {"CS": "-    -    -    -    -    -", "ME": "-    -    x    -    -    -"},
     "fmi3CompletedIntegratorStep":    {"CS": "-    -    -    -    -    -", "ME": "-    -    -    x    -    -"},
-    "fmi3SetTime":                    {"CS": "-    -    -    -    -    -", "ME": "-    -    x    x    -    -"},
+    "fmi3SetTime":                    {"CS": "-    -    -    -    -    -", "ME": "-    -    -    x    -    -"},
     "fmi3SetContinuousStates":        {"CS": "-    -    -    -    -    -", "ME": "-    -    -    x    -    -"},
     "fmi3GetContinuousStateDerivatives": {"CS": NEVER["CS"], "ME": "-    x    x    x    x    x"},
     "fmi3GetContinuousStates":        {"CS": "-    -    -    -    -    -", "ME": "-    x    x    x    x    x"},

@@ -224,8 +224,8 @@ def test_truncated_and_foreign_bytes_are_refused(open_fmu):
 # --- States written by hand, with the right checksum ---
 
 HEADER = 64  # bytes; the last eight are the checksum of the situation, which follows
-# The situation: eight integers, the statistics, the steps of an integrator, eight numbers, and then values.
-MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 80
+# The situation: eight integers, the statistics, the steps of an integrator, the statistics as they were reported, eight numbers, and then values.
+MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 120
 NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched"]
 VALUES = TIME + 8 * len(NUMBERS)
 

@@ -61,7 +61,8 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
 
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count) {
   if (!check_states(instance, nominal, count)) return STATUS_ERROR;
-  if (count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
+  /* A compiler knows this number, and that there are no nominal values without states. */
+  if (lagrangian.state_count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
   return STATUS_DONE;
 }
 
@@ -79,14 +80,22 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 }
 
 void exchange_enter_event_mode(struct Instance *instance) {
-  if (instance->situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
+  struct Situation *situation = instance->situation;
+  if (situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
   /* What is set from here on may jump; what was set on the way follows a continuous course. */
-  if (instance->situation->phase == PHASE_CONTINUOUS_TIME) instance->situation->changed = CHANGED_NOTHING;
-  instance->situation->phase = PHASE_EVENT;
+  if (situation->phase == PHASE_CONTINUOUS_TIME) situation->changed = CHANGED_NOTHING;
+  situation->phase = PHASE_EVENT;
+}
+
+/* Whether modes do not agree with the present state and time. */
+static bool is_event_due(struct Instance *instance) {
+  const struct TimeLaws *times = lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
+  if (lagrangian.event_laws == NULL) return false;
+  return lagrangian.event_laws->is_due(instance) || (times != NULL && times->is_due(instance));
 }
 
 enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
-  if (instance->lacks_update && lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance))
+  if (instance->lacks_update && is_event_due(instance))
     return refuse_call(instance, "an event is due; expected an update of the discrete states before it");
   instance->lacks_update = false;
   instance->situation->phase = PHASE_CONTINUOUS_TIME;
@@ -126,6 +135,8 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
   instance->lacks_update = false;
   enum Status status = settle_modes(instance, states_changed);
+  memcpy(instance->situation->reported_statistics, instance->situation->statistics,
+         sizeof instance->situation->statistics);
   if (status != STATUS_DONE || lagrangian.constraints.projection == NULL || instance->kind == KIND_CO_SIMULATION)
     return status;
   status = evaluate_prepare(instance);

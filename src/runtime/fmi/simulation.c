@@ -1,6 +1,7 @@
 #include "fmi/simulation.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "stepping/start.h"
 
@@ -24,6 +25,9 @@ enum Status simulation_start(struct Instance *instance) {
   if (start_find(instance) != STATUS_DONE) return STATUS_ERROR;
   instance->situation->phase = instance->kind == KIND_MODEL_EXCHANGE ? PHASE_EVENT : PHASE_STEP_COMPLETE;
   instance->situation->changed = CHANGED_COURSE;
+  memcpy(instance->situation->reported_statistics, instance->situation->statistics,
+         sizeof instance->situation->statistics);
+  instance->lacks_update = true;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->situation->time);
   return STATUS_DONE;
 }

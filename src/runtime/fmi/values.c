@@ -68,12 +68,15 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 }
 
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value) {
+  /* What is discrete changes in event mode alone, where there is one (FMI 3.0.2, section 2.4.7). */
+  const struct Situation *situation = instance->situation;
+  const int64_t *counts = instance->uses_event_mode ? situation->reported_statistics : situation->statistics;
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER);
     if (variable == NULL) return STATUS_ERROR;
     if (variable->kind != VARIABLE_STATISTIC)
       return refuse_call(instance, "'%s' is not of the type Int64", variable->name);
-    value[i] = instance->situation->statistics[variable->index];
+    value[i] = counts[variable->index];
   }
   return STATUS_DONE;
 }
@@ -184,6 +187,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->situation->changed = CHANGED_VALUES;
+  instance->lacks_update |= instance->situation->phase == PHASE_EVENT;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
 }
 

@@ -14,10 +14,18 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
   return are_right ? instance : NULL;
 }
 
+/* Of a function that may not discard (section 2.1.3), what it cannot compute is an error. */
+static fmi2Status status_without_discard(struct Instance *instance, enum Status status) {
+  if (status != STATUS_DISCARD) return status_of(status);
+  instance->situation->phase = PHASE_ERROR;
+  return fmi2Error;
+}
+
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_get(instance, vr, nvr, value));
+  enum Status status = values_get(instance, vr, nvr, value);
+  return instance->kind == KIND_MODEL_EXCHANGE ? status_of(status) : status_without_discard(instance, status);
 }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
@@ -71,7 +79,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
       !check_array(instance, vKnown_ref, nKnown, "vKnown_ref") || !check_array(instance, dvKnown, nKnown, "dvKnown") ||
       !check_array(instance, dvUnknown, nUnknown, "dvUnknown"))
     return fmi2Error;
-  return status_of(directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
+  return status_without_discard(
+      instance, directional_derivative(instance, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
@@ -89,5 +98,5 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   if (instance == NULL || !check_array(instance, vr, nvr, "vr") || !check_array(instance, order, nvr, "order") ||
       !check_array(instance, value, nvr, "value"))
     return fmi2Error;
-  return status_of(output_derivatives(instance, vr, nvr, order, value));
+  return status_without_discard(instance, output_derivatives(instance, vr, nvr, order, value));
 }

@@ -123,7 +123,7 @@ void instance_restore(struct Instance *instance, const void *situation) {
   memcpy(instance->situation, situation, situation_size());
   instance->prepared_is_stale = instance->solver_is_stale = true;
   instance->told_singularity = 0;
-  instance->lacks_update = false;
+  instance->lacks_update = instance->situation->phase == PHASE_EVENT;
 }
 
 const char *instance_phase_name(const struct Instance *instance) {

@@ -52,7 +52,8 @@ struct Situation {
   int32_t waiting_event; /* 1 + the indicator whose zero ended the last step, where stops_at_events; 0 for none */
   int32_t gathered;      /* such events one after another that the time hardly tells apart */
   int64_t statistics[STATISTIC_COUNT];
-  int64_t completed_steps; /* of an importer that integrates, since the start */
+  int64_t completed_steps;                      /* of an importer that integrates, since the start */
+  int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode, of a co-simulation that has one */
   double time, start_time, stop_time;
   double tolerance;
   double suggested_step; /* of a solver that starts anew, not clipped by the communication step; 0 for none */
@@ -102,10 +103,11 @@ struct Instance {
   double *projection_work;    /* projection_work_count() */
   double *switching_work;     /* switching->work_count() */
   double departure;           /* the sign with which a branch that rested at 0 leaves it, as found last */
-  bool lacks_update;    /* of an importer that integrates: event mode began without an update of discrete states */
-  bool uses_event_mode; /* of a co-simulation: the importer goes through events between steps */
-  bool stops_at_events; /* and an event ends the step */
-  bool was_at_zero;     /* what changed its sign last had not left 0 by more than rounding before */
+  bool
+      lacks_update; /* of an importer that integrates: in event mode, no update of discrete states since it began or a value was set */
+  bool uses_event_mode;                 /* of a co-simulation: the importer goes through events between steps */
+  bool stops_at_events;                 /* and an event ends the step */
+  bool was_at_zero;                     /* what changed its sign last had not left 0 by more than rounding before */
   struct Scratch scratch[SCRATCH_USES]; /* for events */
   double *event_state;  /* in FMUs that switch: the state behind the last event, and as many numbers of workspace */
   double *acceleration; /* what result() takes: accelerations and forces of constraints; and the same along a seed */

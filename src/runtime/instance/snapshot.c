@@ -15,7 +15,7 @@ struct Header {
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
-enum { VERSION = 6 };
+enum { VERSION = 7 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + situation_size();
@@ -135,7 +135,9 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
   return has_phase(instance, fixed->phase) && are_choices(fixed) && can_wait(instance, fixed) &&
-         snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) && snapshot_are_counts(&fixed->completed_steps, 1) &&
+         snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
+         snapshot_are_counts(fixed->reported_statistics, STATISTIC_COUNT) &&
+         snapshot_are_counts(&fixed->completed_steps, 1) &&
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          fixed->searched <= fixed->last_step.end &&
