@@ -64,10 +64,15 @@ static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) 
   return document;
 }
 
-static void set_lines(xmlNodePtr node, long line) {
-  for (; node != NULL; node = node->next) {
-    set_line(node, line);
-    if (node->type == XML_ELEMENT_NODE) set_lines(node->children, line);
+/*
+ * Gives copies the lines of what they were copied from, as lines of its file; that of the <include> where lines of other files
+ * are not noted.
+ */
+static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePtr copy, const xmlNode *original) {
+  for (; copy != NULL && original != NULL; copy = copy->next, original = original->next) {
+    long line = line_of(original), noted = note_line(of_file, line);
+    set_line(copy, of_file->noted != NULL ? noted : include);
+    if (copy->type == XML_ELEMENT_NODE) set_lines(of_file, include, copy->children, original->children);
   }
 }
 
@@ -84,9 +89,12 @@ static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
   inner.line = line;
   inner.depth++;
   insert_in(&inner, xmlDocGetRootElement(document));
+  struct Diagnostics of_file = *inclusion->diagnostics;
+  of_file.origin = format_text(" (included on line %ld of %s)", line, inclusion->robot);
+  of_file.file = path;
   xmlNodePtr copies = xmlDocCopyNodeList(node->doc, xmlDocGetRootElement(document)->children);
+  set_lines(&of_file, line, copies, xmlDocGetRootElement(document)->children);
   xmlFreeDoc(document);
-  set_lines(copies, line);
   while (copies != NULL) {
     xmlNodePtr next = copies->next;
     xmlUnlinkNode(copies);
