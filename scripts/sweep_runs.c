@@ -49,11 +49,11 @@ struct Record {
 /* Of arrays over runs, each has a row for every one. */
 struct Sweep {
   struct Variables varied, watched, ends, sampled;
-  const double *values;         /* of what varies: runs x varied */
-  double tolerance;             /* 0 for the FMU's own */
+  const double *values; /* of what varies: runs x varied */
+  double tolerance;     /* 0 for the FMU's own */
   size_t time_count;
-  const double *times;          /* ends of the communication steps, ascending */
-  struct Variables counter;     /* of events; none where nobody asks for their times */
+  const double *times;      /* ends of the communication steps, ascending */
+  struct Variables counter; /* of events; none where nobody asks for their times */
   size_t record_count;
   const struct Record *records;
   double *recorded;             /* runs x records */
@@ -138,7 +138,7 @@ static bool go(const struct Course *course, fmi2FMUstate state, double begin, do
          (end <= begin || course->f->step(course->component, begin, end - begin, fmi2False) <= fmi2Warning);
 }
 
-enum { CROWD = 100 }; /* events of a step whose times are found */
+enum { CROWD = 100 };              /* events of a step whose times are found */
 static const double found = 1e-10; /* of a step: how well */
 
 /*
@@ -191,7 +191,10 @@ static const char *step(struct Course *course, double begin, double end) {
 static void begin_records(const struct Sweep *sweep, double *recorded) {
   for (size_t i = 0; i < sweep->record_count; i++) {
     size_t kind = sweep->records[i].kind;
-    recorded[i] = kind == RECORD_MAXIMUM ? -INFINITY : kind == RECORD_MINIMUM ? INFINITY : kind == RECORD_EVENTS ? 0.0 : NAN;
+    recorded[i] = kind == RECORD_MAXIMUM   ? -INFINITY
+                  : kind == RECORD_MINIMUM ? INFINITY
+                  : kind == RECORD_EVENTS  ? 0.0
+                                           : NAN;
   }
 }
 
