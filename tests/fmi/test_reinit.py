@@ -63,7 +63,7 @@ def jumps_of(name, monkeypatch):
     return jumped
 
 
-PIECES = ["BristleFriction", "DigitalServo", "PidController", "SpinningBeam"]  # what switches changes no state
+PIECES = ["BristleFriction", "DigitalServo", "HalfCar", "PidController", "SpinningBeam"]  # what switches changes no state
 
 
 @pytest.mark.parametrize("name", [name for name in fmu.moving_names() if name != "Rope"])

@@ -150,7 +150,7 @@ def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
     """What was prepared for the old value is not used: a new instance with the same values moves alike."""
     if fmu.is_constrained(name):
         pytest.skip("lengths that are tuned move the state: tests/mechanics/test_constraints.py")
-    if name == "DigitalServo":
+    if name in ("DigitalServo", "HalfCar"):
         pytest.skip("what its modes hold and when it samples are no states that a new instance could start with")
     instance, fresh = open_fmu(name).initialize(tolerance=1e-9), open_fmu(name)
     instance.step(0.01)

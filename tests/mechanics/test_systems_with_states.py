@@ -284,3 +284,81 @@ def test_efficiency_of_the_worm(open_fmu):
     instance.step(0.5)
     assert instance.get("omega") == pytest.approx(12.0, rel=1e-9)
     assert instance.get("power") / (5.0 * instance.get("omega")) == pytest.approx(1 / 2.5, rel=1e-9)
+
+
+# HalfCar
+
+
+def half_car():
+    """d/dt x = A x + B n of z, pitch, zf, zr, their velocities, roads, forces, filters, integrals; n: noises and bumps of both axles."""
+    m, J, mw, lf, lr, k, c, kt, gain, lag, speed, cut = 700, 1200, 40, 1.2, 1.5, 2e4, 1200, 1.8e5, 1000, 0.01, 20, 0.07
+    K, Ti, Td, N = 20, 2, 0.2, 10
+    A, B = np.zeros((16, 16)), np.zeros((16, 4))
+    A[0:4, 4:8] = np.eye(4)
+    mass, arms = np.diag([m, J, mw, mw]), np.array([[1, lf, -1, 0], [1, -lr, 0, -1]])  # stretch of the suspensions
+    tyres = np.diag([0, 0, kt, kt])
+    inverse = np.linalg.inv(mass)
+    A[4:8, 0:4] = -inverse @ (k * arms.T @ arms + tyres)
+    A[4:8, 4:8] = -inverse @ (c * arms.T @ arms)
+    A[4:8, 8:10] = inverse @ np.array([[0, 0], [0, 0], [kt, 0], [0, kt]])
+    A[4:8, 10:12] = inverse @ arms.T
+    A[8:10, 8:10] = -cut * speed * np.eye(2)
+    heights = np.zeros((2, 16))
+    heights[:, :2] = arms[:, :2]
+    filters, integrals = np.eye(16)[12:14], np.eye(16)[14:16]
+    outputs = -K * heights + integrals + K * N * (filters - heights)
+    A[10:12] = gain * outputs / lag - np.eye(16)[10:12] / lag
+    A[12:14] = N / Td * (heights - filters)
+    A[14:16] = -K / Ti * heights
+    B[8, 0] = B[9, 1] = 1
+    B[4:8, 2:4] = A[4:8, 8:10]
+    return A, B
+
+
+CAR = ["z", "pitch", "zf", "zr", "vz", "q", "vf", "vr", "roadFront", "roadRear", "forceFront", "forceRear", "front.filtered",
+       "rear.filtered", "front.I", "rear.I"]  # fmt: skip
+
+
+def test_half_car_on_its_road(open_fmu):
+    """Between samples by the exponential of a matrix; the rear axle meets the noise of the front one 27 samples later."""
+    instance = open_fmu("HalfCar").initialize({"rough": 0.05}, 1e-10)
+    A, B = half_car()
+    whole = expm(0.005 * np.block([[A, B], [np.zeros((4, 20))]]))
+    x, front = np.zeros(16), []
+    for k in range(200):
+        noises = instance.get("noiseFront", "noiseRear")  # the sample at the end of a step belongs to it
+        front.append(noises[0])
+        assert noises[1] == (front[k - 27] if k >= 27 else 0)
+        instance.step(0.005)
+        x = (whole @ [*x, *noises, 0, 0])[:16]
+        np.testing.assert_allclose(instance.get(*CAR), x, rtol=1e-6, atol=1e-9)
+    assert np.std(front) == pytest.approx(0.05, rel=0.15) and abs(np.mean(front)) < 0.05 / 5
+
+
+@pytest.mark.parametrize("w", [3.0, 8.0, 60.0])
+def test_half_car_on_waves(w, open_fmu):
+    """The transfer function from the height under the front wheel, once the start has died away; no noise."""
+    instance = open_fmu("HalfCar").initialize({"rough": 0.0}, 1e-9)
+    A, B = half_car()
+    amplitude = 0.001 * np.linalg.solve(1j * w * np.eye(16) - A, B[:, 2])
+    wave = lambda order, t: 0.001 * w**order * np.sin(w * t + order * np.pi / 2)
+    for i in range(2400):
+        t = i * 0.005
+        instance.set(bumpFront=wave(0, t))
+        instance.fmu.setRealInputDerivatives(instance.vr("bumpFront") * 3, [1, 2, 3], [wave(order, t) for order in (1, 2, 3)])
+        instance.step(0.005)
+        if i > 2300:
+            expected = (amplitude * np.exp(1j * w * instance.time)).imag
+            np.testing.assert_allclose(instance.get(*CAR[:4]), expected[:4], atol=2e-3 * abs(amplitude[:4]).max())
+
+
+def test_half_car_goes_back_bit_by_bit(open_fmu):
+    """From a saved state the same road comes again, and the same motion, to the last bit."""
+    instance = open_fmu("HalfCar").initialize({"rough": 0.3, "seed": 7})
+    instance.step(0.5)
+    saved, time, rows = instance.fmu.getFMUstate(), instance.time, []
+    for _ in range(2):
+        instance.fmu.setFMUstate(saved)
+        instance.time = time
+        rows.append(instance.run(1.0, 0.013, *CAR, "noiseRear", "comfort"))
+    assert rows[0] == rows[1]

@@ -11,12 +11,12 @@ from linked import linked_members, sizes
 
 EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["BristleFriction", "DampedPendulum", "DigitalServo", "ElasticPendulum", "FlyballGovernor", "FourBar", "GantryCrane", "Gyrocompass", "HydraulicCylinder",
+AUTO = ["BristleFriction", "DampedPendulum", "DigitalServo", "ElasticPendulum", "FlyballGovernor", "FourBar", "GantryCrane", "Gyrocompass", "HalfCar", "HydraulicCylinder",
         "MotorPendulum", "RobotArm", "Rope", "SeatSuspension", "SpinningBeam", "WormGear"]  # fmt: skip
 LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
 CHAINS = ["Bricard", "RobotArm"]  # of bodies in space, five or six joints long
 TABLES = LARGE + CHAINS  # their series are tables, which time is always handed to
-TIMED = ["BristleFriction", "DigitalServo", "Gyrocompass", "RotatingPivotPendulum", "SpinningBeam", "VibratingTable"]
+TIMED = ["BristleFriction", "DigitalServo", "Gyrocompass", "HalfCar", "RotatingPivotPendulum", "SpinningBeam", "VibratingTable"]
 FACTORED = ["ChainPendulum", "RobotArm", "SpinningBeam"]  # by a loop: full mass matrices of many rows
 LONG = ["NFourBar", "Rope"]  # systems of many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems
