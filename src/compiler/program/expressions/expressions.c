@@ -21,7 +21,8 @@ static Node *create_seeds(struct Graph *graph) {
   Node *seeds = allocate(2 * count, sizeof *seeds);
   for (size_t i = 0; i < count; i++) {
     enum SymbolKind kind = graph->symbols[i].kind;
-    if (kind == DISPLACEMENT || kind == REACTION || kind == MODE) continue; /* 0, replaced, or held */
+    if (kind == DISPLACEMENT || kind == REACTION || kind == MODE || kind == DUMMY)
+      continue; /* 0, replaced, held, or gone */
     seeds[i] =
         graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, format_text("d %s", graph->symbols[i].name));
   }
