@@ -45,12 +45,17 @@ LIMB = """<link name="thigh{0}"><inertial><origin xyz="0 0 -0.1"/><mass value="0
 LIMBS = "".join(LIMB.format(k, INERTIA.format(0.002), INERTIA.format(0.0006), *place) for k, place in enumerate([("-0.15 -0.024 0", "1 0 0"), ("0.15 -0.014 0", "0 1 0")]))
 LIMP = f"""<robot name="limp"><link name="trunk"><inertial><mass value="3"/>{INERTIA.format(0.05)}</inertial></link>{LIMBS}</robot>"""
 FALLING = '<system name="Falling"><include file="limp.urdf" as="r" base="floating" ground="true" limits="stops" friction="sticks"/></system>'
+# A puck on a table, which its joint holds half a millimetre deep in the ground.
+PUCK = f"""<robot name="puck"><link name="table"/><link name="puck"><inertial><mass value="2"/>{INERTIA.format(0.1)}</inertial>
+<collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision></link>
+<joint name="slide" type="planar"><parent link="table"/><child link="puck"/><origin xyz="0 0 0.0995"/><axis xyz="0 0 1"/></joint></robot>"""
+SLIDING = '<system name="Sliding"><include file="puck.urdf" as="r" ground="true"/><experiment stopTime="1"/></system>'
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    files = {"Standing/dog.urdf": DOG, "Roller/roller.urdf": ROUND.format(INERTIA.format(0.1)), "Falling/limp.urdf": LIMP}
-    build_systems("grounded", {"Standing": STANDING, "Roller": ROLLER, "Falling": FALLING}, files=files)
+    files = {"Standing/dog.urdf": DOG, "Roller/roller.urdf": ROUND.format(INERTIA.format(0.1)), "Falling/limp.urdf": LIMP, "Sliding/puck.urdf": PUCK}
+    build_systems("grounded", {"Standing": STANDING, "Roller": ROLLER, "Falling": FALLING, "Sliding": SLIDING}, files=files)
 
 
 def test_a_quadruped_stands():
@@ -173,6 +178,14 @@ def test_anymal_stands(anymal, open_fmu):
     weight = 9.81 * sum(inertia.mass for inertia in model.inertias)
     assert sum(forces) == pytest.approx(weight, rel=2e-9) and min(forces) > 0.2 * weight
     assert np.max(np.abs(balance)) < 1e-6 * weight
+
+
+def test_a_puck_slides(open_fmu):
+    """Its four corners press with k/2 mm each, where k = m g/mm, though no coordinate moves it along the normal."""
+    slower = 0.8 * (4 * 2 * 9.81 / 2) / 2
+    instance = open_fmu("Sliding").initialize({"r.slide_x_velocity": 10.0})
+    for time, speed, force in instance.run(0.5, 0.125, "r.slide_x_velocity", "r.puck_ground1.force"):
+        assert force == pytest.approx(4 * 2 * 9.81 / 2, rel=1e-9) and speed == pytest.approx(10 - slower * time, abs=1e-4)
 
 
 def test_a_mesh_that_is_missing(tmp_path):

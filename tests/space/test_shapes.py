@@ -54,6 +54,16 @@ CRATE = f"""<system name="Crate">{HEAD}{SIDES}{free("a").replace('Ixx="0.4*m*r^2
   <shape name="block" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" type="plane"/><gravity z="-g"/>
   <contact name="touch" between="block" and="floor"/><solver method="taylor"/><experiment stopTime="2" stepSize="0.01"/></system>"""
 
+# A crate that moves in a plane alone, sunk by d into a floor that may heave.
+FLAT = """<system name="Flat"><constant name="a" value="0.4" unit="m"/><constant name="h" value="0.2" unit="m"/>
+  <parameter name="m" start="2" unit="kg"/><parameter name="I" start="0.3" unit="kg.m2"/><parameter name="k" start="1e4" unit="N/m"/><parameter name="c" start="0.5" unit="s/m"/>
+  <parameter name="mu" start="0.3" unit="1"/><parameter name="d" start="1e-3" unit="m"/><parameter name="heave" start="0" unit="m"/><parameter name="rate" start="3" unit="rad/s"/>
+  <coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/><coordinate name="phi" velocity="w" unit="rad"/>
+  <frame name="crate"><translate x="x" y="y" z="h/2 - d"/><rotate axis="z" angle="phi"/></frame><body name="mass" in="crate" mass="m" Ixx="I" Iyy="I" Izz="I"/>
+  <frame name="below"><translate z="heave*sin(rate*time)"/></frame><gravity z="-9.81"/>
+  <shape name="block" in="crate" type="box" sizeX="a" sizeY="a" sizeZ="h"/><shape name="floor" in="below" type="plane"/>
+  <contact name="touch" between="block" and="floor" stiffness="k" damping="c" friction="mu" creep="1e-6"/><solver method="radau" tolerance="1e-9"/></system>"""
+
 THREE = """<system name="Three"><parameter name="k" start="1e4" unit="N/m"/><shape name="floor" type="plane"/>
   <for index="i" from="1" to="3"><coordinate name="z[i]" velocity="v[i]" unit="m"/><particle name="p[i]" mass="1" z="z[i]"/>
   <shape name="s[i]" in="p[i]" type="sphere" radius="0.1*i"/><contact name="c[i]" between="s[i]" and="floor" stiffness="k"/></for>
@@ -70,7 +80,7 @@ LEVER = """<system name="Lever"><coordinate name="z" velocity="v" unit="m"/><coo
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Crate": CRATE, "Three": THREE, "Twice": TWICE, "Lever": LEVER}
+    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Crate": CRATE, "Three": THREE, "Twice": TWICE, "Lever": LEVER, "Flat": FLAT}
     for first, second in PAIRS:
         parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
         texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
@@ -264,6 +274,26 @@ def test_a_block_that_falls_flat():
             assert instance.fmu.getInteger(instance.vr("solverSteps"))[0] < 100
 
 
+def test_friction_where_nothing_moves_along_the_normal(open_fmu):
+    """Four corners press with k d each: the crate slows by mu N/m, or turns ever slower by mu N R/I."""
+    pressing = 4 * 1e4 * 1e-3
+    rows = open_fmu("Flat").initialize({"vx": 6.0, "vy": -8.0}).run(1, 0.25, "touch.force", "vx", "vy", "w", "x")
+    for time, force, vx, vy, w, x in rows:
+        slower = 0.3 * pressing / 2 * time
+        assert force == pytest.approx(pressing, rel=1e-12)
+        assert (vx, vy, w) == pytest.approx((0.6 * (10 - slower), -0.8 * (10 - slower), 0), abs=1e-6)
+        assert x == pytest.approx(0.6 * (10 * time - slower * time / 2), abs=1e-6)
+    for time, w in open_fmu("Flat").initialize({"w": 20.0}).run(1, 0.25, "w"):
+        assert w == pytest.approx(20 - 0.3 * pressing * 0.2 * 2**0.5 / 0.3 * time, abs=1e-6)
+
+
+def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
+    """k d (1 + c d') where the floor has risen into the crate, and 0 where it has left it."""
+    for time, force in open_fmu("Flat").initialize({"heave": 0.01, "d": 0.0, "mu": 0.0}).run(2, 0.125, "touch.force"):
+        depth, rate = 0.01 * math.sin(3 * time), 0.03 * math.cos(3 * time)
+        assert force == pytest.approx(max(0, 4e4 * depth * (1 + 0.5 * rate)), abs=1e-9)
+
+
 @pytest.mark.parametrize(
     "text, message",
     [
@@ -287,6 +317,7 @@ def test_a_block_that_falls_flat():
         ('<contact gap="z"/>', "a <contact> needs a name and a gap, or shapes"),
 
         ('<shape name="t" type="sphere" radius="r"/><contact between="t" and="floor" stiffness="k"/>', "nothing moves 't' against 'floor'"),
+        ('<shape name="wall" type="plane" axis="y"/><contact name="q" between="skin" and="wall" friction="mu"/>', "no coordinate moves 'skin' towards 'wall' or away from it, so that the force between them is not determined; expected such a coordinate, or stiffness"),
     ],
 )
 def test_messages(tmp_path, text, message):

@@ -88,6 +88,53 @@ size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
   return find_shapes(reader, node, shapes) ? count_touches(shapes[0], shapes[1]) : 0;
 }
 
+/* Of the material of a side, along the base's axes. */
+static struct Vector velocity_of_point(struct Graph *graph, const struct Side *side, struct Vector point) {
+  struct Vector lever = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
+  struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, lever);
+  return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
+}
+
+/* Of the first side against the second at a touch, along the base's axes. */
+static struct Vector sliding_of_touch(struct Graph *graph, const struct ShapeContact *contact,
+                                      const struct Touch *touch) {
+  return vector_subtract(graph, velocity_of_point(graph, &contact->first, touch->point),
+                         velocity_of_point(graph, &contact->second, touch->point));
+}
+
+/* True if coordinates move the shapes against each other: towards each other, along the surfaces or by a rotation. */
+static bool moves_touch(struct Graph *graph, const struct ShapeContact *contact, const struct Touch *touch) {
+  const struct Pose *first = &contact->first.pose, *second = &contact->second.pose;
+  struct Vector spin = vector_subtract(graph, matrix_apply(graph, &first->rotation, first->angular_velocity),
+                                       matrix_apply(graph, &second->rotation, second->angular_velocity));
+  struct Vector sliding = sliding_of_touch(graph, contact, touch);
+  bool moves = graph_depends_on(graph, touch->gap, COORDINATE);
+  for (int i = 0; i < 3; i++)
+    moves |= graph_depends_on(graph, sliding.along[i], VELOCITY) || graph_depends_on(graph, spin.along[i], VELOCITY);
+  return moves;
+}
+
+/* Reports shapes that nothing moves; rigid ones need a coordinate along the normal, which gives the pressing force. */
+static bool check_motion(struct Reader *reader, xmlNodePtr node, const struct ShapeContact *contact) {
+  struct Graph *graph = reader->model->graph;
+  const char *first = contact->first.shape->name, *second = contact->second.shape->name;
+  for (size_t i = 0; i < contact->touches.count; i++) {
+    const struct Touch *touch = &contact->touches.items[i];
+    if (!moves_touch(graph, contact, touch)) {
+      report_at(reader, node, "nothing moves '%s' against '%s'; expected shapes of bodies or frames that move", first,
+                second);
+      return false;
+    }
+    if (is_compliant(node) || graph_depends_on(graph, touch->gap, COORDINATE)) continue;
+    report_at(reader, node,
+              "no coordinate moves '%s' towards '%s' or away from it, so that the force between them is not "
+              "determined; expected such a coordinate, or stiffness=\"...\" in N/m",
+              first, second);
+    return false;
+  }
+  return true;
+}
+
 static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struct ShapeContact *contact) {
   const struct ContactShape *shapes[2];
   long line = line_of(node);
@@ -95,13 +142,7 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   contact->first = side_of_contact(reader, line, shapes[0]);
   contact->second = side_of_contact(reader, line, shapes[1]);
   contact->touches = touches_of(reader, line, &contact->first, &contact->second);
-  for (size_t i = 0; i < contact->touches.count; i++) {
-    if (graph_depends_on(reader->model->graph, contact->touches.items[i].gap, COORDINATE)) continue;
-    report_at(reader, node, "nothing moves '%s' against '%s'; expected shapes of bodies or frames that move",
-              shapes[0]->name, shapes[1]->name);
-    return false;
-  }
-  return true;
+  return check_motion(reader, node, contact);
 }
 
 const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node) {
@@ -142,20 +183,12 @@ static Node pressing_force(struct Reader *reader, long line, const struct Law *l
   return choose_node(graph, is_apart, ZERO, force);
 }
 
-/* Of the material of a side, along the base's axes. */
-static struct Vector velocity_of_point(struct Graph *graph, const struct Side *side, struct Vector point) {
-  struct Vector lever = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
-  struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, lever);
-  return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
-}
-
 /* The force on the first side. */
 static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, const struct ShapeContact *contact,
                                     const struct Touch *touch, Node pressing) {
   struct Vector force = vector_scale(graph, pressing, touch->normal);
   if (law->friction == ZERO) return force;
-  struct Vector sliding = vector_subtract(graph, velocity_of_point(graph, &contact->first, touch->point),
-                                          velocity_of_point(graph, &contact->second, touch->point));
+  struct Vector sliding = sliding_of_touch(graph, contact, touch);
   Node along = vector_dot(graph, sliding, touch->normal);
   sliding = vector_subtract(graph, sliding, vector_scale(graph, along, touch->normal));
   Node squares = add(graph, vector_dot(graph, sliding, sliding), power_number(graph, law->creep, 2.0));
