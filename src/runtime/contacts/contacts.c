@@ -403,8 +403,27 @@ static size_t find_pulling(const struct Settlement *settlement) {
   return found;
 }
 
+/* Logs a contact whose gap, or its rate where it touches, is not finite; NULL where there is none, else the reason to refuse it. */
+static const char *check_values(const struct Settlement *settlement) {
+  const struct SwitchTable *switches = settlement->switches;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    bool has_gap = isfinite(contact_value(settlement, i, CONTACT_GAP));
+    bool needs_rate = contact_is_closed(settlement, i) || is_touching(settlement, i);
+    if (has_gap && (!needs_rate || isfinite(contact_value(settlement, i, CONTACT_RATE)))) continue;
+    log_message(
+        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; expected "
+        "one that is finite there, such as (1 + tanh(x/2))/2 in place of 1/(1 + exp(-x))",
+        settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");
+    return "a contact has no finite gap";
+  }
+  return NULL;
+}
+
 static const char *check_gaps(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
+  const char *problem = check_values(settlement);
+  if (problem != NULL) return problem;
   bool starts = settlement->occasion == AT_START, moved = settlement->moved;
   double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
   for (size_t i = 0; i < switches->contact_count; i++) {
@@ -430,8 +449,10 @@ static const char *act_once(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   bool may_turn = may_turn_gaps(settlement) && settlement->occasion != AT_START;
   *again = true;
+  const char *problem = check_values(settlement);
+  if (problem != NULL) return problem;
   if ((settlement->moved || may_turn || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
-  const char *problem = may_turn && !settlement->jumped ? check_gaps(settlement) : NULL;
+  if (may_turn && !settlement->jumped) problem = check_gaps(settlement);
   if (problem != NULL) return problem;
   if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
   size_t contact = find_impact(settlement);
