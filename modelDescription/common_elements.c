@@ -22,7 +22,7 @@ static void write_display_units(xmlTextWriterPtr writer, const struct Interface 
     const struct InterfaceVariable *variable = &interface->variables[i];
     struct Dimension dimension;
     double factor;
-    if (variable->display_unit == NULL || strcmp(variable->unit, unit) != 0) continue;
+    if (variable->display_unit == NULL || variable->unit == NULL || strcmp(variable->unit, unit) != 0) continue;
     if (contains(written, count, variable->display_unit)) continue;
     written[count++] = variable->display_unit;
     display_unit_parse(variable->display_unit, &dimension, &factor);
