@@ -50,11 +50,34 @@ FORCES = {
 def name_of(body, method):
     return f"Given{body}{method.title()}"
 
+# In a plane: the force is opposite to the velocity (v, w), of 5 N, and none at rest. The mass is 1 kg.
+PLANE = ('<coordinate name="x" velocity="v" acceleration="{}"/><coordinate name="y" velocity="w" acceleration="{}"/><particle mass="1" x="x" y="y"/>'
+         '<friction name="rub" velocity="v" across="w" force="5"/><output name="across">y.force</output>')  # fmt: skip
+PLANES = {
+    "Both": PLANE.format("if(time &lt; 1, 0, 3)", "if(time &lt; 1, 0, 4)"),
+    "One": PLANE.format("if(time &lt; 1, 0, -3)", "0"),
+    "Later": PLANE.format("if(time &lt; 1, 0, 3)", "if(time &lt; 2, 0, 4)"),
+    "Ramp": PLANE.format("-3*max(0, time - 1)", "4*max(0, time - 1)"),
+    "Twice": PLANE.format("if(time &lt; 0.3, -3, if(time &lt; 1.1, 0, 6))", "if(time &lt; 0.3, -4, if(time &lt; 1.1, 0, -8))")
+    .replace('"v" acc', '"v" velocityStart="0.9" acc').replace('"w" acc', '"w" velocityStart="1.2" acc'),
+    "Quarter": PLANE.format("6*time*cos(2*time)", "6*time*sin(2*time)"),
+}  # fmt: skip
+QUARTER = lambda t: (3 * t * np.sin(2 * t) - 1.5 * (1 - np.cos(2 * t)), 1.5 * np.sin(2 * t) - 3 * t * np.cos(2 * t))
+# Of the time: the velocity and the acceleration.
+DRIVEN = {
+    "Both": lambda t: ((3 * max(0, t - 1), 4 * max(0, t - 1)), (after(t, 1, 3), after(t, 1, 4))),
+    "One": lambda t: ((-3 * max(0, t - 1), 0), (after(t, 1, -3), 0)),
+    "Later": lambda t: ((3 * max(0, t - 1), 4 * max(0, t - 2)), (after(t, 1, 3), after(t, 2, 4))),
+    "Ramp": lambda t: ((-1.5 * max(0, t - 1) ** 2, 2 * max(0, t - 1) ** 2), (-3 * max(0, t - 1), 4 * max(0, t - 1))),
+    "Twice": lambda t: ((0.9 - 3 * t, 1.2 - 4 * t), (-3, -4)) if t < 0.3 else ((6 * max(0, t - 1.1), -8 * max(0, t - 1.1)), (after(t, 1.1, 6), after(t, 1.1, -8))),
+    "Quarter": lambda t: (QUARTER(t), (6 * t * np.cos(2 * t), 6 * t * np.sin(2 * t))),
+}  # fmt: skip
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {}
-    for body, elements in BODIES.items():
+    for body, elements in (BODIES | PLANES).items():
         output = "" if "drive" in elements else '<output name="drive">x.force</output>'
         for method in METHODS:
             name = name_of(body, method)
@@ -94,3 +117,15 @@ def test_one_that_is_driven_holds_another(open_fmu):
     others = {time: other for time, other in instance.run(3, 0.125, "other")}
     assert [others[time] for time in (0.5, 1.5, 2.5)] == pytest.approx([0, -5, -4], abs=1e-12)
     assert np.isclose(instance.get("v"), 2) and np.isclose(instance.get("w"), 1)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("body", PLANES)
+def test_forces_in_a_plane(open_fmu, body, method):
+    instance = open_fmu(name_of(body, method)).initialize()
+    for time, *forces in instance.run(3, 0.125, "rub.force", "rub.across.force", "drive", "across"):
+        velocity, acceleration = DRIVEN[body](time)
+        speed = np.hypot(*velocity)
+        if 0 < time and min(abs(time - 1), abs(time - 2)) > 1e-3:
+            friction = [5 * part / speed if speed > 0 else 0 for part in velocity]
+            assert forces == pytest.approx([*friction, *np.add(friction, acceleration)], abs=1e-6), time

@@ -119,17 +119,17 @@ static Node velocity_by_heading(struct Graph *graph, const struct Friction *alon
 
 /*
  * In units of the velocity: falls through 0 where the speed falls to the lower one, or that along the heading below 0 by as much,
- * or the force needed comes to the stiction.
+ * or the force needed comes to the stiction; of one whose velocity is given, where the speed rises from rest to the lower one.
  */
 static Node lower_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
-  Node left = power_number(graph, along->stiction, 2.0);
-  for (int i = 0; i < 2; i++) {
+  Node lower = along->plane.lower, above = subtract(graph, divide(graph, square_of_speed(graph, along), lower), lower);
+  Node left = along->is_given ? negate(graph, above) : power_number(graph, along->stiction, 2.0);
+  for (int i = 0; i < 2 && !along->is_given; i++) {
     Node share = multiply(graph, along[i].sliding, along[i].plane.heading);
     Node force = add(graph, model->unknowns.forces[along[i].constraint], share);
     left = subtract(graph, left, power_number(graph, force, 2.0));
   }
-  Node lower = along->plane.lower, above = subtract(graph, divide(graph, square_of_speed(graph, along), lower), lower);
   Node ahead = add(graph, velocity_by_heading(graph, along, false), lower);
   Node moves = choose_node(graph, along->mode, above, ahead);
   return choose_node(graph, power_number(graph, along->mode, 2.0), moves, left);

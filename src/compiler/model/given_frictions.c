@@ -45,21 +45,30 @@ static bool has_given_velocity(const struct Model *model, const struct Friction 
   return all;
 }
 
+/* Of one in a plane the runtime follows the speed. */
+static void follow_sign(struct Model *model, const struct Friction *friction) {
+  append_branch(&model->switches, (struct Branch){.mode = friction->mode,
+                                                  .indicator = friction->velocity,
+                                                  .is_of_friction = true,
+                                                  .kinds = model->graph->vertices[friction->velocity].kinds,
+                                                  .function = "a friction",
+                                                  .line = model->constraints.items[friction->constraint].line});
+}
+
 void find_given_frictions(struct Model *model) {
   struct Switches *switches = &model->switches;
   if (switches->friction_count == 0) return;
   const bool *is_given = given_velocities(model);
-  for (size_t i = 0; i < switches->friction_count; i++) {
+  size_t parts;
+  for (size_t i = 0; i < switches->friction_count; i += parts) {
     struct Friction *friction = &switches->frictions[i];
-    struct Variable *constraint = &model->constraints.items[friction->constraint];
-    if (friction->plane.axis != NO_PLANE || !has_given_velocity(model, friction, is_given)) continue;
-    friction->is_given = true;
-    constraint->node = ZERO;
-    append_branch(switches, (struct Branch){.mode = friction->mode,
-                                            .indicator = friction->velocity,
-                                            .is_of_friction = true,
-                                            .kinds = model->graph->vertices[friction->velocity].kinds,
-                                            .function = "a friction",
-                                            .line = constraint->line});
+    bool all = true;
+    parts = friction->plane.axis == NO_PLANE ? 1 : 2;
+    for (size_t part = 0; part < parts; part++) all &= has_given_velocity(model, &friction[part], is_given);
+    for (size_t part = 0; part < parts && all; part++) {
+      friction[part].is_given = true;
+      model->constraints.items[friction[part].constraint].node = ZERO;
+    }
+    if (all && parts == 1) follow_sign(model, friction);
   }
 }

@@ -44,7 +44,7 @@ struct PlaneSide {
  * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
  * where others hold the velocity at 0: the told mode is 0 then. Against a negative velocity it pushes with sliding_back, up to
  * stiction_back. One whose velocity is given, by drives or inputs, never sticks: its mode is that of a branch, the velocity's
- * sign, and at rest it has no force.
+ * sign, or in a plane its own, and at rest it has no force.
  */
 struct Friction {
   size_t constraint; /* among the model's */

@@ -74,7 +74,8 @@ static bool friction_takes_part(const struct Settlement *settlement, size_t fric
   bool rests = false;
   for (size_t i = 0; i < switches->contact_count; i++)
     rests |= contact_takes_part(settlement, i) && rests_on(switches, friction, i);
-  return rests && settlement->takes_part[switches->contact_count + friction] != 0.0;
+  return rests && !switches->frictions[friction].is_given &&
+         settlement->takes_part[switches->contact_count + friction] != 0.0;
 }
 
 static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTable *switches, size_t row) {

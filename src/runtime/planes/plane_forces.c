@@ -33,7 +33,7 @@ static bool stop_slow(struct Settlement *settlement) {
   bool moves = false;
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    if (!state.has_force || !is_at_rest(settlement, &state)) continue;
+    if (!state.has_force || state.is_given || !is_at_rest(settlement, &state)) continue;
     moves |= state.speed > 0.0;
     plane_stick(settlement, &state);
   }
@@ -60,7 +60,7 @@ static bool find_free(struct PlaneForces *forces) {
     if (settlement->takes_part[i] != 0.0) set_contact(settlement, i, false);
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    if (state.mode == PLANE_STICKS) plane_free(settlement, &state);
+    if (state.mode == PLANE_STICKS && !state.is_given) plane_free(settlement, &state);
   }
   bool is_done = plane_evaluate(settlement) && pushes_create(settlement, &forces->pushes);
   settlement_restore_modes(settlement);

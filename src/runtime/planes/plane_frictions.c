@@ -56,6 +56,29 @@ static bool leave_rest(struct Settlement *settlement, const struct PlaneState *s
   return true;
 }
 
+/* Whether a given velocity leaves rest, or goes on from there. */
+static bool departs(const struct Settlement *settlement, const struct PlaneState *state) {
+  const double *noise = &settlement->noise[friction_place(settlement->switches, state->facts->along, FRICTION_RATE)];
+  bool speeds = state->velocity[0] * state->rate[0] + state->velocity[1] * state->rate[1] >= 0.0;
+  bool has_rate = fabs(state->rate[0]) > noise[0] || fabs(state->rate[1]) > noise[FRICTION_VALUES];
+  return (state->has_slowed && state->is_first) || state->speed > state->lower || (speeds && has_rate);
+}
+
+/* One whose velocity is given rests without force while this is none, and slides else. Whether its mode changes. */
+static bool follow_given(struct Settlement *settlement, const struct PlaneState *state) {
+  if (state->mode == PLANE_STICKS) {
+    if (!departs(settlement, state)) return false;
+    if (plane_moves(state)) plane_slide(settlement, state);
+    else plane_head(settlement, state, state->rate);
+  } else {
+    if (!is_stopping(settlement, state) && !is_sliding_otherwise(settlement, state)) return false;
+    if (plane_moves(state)) plane_slide(settlement, state);
+    else plane_stick(settlement, state);
+  }
+  plane_count_switch(settlement, state);
+  return true;
+}
+
 /* One that loses its force, or has one again. Whether it does. */
 static bool change_force(struct Settlement *settlement, const struct PlaneState *state) {
   if (state->is_free != state->has_force) return false;
@@ -114,7 +137,7 @@ static bool share_loads(struct Settlement *settlement) {
   bool shares = false;
   for (size_t i = 0; i < settlement->switches->plane_count && !shares; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    bool rests = state.has_force && !(state.speed > state.small);
+    bool rests = state.has_force && !state.is_given && !(state.speed > state.small);
     shares = rests && is_overcome(settlement, &state) && plane_loads_share(settlement, i);
   }
   return shares;
@@ -127,6 +150,7 @@ static const char *act_on_planes(struct Settlement *settlement, bool *again) {
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
     if (state.is_free || !state.has_force) *again |= change_force(settlement, &state);
+    else if (state.is_given) *again |= follow_given(settlement, &state);
     else if (is_stopping(settlement, &state)) stops = true;
     else *again |= state.mode == PLANE_STICKS ? leave_rest(settlement, &state) : change_slide(settlement, &state);
   }

@@ -35,7 +35,7 @@ static bool carries(const struct PlaneLoads *loads, size_t plane) {
   struct PlaneState state = plane_state(loads->settlement, plane);
   bool is_slow = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
   bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->settlement, &state));
-  return rests && state.stiction > 0.0 && state.sliding > 0.0;
+  return rests && !state.is_given && state.stiction > 0.0 && state.sliding > 0.0;
 }
 
 static size_t count_carrying(const struct PlaneLoads *loads) {

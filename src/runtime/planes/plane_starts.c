@@ -99,7 +99,7 @@ static double nearest_heading(struct Heading *heading, double first) {
 /* One whose velocity others hold pushes along the heading that it has. */
 static bool turns(struct Settlement *settlement, const struct PlaneState *state) {
   bool is_held = false;
-  if (state->mode != PLANE_HEADS || state->speed > state->upper) return false;
+  if (state->mode != PLANE_HEADS || state->is_given || state->speed > state->upper) return false;
   return !frictions_find_held(settlement, state->facts->along, &is_held) || !is_held;
 }
 

@@ -57,6 +57,7 @@ struct PlaneState plane_state(const struct Settlement *settlement, size_t plane)
   state.has_sped = is_hit(settlement, friction_indicator(switches, facts->along + 1));
   bool may_have_turned = state.mode == PLANE_SLIDES && state.upper == turned_aside && !settlement->jumped;
   state.has_turned_back = may_have_turned && state.aside < -slope_back * state.ahead;
+  state.is_given = switches->frictions[facts->along].is_given;
   state.is_first = settlement->flips[friction_indicator(switches, facts->along)] == 0.0;
   return state;
 }
@@ -84,7 +85,7 @@ static void set_plane_mode(struct Settlement *settlement, const struct PlaneStat
 }
 
 void plane_hold(struct Settlement *settlement, const struct PlaneState *state) {
-  set_plane_mode(settlement, state, PLANE_STICKS, state->none, never);
+  set_plane_mode(settlement, state, PLANE_STICKS, state->is_given ? 3.0 * state->none : state->none, never);
 }
 
 void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]) {

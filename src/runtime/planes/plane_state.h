@@ -25,6 +25,7 @@ struct PlaneState {
   bool has_slowed;      /* the zero was found of its indicator at the lower speed, or at the stiction */
   bool has_sped;        /* at the upper speed */
   bool has_turned_back; /* within a step of an importer, so that it came past rest */
+  bool is_given;        /* its velocity is: it never sticks, but rests without force */
   bool is_first;        /* it has not switched in this settlement */
 };
 

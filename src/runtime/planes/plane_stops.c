@@ -19,7 +19,7 @@ static const double hopeless = 1e6;
 static void try_all(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
-    bool tries = state.mode != PLANE_STICKS && plane_is_slow(settlement, &state);
+    bool tries = state.mode != PLANE_STICKS && !state.is_given && plane_is_slow(settlement, &state);
     settlement->takes_part[settlement->switches->contact_count + state.facts->along] = tries ? is_tried : 0.0;
     if (tries) plane_stick(settlement, &state);
     if (tries) plane_count_switch(settlement, &state);
@@ -76,9 +76,9 @@ static bool bring_to_rest(struct Settlement *settlement) {
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
     bool can_rest = settlement->takes_part[switches->contact_count + state.facts->along] != has_no_hold;
-    bool begins = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state) && can_rest;
+    bool begins = state.mode == PLANE_HEADS && !state.is_free && !state.is_given && !plane_moves(&state) && can_rest;
     if (begins) plane_stick(settlement, &state);
-    moves |= (begins || state.mode == PLANE_STICKS) && state.speed > 0.0;
+    moves |= (begins || (state.mode == PLANE_STICKS && !state.is_given)) && state.speed > 0.0;
   }
   bool is_done = !moves || settlement->occasion == AT_START || settlement_push(settlement);
   settlement_restore_modes(settlement);
