@@ -94,6 +94,17 @@ def test_parameters_that_are_0_hide_nothing(tmp_path):
     assert "is exact to 1e-13 by 6 nodes" in said_of(tmp_path, content).stderr
 
 
+@pytest.mark.parametrize("integrand, low, high", [
+    ("if(s > 0.9, 50, 0)", 0, 1), ("mod(4*s, 1)", 0, 1), ("mod(2*s, 1)", 0, 1), ("if(abs(s) < 0.7, 0, 1)", -1, 1), ("max(0, s - 0.999)", 0, 1),
+    ("exp(-((s - 0.37)/0.001)^2)", 0, 1), ("1/(s - 0.5)", 0, 1),
+])  # fmt: skip
+def test_what_few_nodes_do_not_see_is_not_called_exact(tmp_path, integrand, low, high):
+    """One node in the middle gives 0, or a symmetric value, of these, which are another number or none."""
+    text = integrand.replace("<", "&lt;")
+    said = said_of(tmp_path, f'<output name="o">integral(s, {low}, {high}, {text})</output>').stderr
+    assert "note:" not in said and "has a relative error of" in said, said
+
+
 def test_a_kink_is_named_with_its_error(tmp_path):
     result = said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x))</output>')
     share = re.search(r"warning: integral\(s, 0, 1, abs\(s - 0.3\*x\)\) has a relative error of (\S+) by 32 nodes", result.stderr)

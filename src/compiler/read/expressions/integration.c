@@ -19,6 +19,7 @@
 enum { CHOICE_LIMIT = 32, REFERENCE_NODES = 64, SAMPLES = 6 };
 
 static const double exactness = 1e-13;
+static const double golden_section = 0.3819660112501051; /* a share of 1 */
 
 /* What a motion changes by itself. */
 static const unsigned moving =
@@ -34,7 +35,8 @@ struct Sampling {
   const Node *targets;
   size_t count;
   double *start, *symbols, *values; /* the last of all nodes of the graph */
-  double *sums, *sizes, *reference; /* one for each target */
+  double *sums, *sizes;              /* one for each target: of its values, and of their magnitudes */
+  double *reference, *reference_size; /* the same by many nodes */
   uint64_t random;
 };
 
@@ -139,15 +141,16 @@ static void clear_sums(struct Sampling *sampling) {
   memset(sampling->sizes, 0, sampling->count * sizeof *sampling->sizes);
 }
 
-/* By two parts; false where a value is not finite. */
+/* By two parts whose ratio is no simple number, so that nothing cancels by symmetry. False where a value is not finite. */
 static bool find_reference(struct Sampling *sampling) {
   const struct Rule rule = rule_of(REFERENCE_NODES);
   bool is_finite = true;
   clear_sums(sampling);
-  add_part(sampling, &rule, 0.0, 0.5);
-  add_part(sampling, &rule, 0.5, 1.0);
+  add_part(sampling, &rule, 0.0, golden_section);
+  add_part(sampling, &rule, golden_section, 1.0);
   for (size_t j = 0; j < sampling->count; j++) {
     sampling->reference[j] = sampling->sums[j];
+    sampling->reference_size[j] = sampling->sizes[j];
     is_finite &= isfinite(sampling->sums[j]);
   }
   return is_finite;
@@ -161,7 +164,8 @@ static double error_of(struct Sampling *sampling, const double *roundings, size_
   add_part(sampling, &rule, 0.0, 1.0);
   for (size_t j = 0; j < sampling->count; j++) {
     double error = fabs(sampling->sums[j] - sampling->reference[j]) - 4.0 * DBL_EPSILON * roundings[j];
-    if (sampling->sizes[j] > 0.0 && !(error / sampling->sizes[j] <= worst)) worst = error / sampling->sizes[j];
+    double size = fmax(sampling->sizes[j], sampling->reference_size[j]);
+    if (size > 0.0 && !(error / size <= worst)) worst = error / size;
   }
   return worst;
 }
@@ -177,6 +181,7 @@ static double *roundings_in(const struct Sampling *sampling) {
   bounded.sums = allocate(sampling->count, sizeof *bounded.sums);
   bounded.sizes = allocate(sampling->count, sizeof *bounded.sizes);
   bounded.reference = allocate(sampling->count, sizeof *bounded.reference);
+  bounded.reference_size = allocate(sampling->count, sizeof *bounded.reference_size);
   find_reference(&bounded);
   return bounded.reference;
 }
@@ -221,7 +226,8 @@ static struct Sampling sampling_of(struct Scope *scope, Node value) {
                            .values = allocate(graph->count, sizeof(double)),
                            .sums = allocate(count, sizeof(double)),
                            .sizes = allocate(count, sizeof(double)),
-                           .reference = allocate(count, sizeof(double))};
+                           .reference = allocate(count, sizeof(double)),
+                           .reference_size = allocate(count, sizeof(double))};
 }
 
 /* True the first time that an integral is named in its line; outputs, for example, are read twice. */
@@ -253,11 +259,11 @@ static size_t choose_nodes(struct Parser *parser, const struct Integral *integra
   else if (worst > exactness)
     report_warning(
         diagnostics, current_line(parser),
-        "%s has a relative error of %.1g by %zu nodes; expected an integrand without kinks and poles, in parts "
-        "where it has any, or a number of nodes as a fifth argument",
+        "%s has a relative error of %.1g by %zu nodes; expected an integrand that neither oscillates nor has kinks and poles, "
+        "in parts where it does, or a number of nodes as a fifth argument",
         integral->text, worst, nodes);
   else
-    report_note(diagnostics, current_line(parser), "%s is exact to 1e-13 by %zu node%s", integral->text, nodes,
+    report_note(diagnostics, current_line(parser), "%s is exact to 1e-13 by %zu node%s near the start values", integral->text, nodes,
                 nodes == 1 ? "" : "s");
   return nodes;
 }
