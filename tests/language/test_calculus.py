@@ -12,7 +12,8 @@ from fmu import build_systems, lagc
 HEAD = '<coordinate name="x" velocity="v" start="0.7"/><coordinate name="y" velocity="vy" start="-0.3" velocityStart="0.5"/><particle mass="1" x="x" y="y"/><parameter name="p" start="1.5"/><input name="u" start="2"/>'
 FUNCTIONS = """<function name="wave" arguments="s k">sin(k*s)*exp(-s) + abs(s - x)*s</function>
 <function name="slope" arguments="s">diff(wave(s, p), s)</function>
-<function name="ramp" arguments="s">abs(s)*s</function>"""
+<function name="ramp" arguments="s">abs(s)*s</function>
+<function name="held" arguments="a b">diff(a^3*p + b*x, p)</function>"""
 # Each with the value that it has at x = 0.7, y = -0.3, v = 0, vy = 0.5, p = 1.5, u = 2, time = 0.
 X, Y, VY, P, U = 0.7, -0.3, 0.5, 1.5, 2.0
 VALUES = {
@@ -25,6 +26,7 @@ VALUES = {
     "slope(1)": P * np.cos(P) * np.exp(-1) - np.sin(P) * np.exp(-1) + 1 + (1 - X),
     "slope(y)": P * np.cos(P * Y) * np.exp(-Y) - np.sin(P * Y) * np.exp(-Y) - Y + (X - Y),
     "sum(i, 1, 3, diff(ramp(i*y), y))": sum(2 * i * i * abs(Y) for i in (1, 2, 3)),
+    "held(p, 2) + held(x*p, p)": P**3 + (X * P) ** 3,
     "integral(s, 0, x, s^2)": X**3 / 3,
     "integral(s, y, x*p, sin(s*p))": (np.cos(Y * P) - np.cos(X * P * P)) / P,
     "integral(s, 1, 0, s)": -0.5,

@@ -167,7 +167,13 @@ static void append_event(struct Reader *reader, const struct Event *event) {
   switches->events[switches->event_count++] = *event;
 }
 
+/* A linearization is that of the motion between events. */
+static bool is_linearized(const struct Reader *reader) {
+  return reader->scope->switches == NULL;
+}
+
 void read_event(struct Reader *reader, xmlNodePtr node) {
+  if (is_linearized(reader)) return;
   struct Event event = {.passage = PASSAGE_HOLDS, .text = attribute(node, "when")};
   if (event.text == NULL) return;
   read_condition(reader, node, event.text, &event);
@@ -197,6 +203,7 @@ static void count_on(struct Graph *graph, struct Event *event) {
 }
 
 void read_sample(struct Reader *reader, xmlNodePtr node) {
+  if (is_linearized(reader)) return;
   struct Graph *graph = reader->model->graph;
   struct Event event = {
       .passage = PASSAGE_SAMPLES, .text = attribute(node, "every"), .line = scope_line(reader->scope, line_of(node))};

@@ -15,6 +15,15 @@ static const struct Quantity nothing = {.node = ZERO};
 static const char integral_form[] = "integral(name, from, to, expression)";
 static const char derivative_form[] = "diff(expression, name)";
 
+/* The symbol of another dummy of the scope, which the caller closes. */
+static Node open_dummy(struct Parser *parser, Node low, Node high) {
+  struct Scope *scope = parser->scope;
+  struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
+  if (dummy->symbol == ZERO) dummy->symbol = graph_symbol(parser->graph, DUMMY, (int)scope->dummy_count, "dummy");
+  *dummy = (struct Dummy){dummy->symbol, low, high};
+  return dummy->symbol;
+}
+
 /*
  * An expression at the reading position in which a name stands for a dummy, the last of the scope's, which the caller
  * closes. It stays whole: pieces would look at the dummy beyond the expression.
@@ -22,10 +31,7 @@ static const char derivative_form[] = "diff(expression, name)";
 static struct Quantity parse_with_dummy(struct Parser *parser, const char *name, struct Dimension dimension, Node low,
                                         Node high) {
   struct Scope *scope = parser->scope;
-  struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
-  if (dummy->symbol == ZERO) dummy->symbol = graph_symbol(parser->graph, DUMMY, (int)scope->dummy_count, "dummy");
-  *dummy = (struct Dummy){dummy->symbol, low, high};
-  struct Local local = {name, {.node = dummy->symbol, .dimension = dimension}, parser->locals};
+  struct Local local = {name, {.node = open_dummy(parser, low, high), .dimension = dimension}, parser->locals};
   bool was_whole = scope->keeps_whole;
   size_t requirements = scope->requirements.count;
   parser->locals = &local;
@@ -85,6 +91,43 @@ static bool is_variable(const struct Graph *graph, Node node) {
   return kind == PARAMETER || kind == TIME || kind == COORDINATE || kind == VELOCITY || kind == STATE || kind == INPUT;
 }
 
+/*
+ * The expression of diff by a variable. Arguments of the function around it are names of their own, and held: dummies stand for those
+ * whose values depend on the variable, and give way to these values behind the derivative.
+ */
+static Node derivative_with_arguments_held(struct Parser *parser, Node variable, struct Dimension *dimension) {
+  struct Graph *graph = parser->graph;
+  struct Scope *scope = parser->scope;
+  struct Local *given = parser->locals;
+  struct Local *held = NULL, **end = &held;
+  size_t first = scope->dummy_count, requirements = scope->requirements.count;
+  bool was_whole = scope->keeps_whole;
+  for (const struct Local *local = given; local != NULL; local = local->outer) {
+    *end = allocate(1, sizeof **end);
+    **end = (struct Local){local->name, local->value, NULL};
+    if (derivative_by(graph, local->value.node, variable) != ZERO) {
+      check_nesting(parser);
+      if (parser->failed) return ZERO;
+      (*end)->value.node = open_dummy(parser, local->value.node, local->value.node);
+    }
+    end = &(*end)->outer;
+  }
+  bool has_held = scope->dummy_count > first;
+  parser->locals = held;
+  scope->keeps_whole |= has_held;
+  struct Quantity value = parse_sum(parser);
+  parser->locals = given;
+  scope->keeps_whole = was_whole;
+  if (has_held) scope->requirements.count = requirements;
+  *dimension = value.dimension;
+  Node derivative = parser->failed ? ZERO : derivative_by(graph, value.node, variable);
+  while (scope->dummy_count > first) {
+    const struct Dummy *dummy = &scope->dummies[--scope->dummy_count];
+    derivative = replaced(graph, derivative, dummy->symbol, dummy->low);
+  }
+  return has_held ? with_pieces(scope, derivative, current_line(parser)) : derivative;
+}
+
 static struct Quantity derivative_by_variable(struct Parser *parser, const char *name) {
   struct Graph *graph = parser->graph;
   const struct Quantity variable = look_up(parser, name);
@@ -94,11 +137,10 @@ static struct Quantity derivative_by_variable(struct Parser *parser, const char 
          "%s: diff(..., %s) is by an expression; expected a coordinate, velocity, state, input, parameter, time or an "
          "argument of a <function>",
          parser->place.what, name);
-  struct Quantity value = parser->failed ? nothing : parse_sum(parser);
+  struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension, unit;
+  Node derivative = parser->failed ? ZERO : derivative_with_arguments_held(parser, variable.node, &unit);
   if (parser->failed) return nothing;
-  struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension;
-  return (struct Quantity){.node = derivative_by(graph, value.node, variable.node),
-                           .dimension = dimension_multiply(value.dimension, dimension, -1.0)};
+  return (struct Quantity){.node = derivative, .dimension = dimension_multiply(unit, dimension, -1.0)};
 }
 
 struct Quantity parse_partial_derivative(struct Parser *parser) {
