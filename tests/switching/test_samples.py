@@ -39,6 +39,14 @@ SERVO = """
   <experiment stopTime="3"/>
 </system>
 """
+DIGITS = """
+<system name="Digits_{method}">
+  <mode name="n"/>
+  <state name="x" start="1" rate="n - x"/>
+  <sample every="0.15" offset="0.05"><set mode="n">n + 1</set></sample>
+  <solver method="{method}" tolerance="1e-11"/>
+</system>
+"""
 # Two rates, which exchange what they hold at common times, and a third that sets a state and a velocity.
 RATES = """
 <system name="Rates">
@@ -76,7 +84,8 @@ def name_of(method, offset):
 @pytest.fixture(scope="module", autouse=True)
 def built():
     servos = {name_of(method, offset): SERVO.format(name=name_of(method, offset), method=method, offset=offset) for method in METHODS for offset in (0.0, 0.25)}
-    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos}, versions=[2, 3])
+    digits = {f"Digits_{method}": DIGITS.format(method=method) for method in METHODS}
+    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits}, versions=[2, 3])
 
 
 def exact_servo(end, Ts=0.1, t0=0.0, start=0.0, state=(0.2, 0.0)):
@@ -104,6 +113,20 @@ def test_a_servo_by_every_method(method, offset, step):
     servo = fmu.Instance(name_of(method, offset)).initialize({"t0": offset})
     for row in servo.run(2.95, step, *NAMES):
         assert row[1:] == pytest.approx(exact_servo(row[0], t0=offset), rel=1e-8, abs=1e-8)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("step", [0.01, 0.05, 0.1])
+def test_a_sample_a_digit_before_the_end(method, step):
+    """0.05 + 2 0.15 is a last digit below 0.35: the rest of the communication step is no step for SUNDIALS."""
+    instance = fmu.Instance(f"Digits_{method}").initialize()
+    x, n, time = 1.0, 0, 0.0
+    for k in range(7):
+        sample = 0.05 + 0.15 * k
+        x, n, time = n + (x - n) * np.exp(time - sample), n + 1, sample
+    for i in range(round(1 / step)):
+        instance.step(step)
+    assert instance.get("n") == n and instance.get("x") == pytest.approx(n + (x - n) * np.exp(time - 1), rel=1e-8)
 
 
 @pytest.mark.parametrize("start", [0.0, 0.1, 0.13, 5.0])

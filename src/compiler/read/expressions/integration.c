@@ -34,8 +34,8 @@ struct Sampling {
   const struct Scope *scope;
   const Node *targets;
   size_t count;
-  double *start, *symbols, *values; /* the last of all nodes of the graph */
-  double *sums, *sizes;              /* one for each target: of its values, and of their magnitudes */
+  double *start, *symbols, *values;   /* the last of all nodes of the graph */
+  double *sums, *sizes;               /* one for each target: of its values, and of their magnitudes */
   double *reference, *reference_size; /* the same by many nodes */
   uint64_t random;
 };
@@ -257,14 +257,14 @@ static size_t choose_nodes(struct Parser *parser, const struct Integral *integra
          integral->text);
   else if (!is_new(parser, integral)) return nodes;
   else if (worst > exactness)
-    report_warning(
-        diagnostics, current_line(parser),
-        "%s has a relative error of %.1g by %zu nodes; expected an integrand that neither oscillates nor has kinks and poles, "
-        "in parts where it does, or a number of nodes as a fifth argument",
-        integral->text, worst, nodes);
+    report_warning(diagnostics, current_line(parser),
+                   "%s has a relative error of %.1g by %zu nodes; expected an integrand that neither oscillates nor "
+                   "has kinks and poles, "
+                   "in parts where it does, or a number of nodes as a fifth argument",
+                   integral->text, worst, nodes);
   else
-    report_note(diagnostics, current_line(parser), "%s is exact to 1e-13 by %zu node%s near the start values", integral->text, nodes,
-                nodes == 1 ? "" : "s");
+    report_note(diagnostics, current_line(parser), "%s is exact to 1e-13 by %zu node%s near the start values",
+                integral->text, nodes, nodes == 1 ? "" : "s");
   return nodes;
 }
 

@@ -61,13 +61,12 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
 bool sundials_tiny_step(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Sundials *sundials = instance->solver_memory;
   struct Situation *situation = instance->situation;
-  double size = step->end - step->start;
-  bool is_tiny = size <= 8 * DBL_EPSILON * fmax(fabs(step->start), fabs(step->end));
-  if (!is_tiny || situation->last_step.end != step->start) return false;
+  double start = situation->last_step.end, size = step->end - start;
+  if (size > 8 * DBL_EPSILON * fmax(fabs(start), fabs(step->end))) return false;
   double *state = N_VGetArrayPointer(sundials->state), *derivative = instance->work + lagrangian.input_count;
-  if (!solver_derivatives(instance, step->start, state, derivative)) return false;
+  if (!solver_derivatives(instance, start, state, derivative)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += size * derivative[i];
-  situation->last_step = (struct Span){step->start, step->end};
+  situation->last_step = (struct Span){start, step->end};
   situation->statistics[STATISTIC_STEPS]++;
   situation->changed = CHANGED_VALUES;
   return true;

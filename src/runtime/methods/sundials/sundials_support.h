@@ -44,7 +44,7 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
 #define SUCCEEDS(instance, function, ...) sundials_succeeded(instance, function(__VA_ARGS__), #function)
 
 /*
- * Takes a communication step that is too short for the solver, a few units in the last place of the time, where Euler's
+ * Takes the rest of a communication step that is too short for the solver, a few units in the last place of the time, where Euler's
  * method is exact to rounding. False where the step is longer or the derivative does not exist.
  */
 bool sundials_tiny_step(struct Instance *instance, const struct CommunicationStep *step);
