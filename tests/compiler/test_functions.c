@@ -3,6 +3,7 @@
 
 #include "algebra/differentiate.h"
 #include "expressions.h"
+#include "random_numbers.h"
 
 typedef long double OfOne(long double);
 typedef long double OfTwo(long double, long double);
@@ -21,6 +22,15 @@ static long double one_if_less(long double a, long double b) {
 
 static long double if_positive(long double x, long double y) {
   return x > 0 ? y : 0;
+}
+
+/* Random numbers have tests of their own, against published vectors. */
+static long double uniform_of(long double seed, long double k) {
+  return random_uniform((double)seed, (double)k);
+}
+
+static long double gauss_of(long double seed, long double k) {
+  return random_gauss((double)seed, (double)k);
 }
 
 static long double sign_of(long double x) {
@@ -63,6 +73,9 @@ static const struct Reference {
     {"log", "log", logl, NULL, NULL, "positive"},
     {"abs", "fabs", fabsl, NULL, NULL, "sign"},
     {"sign", NULL, sign_of, NULL, NULL, "sign"},
+    {"floor", NULL, floorl, NULL, NULL, NULL},
+    {"uniform", "random_uniform", NULL, uniform_of, NULL, NULL},
+    {"gauss", "random_gauss", NULL, gauss_of, NULL, NULL},
 };
 
 static const double places[] = {-2.7, -1.9, -1.3, -0.95, -0.6, -0.2, 0.25, 0.55, 0.9, 1.4, 2.1, 2.8};
@@ -162,7 +175,7 @@ static void test_names_in_c_and_limits(void **state) {
   }
 }
 
-/* A call with the right number of arguments is this operation; one argument less or more is a mistake. */
+/* A call with the right number of arguments is this operation; one argument less or more is a mistake, and so is a seed that moves. */
 static void test_the_language_follows(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
@@ -171,8 +184,8 @@ static void test_the_language_follows(void **state) {
     char one[40], two[40];
     snprintf(one, sizeof one, "%s(x)", name);
     snprintf(two, sizeof two, "%s(x, y)", name);
-    bool is_internal =
-        is_leaf(operation) || operation == ADD || operation == MULTIPLY || operation == LESS || operation == GATE;
+    bool is_internal = is_leaf(operation) || operation == UNIFORM || operation == GAUSS || operation == ADD ||
+                       operation == MULTIPLY || operation == LESS || operation == GATE;
     bool has_two = operation_arity(operation) == 2;
     Node first = parse(&e, one);
     assert_int_equal(e.diagnostics.errors, is_internal || has_two ? 1 : 0);
@@ -237,7 +250,8 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
   }
   case PIECEWISE_CONSTANT:
     assert_near(0, by_x, "the slope", operation, x, y);
-    assert_near(operation == LESS ? a < 0 : sign, here, "the piece", operation, x, y);
+    if (operation == LESS || operation == SIGN)
+      assert_near(operation == LESS ? a < 0 : sign, here, "the piece", operation, x, y);
     return;
   case GATED:
   case ARITHMETIC: return;
@@ -341,6 +355,7 @@ static void test_pieces(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
     if (is_leaf(operation) || operation == POWER || operation == ATAN2) continue;
+    if (operation == FLOOR || operation == UNIFORM || operation == GAUSS) continue; /* pieces by floor_of(), or none */
     const struct Reference *reference = reference_of(operation);
     const long double h = 1e-6L;
     bool has_pieces = false;
