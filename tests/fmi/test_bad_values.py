@@ -154,16 +154,18 @@ def test_singular_coordinates(name, values, lost, cause, open_fmu):
     """At a pole the azimuth has no inertia: the start there is refused, and no call returns NaN."""
     instance = open_fmu(name)
     states = fmu.states_of(name)
-    instance.fmu.setupExperiment()
-    instance.fmu.enterInitializationMode()
-    instance.set(values)
-    before = len(instance.messages)
+
+    def start():
+        instance.reset()
+        instance.fmu.setupExperiment()
+        instance.fmu.enterInitializationMode()
+        instance.set(values)
+
     for state in states[len(states) // 2 :]:
-        with pytest.raises(FMICallException) as raised:
+        start()
+        with instance.fails(ERROR, f"'{lost}'.*{cause}"):  # FMI 2.0.4, 2.1.3 lists no Discard there
             instance.get(f"der({state})")
-        assert raised.value.status == DISCARD
-    (message,) = [text for _, _, text in instance.messages[before:]]
-    assert re.search(f"'{lost}'.*{cause}", message)
+    start()
     with instance.fails(ERROR, f"'{lost}'.*{cause}"):
         instance.fmu.exitInitializationMode()
     assert all(math.isfinite(value) for value in instance.get(*states))

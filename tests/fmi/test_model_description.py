@@ -79,7 +79,8 @@ def test_model_structure(name):
                 assert len(kinds) == len(dependencies) and set(kinds) <= allowed
 
 
-@pytest.mark.parametrize("name", [*fmu.small_names(), *fmu.further_names()])
+# But GantryCrane, whose random states are beyond its random stops.
+@pytest.mark.parametrize("name", [name for name in [*fmu.small_names(), *fmu.further_names()] if name != "GantryCrane"])
 def test_dependencies_are_true(name, open_fmu):
     """
     A listed dependency changes the unknown at some random point; one that is not listed never does. What an unknown

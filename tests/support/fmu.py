@@ -186,6 +186,8 @@ class Instance:
         values, states = dict(values), [unknown.variable.derivative.name for unknown in self.description.derivatives]
         self.reset().initialize(start_time=time)
         self.set({name: value for name, value in values.items() if name not in states})
+        if self.description.numberOfEventIndicators:
+            self.fmu.newDiscreteStates()
         self.fmu.enterContinuousTimeMode()
         state = (c_double * len(states))(*(values.get(name, self.get(name)) for name in states))
         self.fmu.setContinuousStates(state, len(states))
