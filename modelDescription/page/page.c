@@ -28,8 +28,16 @@ static void write_text(const struct Page *page, const char *summary, const char 
   xmlTextWriterEndElement(page->writer);
 }
 
+/* The right side: the name of a definition where it is just that. */
+static char *right_side(const struct Page *page, const char *left, Node right) {
+  const struct NodeNames *names = &page->summary->names;
+  const char *name = right < names->count ? names->of[right] : NULL;
+  if (name != NULL && strcmp(name, left) != 0) return copy_text(name);
+  return expression_text_with_names(page->model->graph, right, names);
+}
+
 void page_equation(const struct Page *page, const char *left, Node right) {
-  char *expression = expression_text_with_names(page->model->graph, right, &page->summary->names);
+  char *expression = right_side(page, left, right);
   char *text = format_text("%s = %s", left, expression);
   char *math = mathml_of_equation(text);
   xmlTextWriterStartElement(page->writer, BAD_CAST "div");

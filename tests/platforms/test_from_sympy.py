@@ -245,7 +245,7 @@ X = dynamicsymbols("x")
 UNEXPRESSED = {
     "a function that is not known": (LagrangesMethod(X.diff() ** 2 - sm.Function("f")(X), [X]), {}),
     "Piecewise((x, x > 0)) has no value where none of its conditions holds": (LagrangesMethod(X.diff() ** 2 - sm.Piecewise((X, X > 0)), [X]), {}),
-    "floor(x) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.floor(X), [X]), {}),
+    "gamma(x) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.gamma(X), [X]), {}),
     "the potential energy: I cannot be expressed": (LagrangesMethod(X.diff() ** 2 - sm.I * X, [X]), {}),
     "is an acceleration; expected energies": (LagrangesMethod(X.diff() ** 2 + X.diff(t, 2), [X]), {}),
     "no value is given for m; expected parameters={m: 1.0, ...}": (LagrangesMethod(m * X.diff() ** 2, [X]), {}),

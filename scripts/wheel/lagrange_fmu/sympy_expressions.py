@@ -12,7 +12,7 @@ from .problem import Problem
 
 # Functions of the language by their names in SymPy.
 FUNCTIONS = {name: name for name in words()["function"] if isinstance(getattr(sympy, name, None), type)}
-FUNCTIONS |= {"Abs": "abs", "Min": "min", "Max": "max"}
+FUNCTIONS |= {"Abs": "abs", "Min": "min", "Max": "max", "ceiling": "ceil"}
 # What follows from those.
 REWRITTEN = {
     sympy.sec: lambda x: 1 / sympy.cos(x),

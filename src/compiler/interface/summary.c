@@ -10,24 +10,34 @@
 #include "base/sorting.h"
 #include "mechanics/switching.h"
 
-/* Mere numbers and variables read as well by themselves. */
-static void add_names(struct NodeNames *names, const struct Graph *graph, const struct VariableList *list) {
+static void add_name(struct NodeNames *names, Node node, const char *name) {
+  if (names->of[node] != NULL) return;
+  names->of[node] = name;
+  names->named[names->named_count++] = node;
+}
+
+/* Of what they stand for, as it is in expressions and as it is shown. Mere numbers and variables read as well by themselves. */
+static void add_names(struct NodeNames *names, const struct Model *model, const struct VariableList *list) {
+  const struct Graph *graph = model->graph;
   for (size_t i = 0; i < list->count && names->named_count < SHOWN_LIMIT; i++) {
     Node node = list->items[i].node;
     if (graph->vertices[node].operation == SYMBOL || graph_is_constant(graph, node) || names->of[node] != NULL)
       continue;
-    names->of[node] = list->items[i].name;
-    names->named[names->named_count++] = node;
+    add_name(names, node, list->items[i].name);
+    add_name(names, without_branches(model, node), list->items[i].name);
   }
 }
 
 /* The names of the first calculated parameters and definitions. These do not occur in linearized equations. */
 static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
+  for (size_t i = 0; i < model->definitions.count; i++) /* makes the nodes that are shown, which the names count */
+    without_branches(model, model->definitions.items[i].node);
+  for (size_t i = 0; i < model->calculated.count; i++) without_branches(model, model->calculated.items[i].node);
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
-  names.named = allocate(SHOWN_LIMIT, sizeof *names.named);
-  add_names(&names, graph, &model->calculated);
-  if (!model->linearized) add_names(&names, graph, &model->definitions);
+  names.named = allocate(SHOWN_LIMIT + 1, sizeof *names.named);
+  add_names(&names, model, &model->calculated);
+  if (!model->linearized) add_names(&names, model, &model->definitions);
   return names;
 }
 
