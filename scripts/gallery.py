@@ -2,6 +2,7 @@
 
 import html
 import json
+import logging
 import re
 import shutil
 import sys
@@ -42,7 +43,9 @@ READ = {
     },
 }
 FIRST = "DoublePendulum"  # in the laboratory
-BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "fmu/StateFeedback/system.xml")  # that pages refer to
+# What pages refer to.
+BESIDE = ("fmu/systems.gif", "fmu/system.xsd", *(f"fmu/{name}/system.xml" for name in (
+    "BristleFriction", "GantryCrane", "HydraulicCylinder", "PidController", "SpinningBeam", "StateFeedback")))  # fmt: skip
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
 .systems div { border: 1px solid #8884; border-radius: 8px; padding: .8rem; display: flex; flex-direction: column; gap: .4rem; }
@@ -103,6 +106,7 @@ def slug(text, separator):
 
 
 def build_site(navigation):
+    logging.basicConfig(format="%(message)s", level=logging.WARNING)  # what ends a strict build
     shutil.copy(ROOT / "scripts" / "gallery_search.js", PAGES / "search.js")
     settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
                 "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search"],
