@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import fmu
-from fmu import DISCARD
+from fmu import DISCARD, ERROR
 
 METHODS = ("erk", "bdf", "radau")
 
@@ -155,7 +155,7 @@ def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
     instance = open_fmu("PowerErk").initialize({"a": 3.0})
     along = lambda name: instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr(name), [1.0])
     assert along("x") == pytest.approx([12.0], rel=1e-15)
-    with instance.fails(DISCARD, "not finite"):
+    with instance.fails(ERROR, "not finite"):  # FMI 2.0.4, 2.1.3 lists no Discard there
         along("a")
     instance.reset().initialize({"a": 3.0, "x": 2.0})
     assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
