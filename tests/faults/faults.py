@@ -123,7 +123,7 @@ PLACES = [
     ("dimension_multiply(dimension_one, base.dimension, n);", "dimension_multiply(dimension_one, base.dimension, 1.0);",
      broken("unit of a power")),
     ("if (head.first > head.last) skip_to_end(parser);", "", pytest("test_language", "empty_sum")),
-    ("if (!parser->failed && scope_find(parser->scope, head.index) != NULL)", "if (false)", broken("sum over a name")),
+    ("if (!parser->failed && find_quantity(parser, head.index) != NULL)", "if (false)", broken("sum over a name")),
     ("++parser->repetitions > REPETITION_LIMIT", "++parser->repetitions > 2 * REPETITION_LIMIT",
      broken("sum of too many")),
     ("number == floor(number) && fabs(number) < 1e9", "fabs(number) < 1e9", broken("half an index")),
