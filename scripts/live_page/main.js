@@ -3,7 +3,7 @@
 
 const GHOST = 1e-9; // by which its start differs
 // Of formulas, as JavaScript has them too.
-const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max"];
+const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max", "floor", "ceil"];
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const { recording, laboratory } = data;

@@ -124,7 +124,8 @@ def test_formulas(browser, arm, tmp_path):
     with opened(browser, file) as page:
         value = lambda formula: page.evaluate("formula => live.valueOf(formula)", formula)  # noqa: E731
         known = {name: value(f"{name}({'1, 2' if name in ('pow', 'atan2', 'min', 'max') else '1'})") for name in functions}
-        assert {name for name, number in known.items() if number is None or math.isnan(number)} == {"der", "sum", "if", "and", "or", "not"}
+        forms = {"der", "sum", "if", "and", "or", "not", "diff", "integral"}  # and what scenes have as others
+        assert {name for name, number in known.items() if number is None or math.isnan(number)} == forms | {"round", "mod", "gauss", "uniform"}
         assert known["atanh"] == math.inf and known["atan2"] == pytest.approx(math.atan2(1, 2))
         assert value("m*l^2/12 + 1e-3") == pytest.approx(2 * 0.25 / 12 + 1e-3) and value("-a^2") == pytest.approx(-0.09)
         assert value("l*-a^2 + a^-2 - (-l)^2") == pytest.approx(0.5 * -0.09 + 0.3**-2 - 0.25)
