@@ -174,9 +174,10 @@ def test_derivatives_in_initialization_mode(name, kind, open_fmu):
 
 def test_without_a_finite_value(open_fmu):
     instance = in_initialization(open_fmu("StartPendulum"), {"l": 0.0})
+    saved = instance.fmu.getFMUState()
     with instance.fails(ERROR, r"'theta\[2\]' has no finite value"):
         instance.get("theta[2]")
-    saved = instance.fmu.getFMUState()
+    instance.fmu.setFMUState(saved)
     instance.set(l=0.25)
     assert instance.get("theta[2]") == 0.8
     instance.fmu.setFMUState(saved)
