@@ -29,13 +29,18 @@ static inline uint64_t random_bits_of(double x) {
   return fabs(nearest) < 0x1p62 ? (uint64_t)(int64_t)nearest : 0;
 }
 
-/* A number from 0 to 1 - 2^-53, all multiples of 2^-53 equally likely. */
-static inline double random_uniform(double seed, double k) {
+/* 64 random bits of the seed and the number, others in each stream. */
+static inline uint64_t random_word(double seed, double k, uint32_t stream) {
   uint64_t number = random_bits_of(k), of_seed = random_bits_of(seed);
-  uint32_t counter[4] = {(uint32_t)number, (uint32_t)(number >> 32), 0, 0};
+  uint32_t counter[4] = {(uint32_t)number, (uint32_t)(number >> 32), stream, 0};
   const uint32_t key[2] = {(uint32_t)of_seed, (uint32_t)(of_seed >> 32)};
   random_block(counter, key);
-  return (double)((((uint64_t)counter[0] << 32) | counter[1]) >> 11) * 0x1p-53;
+  return (uint64_t)counter[0] << 32 | counter[1];
+}
+
+/* A number from 0 to 1 - 2^-53, all multiples of 2^-53 equally likely. */
+static inline double random_uniform(double seed, double k) {
+  return (double)(random_word(seed, k, 0) >> 11) * 0x1p-53;
 }
 
 /* A product that no compiler joins with a sum to one operation, which would round otherwise. */
@@ -94,11 +99,7 @@ static inline double random_quantile(double probability) {
 
 /* A normal number of mean 0 and variance 1, up to 8.2 of it: the quantile of the uniform one in the middle of its step. */
 static inline double random_gauss(double seed, double k) {
-  uint64_t number = random_bits_of(k), of_seed = random_bits_of(seed);
-  uint32_t counter[4] = {(uint32_t)number, (uint32_t)(number >> 32), 1, 0};
-  const uint32_t key[2] = {(uint32_t)of_seed, (uint32_t)(of_seed >> 32)};
-  random_block(counter, key);
-  return random_quantile(((double)((((uint64_t)counter[0] << 32) | counter[1]) >> 12) + 0.5) * 0x1p-52);
+  return random_quantile(((double)(random_word(seed, k, 1) >> 12) + 0.5) * 0x1p-52);
 }
 
 #endif

@@ -123,7 +123,7 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
 
 void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact) {
   log_message(
-      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      settlement->instance, settlement_status(settlement),
       "time %g: the contact '%s' closes, and nothing at it can give way: all that changes its gap is prescribed; "
       "expected prescribed motions that keep the gap open, or a coordinate that is free",
       settlement->time, settlement->switches->contacts[contact].name);
@@ -147,7 +147,7 @@ static void log_crushed(const struct Settlement *settlement, const struct Pushes
   size_t row = 0;
   while (pushes->member[row] != contact) row++;
   log_message(
-      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      settlement->instance, settlement_status(settlement),
       "time %g: the contacts '%s' and '%s' crush what is between them: prescribed motions close one of them, and "
       "no force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of "
       "one",
@@ -243,7 +243,7 @@ static const char *refuse_forces(const struct Settlement *settlement, const stru
   const struct Pushes *pushes = &resting->pushes;
   size_t contact = find_locked(resting);
   log_message(
-      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      settlement->instance, settlement_status(settlement),
       "time %g: the force of the contact '%s' has %s solution there, as the friction '%s' slides and presses it "
       "together (Painleve's paradox); expected less friction, or another position",
       settlement->time, settlement->switches->contacts[pushes->member[contact]].name, how_many,

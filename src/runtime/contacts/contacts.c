@@ -147,7 +147,7 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
 static const char *refuse_singular_impact(const struct Settlement *settlement, size_t contact) {
   if (settlement->instance->singular != 0)
     log_message(
-        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        settlement->instance, settlement_status(settlement),
         "time %g: the contact '%s' cannot take an impact, as the equations of motion are singular while all that "
         "touch are open; expected masses for all that moves without contacts",
         settlement->time, settlement->switches->contacts[contact].name);
@@ -219,7 +219,7 @@ static const char *refuse_rest(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t contact = 0;
   while (contact + 1 < switches->contact_count && !is_touching(settlement, contact)) contact++;
-  log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+  log_message(settlement->instance, settlement_status(settlement),
               "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
               "constraints that leave it room",
               settlement->time, switches->contacts[contact].name);
@@ -411,7 +411,7 @@ static const char *check_values(const struct Settlement *settlement) {
     bool needs_rate = contact_is_closed(settlement, i) || is_touching(settlement, i);
     if (has_gap && (!needs_rate || isfinite(contact_value(settlement, i, CONTACT_RATE)))) continue;
     log_message(
-        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        settlement->instance, settlement_status(settlement),
         "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; expected "
         "one that is finite there, such as (1 + tanh(x/2))/2 in place of 1/(1 + exp(-x))",
         settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");

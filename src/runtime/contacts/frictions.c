@@ -7,7 +7,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 #include "contacts/impact_outcomes.h"
 #include "contacts/jams.h"
@@ -328,7 +327,7 @@ const char *frictions_check(struct Settlement *settlement) {
     double force = settlement->value[place];
     if (!(force < -settlement->noise[place] - rounding) || is_within_error(settlement, place)) continue;
     log_message(
-        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        settlement->instance, settlement_status(settlement),
         "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...) of what it depends on",
         settlement->time, settlement->switches->frictions[i].name, force);
     return "the force of a friction is negative";
@@ -336,21 +335,13 @@ const char *frictions_check(struct Settlement *settlement) {
   return NULL;
 }
 
-/* Evaluates value[] as if the force of one constraint were the only one, and no acceleration. */
-static void values_of_force(struct Settlement *settlement, size_t constraint, double force, double *value) {
-  size_t n = lagrangian.coordinate_count;
-  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
-  memset(settlement->acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement->acceleration);
-  settlement->acceleration[n + constraint] = force;
-  settlement->switches->switching_values(&point, settlement->acceleration, value);
-}
-
 /* True if the force of a friction, and the indicator of a branch if there is one, depend on the force of a constraint. */
 static bool follows_from(struct Settlement *settlement, size_t friction, size_t branch, size_t constraint) {
   const double *without = settlement->value, *with = settlement->other_noise;
   size_t place = friction_place(settlement->switches, friction, weaker_force(settlement, friction));
-  values_of_force(settlement, constraint, 0.0, settlement->value);
-  values_of_force(settlement, constraint, 1.0, settlement->other_noise);
+  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
+  settlement_values_of_force(settlement, &point, constraint, 0.0, settlement->value);
+  settlement_values_of_force(settlement, &point, constraint, 1.0, settlement->other_noise);
   bool turns = branch == settlement->switches->branch_count || with[branch] != without[branch];
   return turns && with[place] != without[place];
 }
@@ -390,7 +381,7 @@ bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
            sliding_speed(settlement, friction) > resting_speed(settlement);
   }
   if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(settlement, friction))) return false;
-  log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+  log_message(settlement->instance, settlement_status(settlement),
               "time %g: the force of the %s '%s' has no solution there, as the friction '%s', which follows from it, "
               "slides, and both jam each other (Painleve's paradox); expected less friction, or another load",
               settlement->time, evaluate_kind(constraint), lagrangian.constraints.names[constraint],

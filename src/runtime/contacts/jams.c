@@ -55,11 +55,9 @@ static bool is_tried_branch(const struct Settlement *settlement, size_t branch) 
 
 /* Marks the branches that forces or accelerations decide on, which need not have switched yet. */
 static void mark_branches(struct Settlement *settlement) {
-  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   double *value = settlement->noise; /* found anew with each combination */
   struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
-  memset(settlement->acceleration, 0, rows * sizeof *settlement->acceleration);
-  settlement->switches->switching_values(&point, settlement->acceleration, value);
+  settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, value);
   for (size_t i = 0; i < settlement->switches->branch_count; i++)
     if (value[i] != settlement->value[i]) settlement->flips[i] = fmax(settlement->flips[i], 1.0);
 }
@@ -141,7 +139,7 @@ static void take_motion(struct JamSearch *search, size_t combination) {
 static void log_several(const struct JamSearch *search) {
   const struct Settlement *settlement = search->settlement;
   log_message(
-      settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+      settlement->instance, settlement_status(settlement),
       "time %g: the friction '%s', whose force follows from those of constraints, has more than one motion there "
       "by which it sticks or slides (Painleve's paradox); expected less friction, or another load",
       settlement->time, settlement->switches->frictions[search->friction].name);

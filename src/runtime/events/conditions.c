@@ -1,8 +1,7 @@
 #include "events/conditions.h"
 
-#include <math.h>
-
 #include "evaluation/evaluate.h"
+#include "instance/time_laws.h"
 
 /* Of an expression that passes 0. */
 static bool has_side(const struct EventFacts *event) {
@@ -92,7 +91,7 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
     if (!happens(settlement, k)) continue;
     const struct AssignmentFacts *rival = rival_assignment(switches, &switches->events[k], &switches->events[event]);
     if (rival == NULL) continue;
-    log_message(settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+    log_message(settlement->instance, settlement_status(settlement),
                 "time %g: the events number %zu, %s=\"%s\", and number %zu, %s=\"%s\", happen at once and both set "
                 "'%s'; expected one event, or conditions that keep them apart",
                 settlement->time, k + 1, attribute_of(&switches->events[k]), switches->events[k].when, event + 1,
@@ -126,9 +125,9 @@ static bool find_endless_sample(const struct Settlement *settlement) {
   for (size_t i = 0; i < switches->sample_count; i++) {
     double period = settlement->value[sample_place(switches, i, SAMPLE_EVERY)], time = settlement->time;
     double offset = settlement->value[sample_place(switches, i, SAMPLE_OFFSET)];
-    if (period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time) continue;
+    if (is_period(period, offset, time)) continue;
     log_message(
-        settlement->instance, settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD,
+        settlement->instance, settlement_status(settlement),
         "time %g: a <sample> has every=\"%s\", which is %g s, and its offset is %g s; expected a period above 0, "
         "and one that is not lost against the time",
         time, switches->events[switches->samples[i].event].when, period, offset);

@@ -86,9 +86,8 @@ static bool values_of_piece(struct Settlement *settlement, size_t branch, double
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   memcpy(settlement->rounded, settlement->state, lagrangian.state_count * sizeof *settlement->rounded);
   for (size_t i = 0; i < n; i++) settlement->rounded[n + i] = 1.0 / (1.0 + (double)i);
-  memset(settlement->acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement->acceleration);
   struct Point point = solver_point(instance, settlement->time, settlement->rounded);
-  settlement->switches->switching_values(&point, settlement->acceleration, value);
+  settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, value);
   return true;
 }
 

@@ -91,6 +91,14 @@ bool settlement_values(struct Settlement *settlement, const double *state, doubl
   return true;
 }
 
+void settlement_values_of_force(const struct Settlement *settlement, const struct Point *point, size_t constraint,
+                                double force, double *value) {
+  size_t n = lagrangian.coordinate_count, constraints = lagrangian.constraints.count;
+  memset(settlement->acceleration, 0, (n + constraints) * sizeof *settlement->acceleration);
+  if (constraint < constraints) settlement->acceleration[n + constraint] = force;
+  settlement->switches->switching_values(point, settlement->acceleration, value);
+}
+
 static void add_noise(struct Settlement *settlement, size_t place, double noise) {
   settlement->noise[place] = fmax(settlement->noise[place], noise);
 }

@@ -45,6 +45,11 @@ struct Settlement {
   } last;
 };
 
+/* What a message is logged with where the motion cannot go on: a start is an error, a step is discarded. */
+static inline enum Status settlement_status(const struct Settlement *settlement) {
+  return settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
+}
+
 struct Pushes;
 
 /* What contacts do; FMUs without any do not hold it. */
@@ -117,6 +122,13 @@ bool settlement_evaluate(struct Settlement *settlement);
 
 /* The values at a state, without what rounding may make of them. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
+
+/*
+ * Evaluates value[] at a point as if there were no accelerations, and no force but that of one constraint; constraints.count for
+ * none.
+ */
+void settlement_values_of_force(const struct Settlement *settlement, const struct Point *point, size_t constraint,
+                                double force, double *value);
 
 /* The accelerations as the last evaluation left them. */
 const double *settlement_accelerations(const struct Settlement *settlement);

@@ -67,11 +67,8 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
     const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
     double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
                                        direction->acceleration, direction->acceleration_along);
-    if (!isfinite(derivative)) {
-      log_message(instance, STATUS_DISCARD, "%s: the derivative of '%s' is not finite here", instance->function,
-                  variable->name);
-      return STATUS_DISCARD;
-    }
+    if (!isfinite(derivative))
+      return discard_call(instance, "the derivative of '%s' is not finite here", variable->name);
     value[i] = derivative;
   }
   return STATUS_DONE;

@@ -27,16 +27,11 @@ static bool check_states(struct Instance *instance, const void *array, size_t co
 }
 
 /* An integrator that went too far may try a shorter step. */
-static enum Status discard_state(const struct Instance *instance, size_t state, double value) {
-  log_message(instance, STATUS_DISCARD, "%s: state %zu is %g; expected a finite number", instance->function, state + 1,
-              value);
-  return STATUS_DISCARD;
-}
-
 enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count) {
   if (!check_states(instance, state, count)) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++)
-    if (!isfinite(state[i])) return discard_state(instance, i, state[i]);
+    if (!isfinite(state[i]))
+      return discard_call(instance, "state %zu is %g; expected a finite number", i + 1, state[i]);
   if (count > 0) memcpy(instance->state, state, count * sizeof *state);
   return STATUS_DONE;
 }
@@ -87,9 +82,14 @@ void exchange_enter_event_mode(struct Instance *instance) {
   situation->phase = PHASE_EVENT;
 }
 
+/* NULL for a system without events at known times. */
+static const struct TimeLaws *laws_of_time(void) {
+  return lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
+}
+
 /* Whether modes do not agree with the present state and time. */
 static bool is_event_due(struct Instance *instance) {
-  const struct TimeLaws *times = lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
+  const struct TimeLaws *times = laws_of_time();
   if (lagrangian.event_laws == NULL) return false;
   return lagrangian.event_laws->is_due(instance) || (times != NULL && times->is_due(instance));
 }
@@ -152,7 +152,7 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
 }
 
 bool exchange_next_event(struct Instance *instance, double *time) {
-  const struct TimeLaws *laws = lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
+  const struct TimeLaws *laws = laws_of_time();
   *time = 0.0;
   return laws != NULL && evaluate_prepare(instance) == STATUS_DONE && laws->next(instance, time);
 }

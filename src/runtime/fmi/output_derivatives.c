@@ -74,11 +74,8 @@ static enum Status read_derivative(struct Instance *instance, const struct Expan
   Series *rows = variable->kind == VARIABLE_STATE ? expansion->state : expansion->output;
   double derivative = rows[variable->index][order];
   for (int k = 2; k <= order; k++) derivative *= k;
-  if (!isfinite(derivative)) {
-    log_message(instance, STATUS_DISCARD, "%s: the derivative %d of '%s' is not finite here", instance->function, order,
-                variable->name);
-    return STATUS_DISCARD;
-  }
+  if (!isfinite(derivative))
+    return discard_call(instance, "the derivative %d of '%s' is not finite here", order, variable->name);
   *value = derivative;
   return STATUS_DONE;
 }

@@ -60,9 +60,7 @@ static enum Status read_known(struct Instance *instance, const struct Weights *w
     return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
   if (isfinite(*value)) return STATUS_DONE;
-  log_message(instance, STATUS_DISCARD, "%s: the derivative by '%s' is not finite here", instance->function,
-              variable->name);
-  return STATUS_DISCARD;
+  return discard_call(instance, "the derivative by '%s' is not finite here", variable->name);
 }
 
 static enum Status sweep(struct Instance *instance, const struct Weights *weights) {

@@ -134,18 +134,17 @@ static enum Status refuse_calculated(struct Instance *instance, const struct Sca
 
 static enum Status refuse_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   bool is_below = value < variable->minimum;
-  log_message(instance, STATUS_DISCARD, "%s: %g for '%s' is %s, %g", instance->function, value, variable->name,
-              is_below ? "below its minimum" : "above its maximum", is_below ? variable->minimum : variable->maximum);
-  return STATUS_DISCARD;
+  return discard_call(instance, "%g for '%s' is %s, %g", value, variable->name,
+                      is_below ? "below its minimum" : "above its maximum",
+                      is_below ? variable->minimum : variable->maximum);
 }
 
 /* An integrator that went too far may try a shorter step. */
 static enum Status refuse_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
-  static const char format[] = "%s: the value for '%s' is %g; expected a finite number";
-  if (variable->kind != VARIABLE_STATE || !is_exchanged(instance))
-    return log_error(instance, format, instance->function, variable->name, value);
-  log_message(instance, STATUS_DISCARD, format, instance->function, variable->name, value);
-  return STATUS_DISCARD;
+  static const char format[] = "the value for '%s' is %g; expected a finite number";
+  bool may_try_another = variable->kind == VARIABLE_STATE && is_exchanged(instance);
+  return may_try_another ? discard_call(instance, format, variable->name, value)
+                         : refuse_call(instance, format, variable->name, value);
 }
 
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {

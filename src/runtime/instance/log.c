@@ -46,3 +46,11 @@ enum Status refuse_call(struct Instance *instance, const char *format, ...) {
   instance->situation->phase = PHASE_ERROR;
   return STATUS_ERROR;
 }
+
+enum Status discard_call(const struct Instance *instance, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  write_arguments(&instance->log, STATUS_DISCARD, instance->function, format, arguments);
+  va_end(arguments);
+  return STATUS_DISCARD;
+}

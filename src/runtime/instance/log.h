@@ -38,4 +38,7 @@ enum Status log_error(struct Instance *instance, const char *format, ...) LIKE_P
 /* The same of a call that cannot be; the name of the function that was called comes before the message. */
 enum Status refuse_call(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
+/* Logs why a call has no effect, with the name of its function before the message; returns STATUS_DISCARD. */
+enum Status discard_call(const struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
+
 #endif

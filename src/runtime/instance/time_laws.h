@@ -12,6 +12,11 @@ static inline double rounding_of_time(double time) {
   return 4.0 * DBL_EPSILON * fabs(time);
 }
 
+/* Whether a sample can have this period and offset at a time: the period is above 0, and not lost against the time. */
+static inline bool is_period(double period, double offset, double time) {
+  return period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time;
+}
+
 struct TimeLaws {
   /* Finds the next time, from that of the situation on, at which time alone turns a branch. False for none. */
   bool (*next)(struct Instance *instance, double *time);

@@ -143,7 +143,5 @@ enum Status reading_follow_start(struct Instance *instance, const struct Seed *s
   if (kept != NULL) instance->memory.free(kept);
   if (!has_memory) return refuse_call(instance, "there is no memory for the derivatives");
   if (is_found) return STATUS_DONE;
-  log_message(instance, STATUS_DISCARD, "%s: the simulation cannot start near these start values; expected others",
-              instance->function);
-  return STATUS_DISCARD;
+  return discard_call(instance, "the simulation cannot start near these start values; expected others");
 }

@@ -25,7 +25,7 @@ void samples_start(struct Instance *instance) {
     const struct SampleFacts *sample = &switches->samples[i];
     double period = settlement.value[sample_place(switches, i, SAMPLE_EVERY)];
     double offset = settlement.value[sample_place(switches, i, SAMPLE_OFFSET)];
-    bool is_right = period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time;
+    bool is_right = is_period(period, offset, time);
     instance->parameter[sample->base] = is_right ? offset : time;
     instance->parameter[sample->count] = is_right ? first_count(time, offset, period) : 0.0;
     instance->parameter[sample->period] = is_right ? period : 0.0;

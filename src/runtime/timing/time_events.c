@@ -6,7 +6,6 @@
 #include "timing/time_events.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "instance/time_laws.h"
 #include "timing/samples.h"
@@ -17,10 +16,8 @@ enum { ZERO_STEPS = 3 };
 /* With accelerations of 0. */
 void time_events_values(struct Settlement *settlement, double time) {
   struct Point point = instance_point(settlement->instance);
-  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   point.time = time;
-  memset(settlement->acceleration, 0, rows * sizeof *settlement->acceleration);
-  settlement->switches->switching_values(&point, settlement->acceleration, settlement->value);
+  settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, settlement->value);
 }
 
 /* How long until the branch comes to 0, by the values at a time; INFINITY where it does not. */
