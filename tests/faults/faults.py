@@ -163,7 +163,7 @@ PLACES = [
     ("right[i] = negate(graph, result[i]);", "right[i] = result[i];", pytest("test_evaluated_code", "taylor-statements")),
     ("side[looped->block->coordinates[i]]);", "side[i]);",
      pytest("test_evaluated_code", "taylor-statements")),
-    ("what->kind == VELOCITY ? coordinates : 2 * coordinates;", "0;", pytest("test_evaluated_code", "bdf-statements")),
+    ("symbol->kind == VELOCITY ? coordinates : symbol->kind", "symbol->kind == VELOCITY ? 0 : symbol->kind", pytest("test_evaluated_code", "bdf-statements")),
     ("builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);",
      "(size_t)graph_symbol_of(builder->graph, operand)->index);", pytest("test_evaluated_code", "taylor-statements")),
     ("direction, index - n);", "direction, index);", pytest("test_evaluated_code", "taylor-statements")),

@@ -277,12 +277,6 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
   return singular ? NULL : linear;
 }
 
-/* Where A has the column of a state. */
-static size_t column_of(const struct Model *model, const struct Symbol *symbol) {
-  size_t n = model->coordinates.count, first = symbol->kind == VELOCITY ? n : symbol->kind == STATE ? 2 * n : 0;
-  return first + (size_t)symbol->index;
-}
-
 /* Symbols at 0 but parameters, modes and time. */
 static Node *zero_symbols(const struct Model *model) {
   struct Graph *graph = model->graph;
@@ -305,7 +299,7 @@ static void fill_row(const struct Model *model, Node derivative, size_t row, con
     const struct Symbol *symbol = graph_symbol_of(graph, slopes.symbols[k]);
     Node slope = simplify_fraction(graph, slopes.values[k]);
     if (symbol->kind == INPUT) b[symbol->index] = slope;
-    else a[column_of(model, symbol)] = slope;
+    else a[state_place(model->coordinates.count, symbol)] = slope;
     if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
       report_error(diagnostics, model->solver.line,
                    "the system is not linear: der(%s) is not linear in %s; expected a method other than 'exact'", name,

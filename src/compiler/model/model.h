@@ -216,6 +216,9 @@ struct Model {
   struct Experiment experiment;
 };
 
+/* The place of a coordinate, a velocity or a state behind them among all states; the index alone of other symbols. */
+size_t state_place(size_t coordinates, const struct Symbol *symbol);
+
 /* How many time derivatives of the input are inputs too; they follow it. */
 size_t input_rate_count(const struct Model *model, size_t input);
 

@@ -26,9 +26,7 @@ static void append(struct ElementList *list, size_t row, size_t column, Node val
 }
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
-  const struct Symbol *what = graph_symbol_of(graph, symbol);
-  size_t first = what->kind == COORDINATE ? 0 : what->kind == VELOCITY ? coordinates : 2 * coordinates;
-  return first + (size_t)what->index;
+  return state_place(coordinates, graph_symbol_of(graph, symbol));
 }
 
 static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,

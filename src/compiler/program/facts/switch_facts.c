@@ -64,8 +64,8 @@ static void add_planes(struct SwitchTable *facts, const struct Program *program)
 
 static struct AssignmentFacts assignment_of(const struct Program *program, Node assigned) {
   const struct Symbol *symbol = graph_symbol_of(program->model->graph, assigned);
-  size_t n = program->equations->count, first = symbol->kind == VELOCITY ? n : symbol->kind == STATE ? 2 * n : 0;
-  return (struct AssignmentFacts){symbol->kind == MODE ? VARIABLE_MODE : VARIABLE_STATE, first + (size_t)symbol->index};
+  return (struct AssignmentFacts){symbol->kind == MODE ? VARIABLE_MODE : VARIABLE_STATE,
+                                  state_place(program->equations->count, symbol)};
 }
 
 /* The events and, one after the other, what they assign. */

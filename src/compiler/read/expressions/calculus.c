@@ -24,23 +24,26 @@ static Node open_dummy(struct Parser *parser, Node low, Node high) {
   return dummy->symbol;
 }
 
-/*
- * An expression at the reading position in which a name stands for a dummy, the last of the scope's, which the caller
- * closes. It stays whole: pieces would look at the dummy beyond the expression.
- */
-static struct Quantity parse_with_dummy(struct Parser *parser, const char *name, struct Dimension dimension, Node low,
-                                        Node high) {
+/* An expression of these locals, among them dummies. It stays whole: pieces would look at the dummies beyond it. */
+static struct Quantity parse_kept_whole(struct Parser *parser, struct Local *locals) {
   struct Scope *scope = parser->scope;
-  struct Local local = {name, {.node = open_dummy(parser, low, high), .dimension = dimension}, parser->locals};
+  struct Local *given = parser->locals;
   bool was_whole = scope->keeps_whole;
   size_t requirements = scope->requirements.count;
-  parser->locals = &local;
+  parser->locals = locals;
   scope->keeps_whole = true;
   struct Quantity value = parse_sum(parser);
   scope->keeps_whole = was_whole;
   scope->requirements.count = requirements;
-  parser->locals = local.outer;
+  parser->locals = given;
   return value;
+}
+
+/* An expression in which a name stands for a dummy, the last of the scope's, which the caller closes. */
+static struct Quantity parse_with_dummy(struct Parser *parser, const char *name, struct Dimension dimension, Node low,
+                                        Node high) {
+  struct Local local = {name, {.node = open_dummy(parser, low, high), .dimension = dimension}, parser->locals};
+  return parse_kept_whole(parser, &local);
 }
 
 static void check_nesting(struct Parser *parser) {
@@ -91,6 +94,20 @@ static bool is_variable(const struct Graph *graph, Node node) {
   return kind == PARAMETER || kind == TIME || kind == COORDINATE || kind == VELOCITY || kind == STATE || kind == INPUT;
 }
 
+/* A copy of the locals, with dummies in place of the values that depend on a variable; the caller closes them. */
+static struct Local *hold_locals(struct Parser *parser, Node variable) {
+  struct Local *held = NULL, **end = &held;
+  for (const struct Local *local = parser->locals; local != NULL && !parser->failed; local = local->outer) {
+    *end = allocate(1, sizeof **end);
+    **end = (struct Local){local->name, local->value, NULL};
+    bool depends = derivative_by(parser->graph, local->value.node, variable) != ZERO;
+    if (depends) check_nesting(parser);
+    if (depends && !parser->failed) (*end)->value.node = open_dummy(parser, local->value.node, local->value.node);
+    end = &(*end)->outer;
+  }
+  return held;
+}
+
 /*
  * The expression of diff by a variable. Arguments of the function around it are names of their own, and held: dummies stand for those
  * whose values depend on the variable, and give way to these values behind the derivative.
@@ -98,27 +115,11 @@ static bool is_variable(const struct Graph *graph, Node node) {
 static Node derivative_with_arguments_held(struct Parser *parser, Node variable, struct Dimension *dimension) {
   struct Graph *graph = parser->graph;
   struct Scope *scope = parser->scope;
-  struct Local *given = parser->locals;
-  struct Local *held = NULL, **end = &held;
-  size_t first = scope->dummy_count, requirements = scope->requirements.count;
-  bool was_whole = scope->keeps_whole;
-  for (const struct Local *local = given; local != NULL; local = local->outer) {
-    *end = allocate(1, sizeof **end);
-    **end = (struct Local){local->name, local->value, NULL};
-    if (derivative_by(graph, local->value.node, variable) != ZERO) {
-      check_nesting(parser);
-      if (parser->failed) return ZERO;
-      (*end)->value.node = open_dummy(parser, local->value.node, local->value.node);
-    }
-    end = &(*end)->outer;
-  }
+  size_t first = scope->dummy_count;
+  struct Local *held = hold_locals(parser, variable);
+  if (parser->failed) return ZERO;
   bool has_held = scope->dummy_count > first;
-  parser->locals = held;
-  scope->keeps_whole |= has_held;
-  struct Quantity value = parse_sum(parser);
-  parser->locals = given;
-  scope->keeps_whole = was_whole;
-  if (has_held) scope->requirements.count = requirements;
+  struct Quantity value = has_held ? parse_kept_whole(parser, held) : parse_sum(parser);
   *dimension = value.dimension;
   Node derivative = parser->failed ? ZERO : derivative_by(graph, value.node, variable);
   while (scope->dummy_count > first) {

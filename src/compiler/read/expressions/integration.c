@@ -13,6 +13,7 @@
 #include "algebra/roundings.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "mechanics/mass_matrix/pivots.h"
 #include "model/model.h"
 #include "read/names/pieces_of_functions.h"
 
@@ -48,10 +49,9 @@ Node replaced(struct Graph *graph, Node node, Node symbol, Node by) {
   return result;
 }
 
-/* From -1 to 1, by a linear congruential generator (Knuth's MMIX): the same in each run of lagc. */
+/* From -1 to 1. */
 static double random_number(struct Sampling *sampling) {
-  sampling->random = sampling->random * 6364136223846793005u + 1442695040888963407u;
-  return (double)(sampling->random >> 11) * 0x1p-52 - 1.0;
+  return 2.0 * next_random(&sampling->random) - 2.0;
 }
 
 static double scale_of(const struct VariableList *list, size_t index) {
