@@ -12,7 +12,7 @@ slope from the FMUs' directional derivatives, and has none.
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from coupling.master import DEGREES, SCHEMES, Diverged, Master, derivatives_at_start, extrapolated, push
+from coupling.master import DEGREES, SCHEMES, Diverged, Master, body_on_axis, derivatives_at_start, extrapolated, push
 from coupling.slaves import FMUS, ROOT, Slave
 from html_page import paragraphs, table
 
@@ -26,9 +26,8 @@ class Hinge(Master):
     """ParticleCartesian on the x axis as the cart, on the left, and HingedPendulum, on the right."""
 
     def __init__(self, M, m, l=0.5):
-        cart = dict(m=M, kx=0.0, ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0)
-        self.starts = cart, dict(m=m, l=l, g=G)
-        self.left, self.right = Slave(FMUS / "ParticleCartesian.fmu", **cart), Slave(PENDULUM, **self.starts[1])
+        self.starts = body_on_axis(M), dict(m=m, l=l, g=G)
+        self.left, self.right = (Slave(archive, **start) for archive, start in zip((FMUS / "ParticleCartesian.fmu", PENDULUM), self.starts))
         self.mobility = self.left.partial("der(vx)", "Fx")
 
     def begin(self, state, past=()):

@@ -40,14 +40,18 @@ def push(body, name, derivatives, end):
     body.step_to(end)
 
 
+def body_on_axis(m, kx=0.0):
+    """Start values of a ParticleCartesian that moves along x alone, on a spring of its own."""
+    return dict(m=m, kx=kx, ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0)
+
+
 class Master:
     """Two ParticleCartesian on the x axis, and a SpringDamper that has no state: force F on the left, -F on the right."""
 
     iterations = 60  # at most, of one communication step
 
     def __init__(self, m1, m2, k, c, own=0.0, l0=0.0):
-        body = dict(ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0, kx=own)
-        self.starts = [body | dict(m=m1), body | dict(m=m2)]
+        self.starts = [body_on_axis(m1, own), body_on_axis(m2, own)]
         self.left, self.right = (Slave(FMUS / "ParticleCartesian.fmu", **start) for start in self.starts)
         self.spring = Slave(FMUS / "SpringDamper.fmu", k=k, c=c, l0=l0)
         # The force by position and velocity of one end, and the acceleration by the force, for Newton's method.

@@ -6,6 +6,7 @@ REFERENCE. The error is the largest |value - reference| / (1 + |reference|) of t
 """
 
 import argparse
+import functools
 import multiprocessing
 import os
 from pathlib import Path
@@ -79,20 +80,19 @@ def compare(names, importer, report):
         for name in names:
             archive = FOLDERS[version] / f"{name}.fmu"
             outputs, end, expected = reference(name)
-            error = error_of(simulated(run, archive, version, kind, end, outputs), expected)
+            error = error_of(simulated(run, archive, kind, end, outputs), expected)
             rows.append([importer, version, kind, name, error])
             if isinstance(error, str):
                 report(f"  {importer}, FMI {version}, {kind}, {name}: {error.splitlines()[0][:150]}")
     return rows
 
 
-def reference(name, known={}):
+@functools.cache
+def reference(name):
     """Outputs, end, and the outputs at the end, for an FMU."""
-    if name not in known:
-        archive, end = FOLDERS[2] / f"{name}.fmu", FAST.get(name, END)
-        outputs = [v.name for v in fmpy.read_model_description(archive).modelVariables if v.causality == "output"]
-        known[name] = outputs, end, np.array(packages.fmpy(archive, 2, "CS", end, outputs, REFERENCE), float)
-    return known[name]
+    archive, end = FOLDERS[2] / f"{name}.fmu", FAST.get(name, END)
+    outputs = [v.name for v in fmpy.read_model_description(archive).modelVariables if v.causality == "output"]
+    return outputs, end, np.array(packages.fmpy(archive, "CS", end, outputs, REFERENCE), float)
 
 
 def cell(rows):

@@ -1,9 +1,9 @@
 """
 Importers that are Python packages. Each function simulates one FMU from time 0 to END and returns its outputs at the end:
 
-    run(archive, version, kind, end, outputs)
+    run(archive, kind, end, outputs)
 
-archive: path of the FMU; version: 2 or 3, of FMI; kind: "CS" for co-simulation, "ME" for model exchange; outputs: names.
+archive: path of the FMU, of either version of FMI; kind: "CS" for co-simulation, "ME" for model exchange; outputs: names.
 Importers of model exchange integrate with the relative tolerance TOLERANCE, masters of co-simulation step by STEP.
 """
 
@@ -17,19 +17,19 @@ TOLERANCE = 1e-8
 NANOSECONDS = 10**9  # libcosim counts time in them
 
 
-def fmpy(archive, version, kind, end, outputs, tolerance=None):
+def fmpy(archive, kind, end, outputs, tolerance=None):
     import fmpy
 
     words = {"CS": "CoSimulation", "ME": "ModelExchange"}
     tolerance = tolerance or (TOLERANCE if kind == "ME" else None)
-    result = fmpy.simulate_fmu(str(archive), stop_time=end, output_interval=STEP if end > STEP else end, output=outputs,
+    result = fmpy.simulate_fmu(str(archive), stop_time=end, output_interval=min(STEP, end), output=outputs,
                                fmi_type=words[kind], relative_tolerance=tolerance)  # fmt: skip
     if abs(result["time"][-1] - end) > 1e-9:
         raise RuntimeError(f"ended at {result['time'][-1]:g} s")
     return [result[output][-1] for output in outputs]
 
 
-def libcosim(archive, version, kind, end, outputs):
+def libcosim(archive, kind, end, outputs):
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
@@ -46,7 +46,7 @@ def libcosim(archive, version, kind, end, outputs):
     return observer.last_real_values(slave, [references[output] for output in outputs])
 
 
-def ecos(archive, version, kind, end, outputs):
+def ecos(archive, kind, end, outputs):
     from ecospy import EcosSimulation, EcosSimulationStructure
 
     structure = EcosSimulationStructure()
@@ -59,7 +59,7 @@ def ecos(archive, version, kind, end, outputs):
     return values
 
 
-def casadi(archive, version, kind, end, outputs):
+def casadi(archive, kind, end, outputs):
     """By CVODES with the FMU's own Jacobian. CasADi goes through no events, and takes start values as they are in the file."""
     import casadi
     import fmpy
@@ -80,7 +80,7 @@ def casadi(archive, version, kind, end, outputs):
         return [values[output] for output in outputs]
 
 
-def pathsim(archive, version, kind, end, outputs):
+def pathsim(archive, kind, end, outputs):
     """
     By its Runge-Kutta method of order 5 and its search for events. It sets all inputs, so that constants give them their start
     values. It makes the first step of co-simulation at time 0, so that outputs are those of the next communication point.
@@ -102,7 +102,7 @@ def pathsim(archive, version, kind, end, outputs):
     return [values[output] for output in outputs]
 
 
-def pyfmi(archive, version, kind, end, outputs):
+def pyfmi(archive, kind, end, outputs):
     """By CVode of Assimulo in model exchange."""
     from pyfmi import load_fmu
 

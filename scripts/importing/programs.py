@@ -24,7 +24,8 @@ def last_row(path, delimiter=","):
 def call(*words, cwd):
     result = subprocess.run([str(word) for word in words], capture_output=True, text=True, cwd=cwd)
     if result.returncode != 0:
-        raise RuntimeError((result.stderr or result.stdout).strip().splitlines()[-1:] or [f"exit code {result.returncode}"])
+        said = (result.stderr or result.stdout).strip().splitlines()
+        raise RuntimeError(said[-1] if said else f"exit code {result.returncode}")
 
 
 def values_of(row, outputs):
@@ -36,26 +37,33 @@ def values_of(row, outputs):
     return found
 
 
-def fmusim(archive, version, kind, end, outputs):
-    with tempfile.TemporaryDirectory() as folder:
-        solver = ("--solver", "cvode") if kind == "ME" else ()
-        call("fmusim", "--interface-type", kind.lower(), *solver, "--stop-time", end, "--output-interval", min(STEP, end),
-             "--output-file", "out.csv", archive, cwd=folder)  # fmt: skip
-        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+def by_program(words_of, file="out.csv", delimiter=","):
+    """A function as in packages.py. words_of(archive, kind, end, step, folder): the command, called in a folder where it leaves the file."""
+
+    def run(archive, kind, end, outputs):
+        with tempfile.TemporaryDirectory() as folder:
+            call(*words_of(archive, kind.lower(), end, min(STEP, end), Path(folder)), cwd=folder)
+            return values_of(last_row(Path(folder) / file, delimiter), outputs)
+
+    return run
 
 
-def omsimulator(archive, version, kind, end, outputs):
-    with tempfile.TemporaryDirectory() as folder:
-        call("OMSimulator", f"--mode={kind.lower()}", f"--stopTime={end}", f"--interval={min(STEP, end)}", "--solver=cvode",
-             f"--tolerance={TOLERANCE}", f"--tempDir={folder}", "--resultFile=out.csv", archive, cwd=folder)  # fmt: skip
-        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+@by_program
+def fmusim(archive, kind, end, step, folder):
+    solver = ("--solver", "cvode") if kind == "me" else ()
+    return "fmusim", "--interface-type", kind, *solver, "--stop-time", end, "--output-interval", step, "--output-file", "out.csv", archive
 
 
-def fmi4c(archive, version, kind, end, outputs):
+@by_program
+def omsimulator(archive, kind, end, step, folder):
+    options = (f"--mode={kind}", f"--stopTime={end}", f"--interval={step}", "--solver=cvode", f"--tolerance={TOLERANCE}")
+    return "OMSimulator", *options, f"--tempDir={folder}", "--resultFile=out.csv", archive
+
+
+@by_program
+def fmi4c(archive, kind, end, step, folder):
     """By fmi4ctest, whose method for model exchange is Euler's, of order 1."""
-    with tempfile.TemporaryDirectory() as folder:
-        call("fmi4ctest", "-m", kind.lower(), "-s", end, "-h", min(STEP, end), "-o", "out.csv", archive, cwd=folder)
-        return values_of(last_row(Path(folder) / "out.csv"), outputs)
+    return "fmi4ctest", "-m", kind, "-s", end, "-h", step, "-o", "out.csv", archive
 
 
 PROJECT = """tStart 0 s
@@ -72,12 +80,13 @@ simulator 0 0 fmu #ff808080 "{archive}"
 """
 
 
-def mastersim(archive, version, kind, end, outputs):
-    with tempfile.TemporaryDirectory() as folder:
-        project = Path(folder) / "project.msim"
-        project.write_text(PROJECT.format(end=end, step=min(STEP, end), archive=archive))
-        call("MasterSimulator", project, cwd=folder)
-        return values_of(last_row(Path(folder) / "project" / "results" / "values.csv", "\t"), outputs)
+def project_of_mastersim(archive, kind, end, step, folder):
+    project = folder / "project.msim"
+    project.write_text(PROJECT.format(end=end, step=step, archive=archive))
+    return "MasterSimulator", project
+
+
+mastersim = by_program(project_of_mastersim, "project/results/values.csv", "\t")
 
 
 def on_path(program):

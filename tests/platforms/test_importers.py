@@ -31,8 +31,8 @@ SMOOTH = ["DampedPendulum", "FourBar", "MotorPendulum", "ParticleSpherical"]
 def check(run, version, kind, name, bound, end=END):
     """The outputs at the end beside those of FMPy's co-simulation."""
     outputs = fmu.names_of(name, "output")
-    expected = packages.fmpy(fmu.archive(name), 2, "CS", end, outputs)
-    values = run(ARCHIVES[version](name), version, kind, end, outputs)
+    expected = packages.fmpy(fmu.archive(name), "CS", end, outputs)
+    values = run(ARCHIVES[version](name), kind, end, outputs)
     np.testing.assert_allclose(np.array(values, float), expected, rtol=bound, atol=bound)
 
 
@@ -96,7 +96,7 @@ def test_programs_on_the_path(program, run, check, file, rows, tmp_path, monkeyp
     (tmp_path / program).write_text(PROGRAM.format(check=check, file=file, rows=rows))
     (tmp_path / program).chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-    assert run("X.fmu", 2, "CS", 0.5, ["y"]) == [7.5]
+    assert run("X.fmu", "CS", 0.5, ["y"]) == [7.5]
 
 
 def check_by_toolbox(archive, version):
