@@ -1,7 +1,7 @@
 /*
  * The runs of a sweep: the functions of an FMU that is there already, called for one set of values after another. What is recorded
  * of a run is found as it goes: a largest value between three samples is that of the parabola through them. An event parts the
- * samples; its time is found by halving the step from its saved beginning, and the run goes on from the end of the step as if nobody had looked.
+ * samples; its time is found by halving the step from its saved beginning, and the run continues from the end of the step.
  */
 #include <math.h>
 #include <stdbool.h>

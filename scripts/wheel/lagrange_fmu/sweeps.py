@@ -15,7 +15,7 @@ from .runtime.scripts.cross import zig
 
 PACKAGE = Path(__file__).parent
 RUNTIME = PACKAGE / "runtime"
-HOW = (PACKAGE / "ensembles.py", Path(__file__))  # what tells how the libraries are compiled
+HOW = (PACKAGE / "ensembles.py", Path(__file__))  # the files that say how the libraries are compiled
 
 
 def compiled(place, name, key, what, words_for):

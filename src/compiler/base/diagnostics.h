@@ -29,8 +29,8 @@ struct Diagnostics {
 };
 
 /*
- * What stands for a line of the file being read in later messages: itself in the user's own file, else a negative number. All
- * functions below take both.
+ * Returns a number for a line of the file being read, for later messages: the line itself in the user's own file, else a
+ * negative number. All functions below take both.
  */
 long note_line(const struct Diagnostics *diagnostics, long line);
 

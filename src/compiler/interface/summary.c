@@ -16,7 +16,7 @@ static void add_name(struct NodeNames *names, Node node, const char *name) {
   names->named[names->named_count++] = node;
 }
 
-/* Of what they stand for, as it is in expressions and as it is shown. Mere numbers and variables read as well by themselves. */
+/* Names the nodes of the variables, as they are in expressions and as they are shown; numbers and single variables need no name. */
 static void add_names(struct NodeNames *names, const struct Model *model, const struct VariableList *list) {
   const struct Graph *graph = model->graph;
   for (size_t i = 0; i < list->count && names->named_count < SHOWN_LIMIT; i++) {

@@ -186,7 +186,7 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   equations->total = add(graph, equations->kinetic, equations->potential);
 }
 
-/* Of the states behind the velocities. */
+/* Derives the rates of the states of first order. */
 static void derive_rates(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->states.count; i++) {
     const struct Variable *state = &model->states.items[i];
