@@ -1,5 +1,7 @@
 """Systems whose motions have closed forms, for what differentiates motions; and the package that does."""
 
+import contextlib
+import importlib
 import itertools
 import sys
 
@@ -34,18 +36,27 @@ DOUBLE = """<system name="Double"><parameter name="m1" start="1" unit="kg"/><par
 DOUBLE_AT = {"m1": 1.0, "m2": 0.7, "l1": 1.0, "l2": 0.6, "g": 9.81, "a": 3.0, "va": 0.0, "b": 2.5, "vb": 0.4}
 
 
-@pytest.fixture(scope="module")
-def lagrange_fmu(tmp_path_factory):
-    folder = package.assemble(tmp_path_factory.mktemp("package"))
+@contextlib.contextmanager
+def only_package(folder):
+    """Import lagrange_fmu from the folder alone; what other tests of this process have imported of that name comes back afterwards."""
+
+    def forget():
+        return {name: sys.modules.pop(name) for name in list(sys.modules) if name.split(".")[0] == "lagrange_fmu"}
+
+    before = forget()
     sys.path.insert(0, str(folder))
     try:
-        import lagrange_fmu
-
-        yield lagrange_fmu
+        yield importlib.import_module("lagrange_fmu")
     finally:
         sys.path.remove(str(folder))
-        for name in [name for name in sys.modules if name.split(".")[0] == "lagrange_fmu"]:
-            del sys.modules[name]
+        forget()
+        sys.modules.update(before)
+
+
+@pytest.fixture(scope="module")
+def lagrange_fmu(tmp_path_factory):
+    with only_package(package.assemble(tmp_path_factory.mktemp("package"))) as imported:
+        yield imported
 
 
 def oscillation(t, m, k, d, x0, F=0.0):
