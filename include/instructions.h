@@ -1,10 +1,10 @@
 /*
- * The instructions that a system's equations become. lagc writes those of small systems as C statements, and those of
- * large ones as tables of numbers, which instructions.c carries out.
+ * The instructions to which a system's equations are compiled. lagc writes them as C statements for small systems, and
+ * as tables of numbers for large ones, which instructions.c interprets.
  *
- * A table is a sequence of runs: an opcode, how many instructions of it follow, the spaces that their operands are in, in
- * CALL and CALL_OF_TWO the function's place in the tables, and then the operands of each instruction, its result first.
- * A run with the opcode END is the last. An operand is an index in its space; in rows it counts coefficients.
+ * A table is a sequence of runs. A run is an opcode, the number of its instructions, and the spaces of their operands;
+ * for CALL and CALL_OF_TWO the index of the function follows. Then come the operands of each instruction, the result
+ * first. The opcode END ends the table. An operand is an index in its space; in rows of series it counts coefficients.
  */
 #ifndef INSTRUCTIONS_H
 #define INSTRUCTIONS_H
@@ -30,9 +30,9 @@ enum Space {
   SPACE_SEED_RESULT,
   SPACE_LOCAL,
   SPACE_MASS,   /* elements of the blocks of M that are factored at run time, later their factors */
-  SPACE_SIDE,   /* right sides for these blocks, later their solutions */
-  SPACE_TARGET, /* what the function is asked for */
-  SPACE_ROW,    /* the workspace of series; as a value, the coefficient 0 */
+  SPACE_SIDE,   /* right sides of these blocks, later their solutions */
+  SPACE_TARGET, /* the result array of the function */
+  SPACE_ROW,    /* the workspace of series; as a value, coefficient 0 */
   SPACE_STATE_ROW,
   SPACE_INPUT_ROW,
   SPACE_TIME_ROW,
@@ -40,19 +40,20 @@ enum Space {
   SPACE_COUNT
 };
 
-/* A space and an index in it. */
+/* A space in the upper 5 bits, and an index in it. */
 typedef uint32_t Place;
 
-enum { PLACE_BITS = 27, SPACE_BITS = 5 }; /* of the index; of each space of a run, the result's in the lowest bits */
+/* PLACE_BITS: of the index in a Place. SPACE_BITS: of each space in the header of a run, the result's in the lowest. */
+enum { PLACE_BITS = 27, SPACE_BITS = 5 };
 
 /*
- * r is the result, a, b and c are the operands. Values are numbers; in instructions for series, k is the order, a_k a
- * coefficient and "row" the array of all coefficients. Sources: series.h.
+ * r is the result, a, b and c are the operands. Values are numbers. In instructions for series, k is the order, a_k a
+ * coefficient, and "row" the array of all coefficients; series.h has the recurrences.
  */
 enum Opcode {
   END,
   COPY,           /* r = a */
-  FIRST_SLOPE,    /* the coefficient 1 of the row a */
+  FIRST_SLOPE,    /* coefficient 1 of the row a */
   SUM,            /* a + b */
   DIFFERENCE,     /* a - b */
   PRODUCT,        /* a b */
@@ -67,24 +68,24 @@ enum Opcode {
   INVERSE_FOURTH, /* a^-4 */
   SQUARE_ROOT,    /* sqrt(a) */
   INVERSE_ROOT,   /* 1 / sqrt(a) */
-  LESS_THAN,      /* 1 where a < b, else 0 */
+  LESS_THAN,      /* 1 if a < b, else 0 */
   SIGN_OF,        /* -1, 0 or 1 */
-  GATE_OF,        /* b where a > 0, else 0 */
+  GATE_OF,        /* b if a > 0, else 0 */
   CALL,           /* a function of a */
   CALL_OF_TWO,    /* a function of a and b */
-  CHECK_POSITIVE, /* return the number r unless a > 0 */
-  CHECK_PIVOT,    /* return the number r unless a > 1e-14 b */
-  CHECK_DIAGONAL, /* return the number r unless a > 1e-28 b */
-  FACTOR,         /* the block r; return the coordinate's number where it is singular */
-  SOLVE,          /* the block r */
-  LEAST_FORCES,   /* of the solution of the block r, which has constraints */
+  CHECK_POSITIVE, /* return r unless a > 0 */
+  CHECK_PIVOT,    /* return r unless a > 1e-14 b */
+  CHECK_DIAGONAL, /* return r unless a > 1e-28 b */
+  FACTOR,         /* factors block r; returns the number of the coordinate in which it is singular */
+  SOLVE,          /* solves block r */
+  LEAST_FORCES,   /* least-norm constraint forces in the solution of block r */
   SERIES_COPY,    /* a_k */
   SERIES_ZERO,    /* 0 */
   SERIES_SUM,     /* a_k + b_k */
   SERIES_DIFFERENCE,
   SERIES_NEGATION,
   SERIES_MULTIPLE,          /* the value a times b_k */
-  SERIES_SHARE,             /* a_k over the value b */
+  SERIES_SHARE,             /* a_k divided by the value b */
   SERIES_PRODUCT,           /* of the rows a and b */
   SERIES_SQUARE,            /* of the row a */
   SERIES_QUOTIENT,          /* a_k, the row b, the value c = 1 / b_0 */
@@ -96,62 +97,62 @@ enum Opcode {
   SERIES_TURN,              /* r' = a b, the value a and the row b */
   SERIES_NEGATIVE_TURN,     /* r' = -a b, the value a and the row b */
   SERIES_RATIO_INTEGRAL,    /* r' = a' / b, with a_k and the row b */
-  SERIES_AREA,              /* the coefficient k - 1 of a' b - b' a over k, rows */
+  SERIES_AREA,              /* coefficient k - 1 of a' b - b' a, divided by k; rows */
   SERIES_ANGLE,             /* atan2 of the rows a and b, with the row c = a^2 + b^2 */
   SERIES_ABSOLUTE,          /* of the row a */
-  SERIES_LARGER,            /* b_k where the row a is positive at first, else c_k */
-  SERIES_SMALLER,           /* b_k where the row a is negative at first, else c_k */
-  SERIES_GATE,              /* b_k where the value a is positive, else 0 */
-  SERIES_REST,              /* a_k - the product of the rows b and c without b_0 c_k */
-  SERIES_SOLVE,             /* the block r */
+  SERIES_LARGER,            /* b_k if the row a is positive just after t = 0, else c_k */
+  SERIES_SMALLER,           /* b_k if the row a is negative just after t = 0, else c_k */
+  SERIES_GATE,              /* b_k if the value a is positive, else 0 */
+  SERIES_REST,              /* a_k minus the product of the rows b and c without its term b_0 c_k */
+  SERIES_SOLVE,             /* solves block r */
   SERIES_STATE,             /* r_(k+1) = a_k / (k + 1) */
   SERIES_SLOPE,             /* (k + 1) a_(k+1) of the row a */
   OPCODE_COUNT
 };
 
-/* A block of M that is factored at run time: its part of the spaces, the pattern of its factor, see ldlt.h. */
+/* A block of M that is factored at run time: its parts of the spaces, and the pattern of its factor as in ldlt.h. */
 struct BlockTable {
   size_t count, first_mass, first_side;
-  const size_t *start, *column; /* NULL where the pattern is full */
-  const int *coordinate;        /* of each row: 1 + its number; of a constraint -1 - its number */
-  /* saddle_factor(), saddle_solve() and saddle_least_forces() of a block with constraints, NULL of others */
+  const size_t *start, *column; /* NULL for a full pattern */
+  const int *coordinate;        /* of each row: 1 + the index of the coordinate; -1 - that of a constraint */
+  /* saddle_factor(), saddle_solve() and saddle_least_forces() for a block with constraints; else NULL */
   size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
   void (*solve)(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
   void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                        Real *x);
-  /* oblique_solve() of a block with forces that follow from others, NULL of others */
+  /* oblique_solve() for a block with forces that depend on constraint forces; else NULL */
   void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                           Real *x);
 };
 
-/* What all tables of a system share. */
+/* Data shared by all tables of a system. */
 struct InstructionTables {
   const Real *numbers;
   Real (*const *functions)(Real);
   Real (*const *functions_of_two)(Real, Real);
   const struct BlockTable *blocks;
-  size_t local_count, mass_count, side_count; /* the workspace holds these, then the accelerations */
+  size_t local_count, mass_count, side_count; /* sizes of the spaces in the workspace, which the accelerations follow */
 };
 
-/* Where the spaces are while a function runs. */
+/* Base addresses of the spaces while a function runs. */
 struct Frame {
   Real *base[SPACE_COUNT];
   const struct InstructionTables *tables;
 };
 
-/* The spaces of a point, and those inside its workspace; the function's own ones are NULL. */
+/* Returns a frame with the spaces of a point and of its workspace. Those of the function itself are NULL. */
 struct Frame instructions_frame(const struct InstructionTables *tables, const struct Point *point);
 
-/* Adds the spaces of a direction. */
+/* Sets the spaces of a seed. */
 void instructions_seed(struct Frame *frame, const struct Seed *seed);
 
-/* Carries out a table of values. Returns 0, or what a check returned. */
+/* Runs a table of values. Returns 0, or the number of the first check that fails. */
 int instructions_run(const struct Frame *frame, const uint32_t *code);
 
-/* Carries out a table of series for the order k. */
+/* Runs a table of series at order k. */
 void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k);
 
-/* What shortens a step: one function of series_limit.h with its arguments. */
+/* A bound on the step: one function of series_limit.h with its arguments. */
 enum LimitRule {
   LIMIT_EXPONENTIAL,
   LIMIT_HYPERBOLIC,
@@ -171,10 +172,10 @@ enum LimitRule {
 struct LimitCheck {
   enum LimitRule rule;
   Place row, other_row;
-  const char *function; /* the name for messages */
+  const char *function; /* name for messages */
   double share;
   Place exponent;
-  bool is_gated; /* matters only where the value of the opener is positive */
+  bool is_gated; /* applies only if the value of opener is positive */
   Place opener;
 };
 

@@ -1,10 +1,16 @@
 /*
- * Forces that act on a system without being those of a constraint alone, as the friction of a contact that slides: then
- * K = (M J^T + C; J 0) is not symmetric. C has few columns, those of the forces that others follow from, so that the factors
- * of the symmetric matrix serve: K^-1 = S - S C (1 + E^T S C)^-1 E^T S with S = (M J^T; J 0)^-1, and E^T picks these forces.
+ * Solves K x = b with a nonsymmetric K = (M J^T; J 0) + C E^T, by the Woodbury identity. It is needed for forces that
+ * depend on constraint forces, such as the friction of a sliding contact. C has n rows and r columns, one for each
+ * force that others depend on; E^T selects these forces from x. With the symmetric S = (M J^T; J 0)^-1, factored by
+ * saddle.h,
  *
- * coordinate goes on behind the n numbers of saddle.h: how many columns C has, r, and the row of each one's force. m goes on
- * behind the numbers of saddle.h with C, n numbers a column, then workspace: OBLIQUE_MASS(n, r) numbers.
+ *  K^-1 = S - S C (1 + E^T S C)^-1 E^T S.
+ *
+ * The r by r matrix is factored by Gaussian elimination with row pivoting. A factorization costs r solutions with S
+ * more than that of saddle.h.
+ *
+ * coordinate[] continues behind the n numbers of saddle.h with r and the r rows of these forces. m continues behind the
+ * numbers of saddle.h with OBLIQUE_MASS(n, r) numbers: C by columns, then workspace.
  */
 #ifndef OBLIQUE_H
 #define OBLIQUE_H
@@ -15,7 +21,10 @@
 
 #define OBLIQUE_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
-/* The same as those of saddle.h. */
+/*
+ * The arguments and results are those of saddle.h. oblique_factor() also returns 1 if 1 + E^T S C is singular: the
+ * friction jams.
+ */
 size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
 void oblique_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                    double *x);

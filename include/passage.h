@@ -1,13 +1,13 @@
-/* How an event of system.xml comes to happen. */
+/* How an event of system.xml is triggered. */
 #ifndef PASSAGE_H
 #define PASSAGE_H
 
 enum Passage {
-  PASSAGE_HOLDS, /* its condition comes to hold */
-  PASSAGE_RISES, /* its expression comes from below 0 to above it */
+  PASSAGE_HOLDS, /* its condition becomes true */
+  PASSAGE_RISES, /* its expression crosses 0 upwards */
   PASSAGE_FALLS,
-  PASSAGE_BOTH,   /* either way */
-  PASSAGE_SAMPLES /* the time of a <sample> has come */
+  PASSAGE_BOTH,   /* in either direction */
+  PASSAGE_SAMPLES /* at the times of a <sample> */
 };
 
 #endif

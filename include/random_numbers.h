@@ -1,6 +1,7 @@
 /*
- * Random numbers without a state: functions of a seed and of a whole number, the same bit for bit on every machine. The generator
- * is Philox4x32-10, which encrypts a counter (Salmon, Moraes, Dror, Shaw, "Parallel Random Numbers: As Easy as 1, 2, 3", 2011).
+ * Random numbers without a state: functions of a seed and a whole number, equal bit for bit on every machine. The
+ * generator is the counter-based Philox4x32-10 (J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw: Parallel random
+ * numbers: as easy as 1, 2, 3, SC 2011).
  */
 #ifndef RANDOM_NUMBERS_H
 #define RANDOM_NUMBERS_H
@@ -8,7 +9,7 @@
 #include <math.h>
 #include <stdint.h>
 
-/* Replaces the counter by its block of random bits. */
+/* Replaces the counter by its 128 random bits: ten rounds of Philox. */
 static inline void random_block(uint32_t counter[4], const uint32_t key[2]) {
   uint32_t first = key[0], second = key[1];
   for (int round = 0; round < 10; round++) {
@@ -23,13 +24,13 @@ static inline void random_block(uint32_t counter[4], const uint32_t key[2]) {
   }
 }
 
-/* The whole number that is nearest, as bits; 0 for what is beyond 2^62. */
+/* Returns the nearest whole number as bits of a two's complement; 0 from 2^62 on. */
 static inline uint64_t random_bits_of(double x) {
   double nearest = floor(x + 0.5);
   return fabs(nearest) < 0x1p62 ? (uint64_t)(int64_t)nearest : 0;
 }
 
-/* 64 random bits of the seed and the number, others in each stream. */
+/* Returns 64 random bits for a seed and a number k. Streams are independent of each other. */
 static inline uint64_t random_word(double seed, double k, uint32_t stream) {
   uint64_t number = random_bits_of(k), of_seed = random_bits_of(seed);
   uint32_t counter[4] = {(uint32_t)number, (uint32_t)(number >> 32), stream, 0};
@@ -38,18 +39,21 @@ static inline uint64_t random_word(double seed, double k, uint32_t stream) {
   return (uint64_t)counter[0] << 32 | counter[1];
 }
 
-/* A number from 0 to 1 - 2^-53, all multiples of 2^-53 equally likely. */
+/* Returns a multiple of 2^-53 in [0, 1), all equally likely. */
 static inline double random_uniform(double seed, double k) {
   return (double)(random_word(seed, k, 0) >> 11) * 0x1p-53;
 }
 
-/* A product that no compiler joins with a sum to one operation, which would round otherwise. */
+/* Returns x y. The compiler cannot fuse it with an addition, which would round differently on some machines. */
 static inline double random_product(double x, double y) {
   volatile double product = x * y;
   return product;
 }
 
-/* The natural logarithm of a positive number, to some roundings: by atanh of (m - 1)/(m + 1), for m from 0.7 to 1.4. */
+/*
+ * Returns the natural logarithm of a positive number, to a few roundings: the series of 2 atanh((m - 1)/(m + 1)) up to
+ * degree 23, for a mantissa m in [0.7, 1.42).
+ */
 static inline double random_logarithm(double x) {
   int exponent;
   double m = frexp(x, &exponent);
@@ -62,14 +66,17 @@ static inline double random_logarithm(double x) {
   return random_product(exponent, 0x1.62e42fefa39efp-1) + random_product(2.0 * ratio, sum);
 }
 
-/* The polynomial with 8 coefficients, that of x^7 first. */
+/* Returns the polynomial with 8 coefficients, that of x^7 first, by Horner's rule. */
 static inline double random_polynomial(const double coefficients[8], double x) {
   double sum = coefficients[0];
   for (int i = 1; i < 8; i++) sum = random_product(sum, x) + coefficients[i];
   return sum;
 }
 
-/* The normal quantile of a probability between 0 and 1, to 16 digits: algorithm AS 241 (Wichura 1988). */
+/*
+ * Returns the normal quantile of a probability in (0, 1), to 16 digits (M. J. Wichura: Algorithm AS 241, Applied
+ * Statistics 37, 1988).
+ */
 static inline double random_quantile(double probability) {
   static const double above[3][8] = {
       {2.5090809287301226727e3, 3.3430575583588128105e4, 6.7265770927008700853e4, 4.5921953931549871457e4,
@@ -97,7 +104,10 @@ static inline double random_quantile(double probability) {
   return centred < 0.0 ? -size : size;
 }
 
-/* A normal number of mean 0 and variance 1, up to 8.2 of it: the quantile of the uniform one in the middle of its step. */
+/*
+ * Returns a standard normal number, at most 8.2 in size: the quantile of a uniform number at the middle of its interval
+ * of 2^-52.
+ */
 static inline double random_gauss(double seed, double k) {
   return random_quantile(((double)(random_word(seed, k, 1) >> 12) + 0.5) * 0x1p-52);
 }

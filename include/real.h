@@ -1,6 +1,6 @@
 /*
- * The numbers that generated functions compute with, and what these do by a condition. An ensemble compiles the same
- * functions over numbers that hold one of each of several runs (src/ensemble/lanes.h).
+ * The number type of generated functions, and operations that depend on conditions. An ensemble compiles the same
+ * functions with a vector type, one lane for each run (src/ensemble/lanes.h).
  */
 #ifndef REAL_H
 #define REAL_H
@@ -9,24 +9,24 @@
 
 typedef double Real;
 
-/* What a comparison of two gives. */
+/* Result of a comparison. */
 typedef bool Condition;
 #define BOTH(first, second) ((first) && (second))
 
-/* A constant among them. */
+/* A constant as a Real. */
 #define REAL(number) (number)
 
-/* The same where an array is initialized, and a function of <math.h> there. */
+/* A constant in the initializer of an array, and a function of <math.h> there. */
 #define CONSTANT(number) (number)
 #define FUNCTION(name) name
 
-/* The first where the condition holds, else the second. */
+/* Returns first if the condition holds, else second; in each lane. */
 #define WHERE(condition, first, second) ((condition) ? (first) : (second))
 
-/* Whether it holds in any of them. */
+/* True if the condition holds in any lane. */
 #define ANYWHERE(condition) (condition)
 
-/* Lets the function return the number unless the condition holds. */
+/* Returns number from the function unless the condition holds. */
 #define REQUIRE(condition, number)                                                                                     \
   do {                                                                                                                 \
     if (!(condition)) return (number);                                                                                 \

@@ -1,4 +1,4 @@
-/* 1 / k for the orders of series: to divide takes a processor longer than to read. */
+/* 1 / k for the orders k of series: a multiplication is faster than a division. */
 #ifndef RECIPROCALS_H
 #define RECIPROCALS_H
 

@@ -1,11 +1,14 @@
 /*
- * K = L D L^T of a matrix (M J^T; J 0) with a positive definite M, stored as ldlt.h has it, in an order of rows in which
- * each constraint comes after its coordinates: then no pivoting is needed, and the pivots of the constraints, those of
- * -J M^-1 J^T, are negative. For blocks of the mass matrix with constraints.
+ * Factors the saddle-point matrix K = (M J^T; J 0), with a positive definite M, as L D L^T. It serves blocks of the
+ * mass matrix with constraints. Rows are ordered so that each constraint comes after its coordinates. Then no pivoting
+ * is needed: the pivots of M are positive, and those of the constraints, which are the pivots of the Schur complement
+ * -J M^-1 J^T, are negative (M. Benzi, G. H. Golub, J. Liesen: Numerical solution of saddle point problems, Acta
+ * Numerica 14, 2005). Constraints that depend on others are found by their pivots and left out, with force 0.
  *
- * m holds the e elements of K's pattern, SADDLE_MASS(e, n, c) numbers in all with c constraints: the factors, K itself, the share
- * that is left of the weakest constraint's row, workspace, and forces that balance each other, see saddle_least_forces(). Right
- * sides are arrays of SADDLE_SIDE(n) numbers.
+ * K is stored as in ldlt.h. With e elements and c constraints, m holds SADDLE_MASS(e, n, c) numbers: the factors, K
+ * itself, the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
+ * saddle_least_forces(). Right sides are arrays of SADDLE_SIDE(n) numbers, of which the first n are given and solved
+ * for.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
@@ -20,26 +23,30 @@
 #define SADDLE_SIDE(n) (4 * (n))
 
 /*
- * Replaces K by L (below the diagonal) and D (on it); coordinate: positive numbers of the rows of M, negative ones of
- * constraints. A constraint that follows from those before it gets an infinite pivot, so that 0 is found for its force.
- * Returns 0, or 1 + the row in which M is not definite.
+ * Replaces K by L (below the diagonal) and D (on it). coordinate: positive numbers for rows of M, negative ones for
+ * constraints. A constraint that depends on those before it gets the pivot -INFINITY, so that its force is 0. Returns
+ * 0, or 1 + the first row in which M is not positive definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
-/* A pivot of M below this share of its diagonal element has lost all its digits. */
+/* True if a pivot of M is positive to rounding: below 1e-14 of its diagonal element it has lost all its digits. */
 static inline Condition saddle_is_definite(Real pivot, Real diagonal) {
   const double smallest_share_of_mass = 1e-14;
   return pivot > smallest_share_of_mass * diagonal;
 }
 
-/* What a term of a constraint's pivot adds to its mobility, J M^-1 J^T of the constraint alone. */
+/*
+ * Returns the contribution of a term of a constraint's pivot to J M^-1 J^T of that constraint alone: that of a row of
+ * M, which is positive.
+ */
 static inline Real saddle_mobility(Real term) {
   return WHERE(term > 0.0, term, 0.0);
 }
 
 /*
- * Where the constraints before one have little hold, down to the share of the weakest, rounding grows into what is left of
- * it, its hold: less than the first share where those before it have much, than the second where one has the share 1 only.
+ * True if a constraint's pivot may be wrong by rounding, and is recomputed. hold / mobility is the pivot relative to
+ * that of the constraint alone, weakest the smallest such ratio before. Below 1e-14 the pivot is 0 in any case.
+ * Rounding errors grow by 1 / weakest; above 1e-11 / weakest the pivot has enough digits.
  */
 static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakest) {
   const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
@@ -48,36 +55,37 @@ static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakes
 }
 
 /*
- * The pivot of a constraint. One with less of its row left than this share, squared, follows from the others: what rounding
- * leaves of one that does is smaller, and one that nearly does so would have no digits left.
+ * Returns the pivot of a constraint, and updates the smallest relative one. A relative pivot is the squared sine of the
+ * angle between the constraint and the span of those before it, in the metric of M^-1. Up to 1e-12 (a sine of 1e-6) the
+ * constraint counts as dependent: rounding leaves less, and a regular constraint would keep no digits.
  */
 static inline Real saddle_pivot(Real hold, Real mobility, Real *weakest) {
   const double smallest_share = 1e-12;
   Condition has_hold = hold > smallest_share * mobility, has_none = hold <= smallest_share * mobility;
   *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
-  return WHERE(has_none, -INFINITY, -hold); /* what is no number stays none */
+  return WHERE(has_none, -INFINITY, -hold); /* NAN stays NAN */
 }
 
-/* Solutions keep most of their digits where the weakest constraint has more than this share. */
+/* Above this smallest relative pivot, solutions lose at most a few digits, and are not refined. */
 static const double saddle_weak_share = 1e-3;
 
-/* Whether one has less; m holds so many elements of factors. */
+/* True if the smallest relative pivot is lower; elements is the number of elements of K. */
 static inline Condition saddle_is_weak(size_t elements, const Real *m) {
   return m[2 * elements] < saddle_weak_share;
 }
 
 /*
- * Solves K x = b in place. Where a constraint has little hold, the solution is refined: -J M^-1 J^T has lost twice the
- * digits that K has lost.
+ * Solves K x = b in place. Applies one step of iterative refinement if a relative pivot is small: -J M^-1 J^T squares
+ * the condition number of J.
  */
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
-/* Finds what saddle_least_forces() needs behind the factors; saddle_factor() does so itself. */
+/* Computes an orthogonal basis of the null space of J^T behind the factors. saddle_factor() calls it. */
 void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*
- * Where constraints follow from others, many forces F have the same J^T F. Replaces those in x by the ones among them of
- * least Euclidean norm.
+ * Replaces the constraint forces F in x by those of least Euclidean norm with the same J^T F: a statically
+ * indeterminate system with dependent constraints has many. Subtracts the components in the null space of J^T.
  */
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x);

@@ -1,9 +1,15 @@
 /*
- * Recurrences for the coefficients of Taylor series, for the code that lagc generates (A. Jorba, M. Zou: A software
- * package for the numerical integration of ODEs by means of high-order Taylor methods, 2005, section 2).
+ * Recurrences for Taylor coefficients, which the code that lagc generates calls (A. Jorba, M. Zou: A software package
+ * for the numerical integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14, 2005,
+ * section 2).
  *
- * a[j], b[j], ... are coefficients of t^j. Each function returns the coefficient k >= 1 of its result from those of its
- * operands up to k and those of the result below k. The order is bounded: all arrays hold SERIES_LENGTH elements.
+ * a[j], b[j], ... are the coefficients of t^j. Each function returns coefficient k >= 1 of its result, from those of
+ * its operands up to k and those of the result below k. With w = a b it is w_k = sum over j = 0 .. k of a_j b_(k-j);
+ * functions that satisfy a differential equation, such as exp and sin, have recurrences of the same shape. An order k
+ * costs O(k) operations a function, a series up to order p O(p^2).
+ *
+ * Each sum is split into a middle part, which needs coefficients below k alone, and the terms with coefficient k. The
+ * middle parts of an order do not depend on each other, so the processor can overlap them.
  */
 #ifndef SERIES_H
 #define SERIES_H
@@ -14,11 +20,15 @@
 #include "real.h"
 #include "reciprocals.h"
 
+/*
+ * Coefficients of a series. The order of a method is at most SERIES_LENGTH - 2: the state has one coefficient more than
+ * its derivative.
+ */
 enum { SERIES_LENGTH = 24 };
 
 typedef Real Series[SERIES_LENGTH];
 
-/* Functions with the switch over all orders stand once. */
+/* Keeps one copy of each function that contains the branches over all orders. */
 #ifdef __GNUC__
 #define SERIES_INLINE inline __attribute__((always_inline))
 #define SERIES_NOT_INLINE __attribute__((noinline, unused))
@@ -33,7 +43,7 @@ typedef Real Series[SERIES_LENGTH];
 #endif
 #endif
 
-/* Two neighbouring products, which the processor computes as one where the compiler can say so. */
+/* Two adjacent products. Compilers with vector extensions compute them by one instruction. */
 #ifdef SERIES_HAS_VECTORS
 typedef double Pair __attribute__((vector_size(2 * sizeof(double))));
 
@@ -104,9 +114,9 @@ static SERIES_INLINE double pair_second(Pair a) {
 #endif
 
 /*
- * The middle terms of all products of an order k, m[i] = sum of a[from + j] b[k - 1 - j] for j < k - 1, where PRODUCTS(EACH)
- * is a list of EACH(i, a, from, b): by pairs of neighbours, the newest coefficients alone. They are sums of coefficients
- * below k, and so none waits for another; rows that are factors of several products are read once.
+ * Computes the middle terms of all products at order k >= 1: m[i] = sum over j = 0 .. k - 2 of a[from + j] b[k - 1 -
+ * j]. PRODUCTS(EACH) is a list of EACH(i, a, from, b). Adds pairs of adjacent terms; the first and the last term, which
+ * use the newest coefficients, come last. Rows that are factors of several products are read once.
  */
 #define SERIES_MIDDLES(PRODUCTS)                                                                                       \
   do {                                                                                                                 \
@@ -130,7 +140,7 @@ static SERIES_INLINE double pair_second(Pair a) {
   m[i] = pair_total(pairs##i) + ((a)[from] * (b)[k - 1] + (a)[(from) + k - 2] * (b)[1]);
 #define SERIES_TERM_WITHOUT_NEIGHBOUR(i, a, from, b) m[i] += (a)[(from) + k - 3] * (b)[2];
 
-/* The same of one product. */
+/* Middle terms of one product. */
 #define SERIES_ONE(EACH) EACH(0, a, 0, b)
 static SERIES_NOT_INLINE double series_middle(int k, const double *a, const double *b) {
   double m[1];
@@ -138,7 +148,10 @@ static SERIES_NOT_INLINE double series_middle(int k, const double *a, const doub
   return m[0];
 }
 
-/* The same of so many products that the code of each would leave the processor's caches: from a list, by fours. */
+/*
+ * Middle terms of a list of products, four at a time. Serves systems whose unrolled code would not fit the instruction
+ * cache.
+ */
 struct SeriesFactors {
   const double *a, *b;
 };
@@ -153,8 +166,8 @@ static SERIES_NOT_INLINE void series_middles(int k, size_t count, const struct S
 }
 
 /*
- * (a b)_k, where b is the row that is computed later: what is waited for comes last. Here and below, ..._around() has
- * the middle terms.
+ * Returns (a b)_k. b is the row that is computed later: its newest coefficient is used last. Here and below,
+ * ..._around() takes the middle terms as an argument.
  */
 static SERIES_INLINE double series_product_around(double middle, int k, const double *a, const double *b) {
   return (middle + a[k] * b[0]) + a[0] * b[k];
@@ -164,7 +177,7 @@ static SERIES_INLINE double series_product(int k, const double *a, const double 
   return series_product_around(series_middle(k, a + 1, b), k, a, b);
 }
 
-/* (a b)_k without its first term a_0 b_k */
+/* Returns (a b)_k without the term a_0 b_k. */
 static SERIES_INLINE double series_rest_around(double middle, int k, const double *a, const double *b) {
   return middle + a[k] * b[0];
 }
@@ -182,7 +195,7 @@ static SERIES_INLINE double series_square(int k, const double *a) {
   return series_square_around(series_middle(k, a + 1, a), k, a);
 }
 
-/* (a / b)_k, where top is a_k, inverse is 1 / b_0 and c holds the quotient so far */
+/* Returns (a / b)_k; top is a_k, inverse is 1 / b_0, c the quotient's coefficients below k. */
 static SERIES_INLINE double series_quotient_around(double middle, int k, double top, double inverse, const double *b,
                                                    const double *c) {
   return (top - (middle + b[k] * c[0])) * inverse;
@@ -192,7 +205,7 @@ static SERIES_INLINE double series_quotient(int k, double top, double inverse, c
   return series_quotient_around(series_middle(k, b + 1, c), k, top, inverse, b, c);
 }
 
-/* (sqrt a)_k; the root of 0 at all times is 0 */
+/* Returns (sqrt a)_k; c holds the root's coefficients below k. The root of an identical 0 is 0. */
 static SERIES_INLINE double series_root_around(double middle, int k, const double *a, const double *c) {
   if (c[0] == 0.0 && c[k - 1] == 0.0 && a[k] == 0.0) return 0.0;
   return (a[k] - middle) / (2.0 * c[0]);
@@ -203,8 +216,9 @@ static SERIES_INLINE double series_root(int k, const double *a, const double *c)
 }
 
 /*
- * (a^n)_k for any number n. Where a starts with its term m > 0, a = t^m b and a^n = t^(m n) b^n exist for whole n > 0;
- * b_j = a_(m+j), and (b^n)_j = c_(mn+j).
+ * Returns (a^n)_k for a real n; c holds the power's coefficients below k. If a_m is the first nonzero coefficient and m
+ * > 0, then a = t^m b and a^n = t^(m n) b^n, with b_j = a_(m+j) and (b^n)_j = c_(m n+j). Then n must be a whole number
+ * >= 0, else the result is NAN.
  */
 static inline double series_power(int k, double n, const double *a, const double *c) {
   int m = 0;
@@ -219,7 +233,7 @@ static inline double series_power(int k, double n, const double *a, const double
   return sum / (last * a[m]);
 }
 
-/* c' = a' b: c_k, with the series of a' */
+/* Returns c_k of c' = a' b; rate holds the coefficients of a'. */
 static SERIES_INLINE double series_integral_around(double middle, int k, const double *rate, const double *b) {
   return (middle + rate[k - 1] * b[0]) * reciprocal[k];
 }
@@ -228,33 +242,33 @@ static SERIES_INLINE double series_integral(int k, const double *rate, const dou
   return series_integral_around(series_middle(k, rate, b), k, rate, b);
 }
 
-/* c' = a' / b: c_k, where top is a_k */
+/* Returns c_k of c' = a' / b; top is a_k. */
 static inline double series_ratio_integral(int k, double top, const double *b, const double *c) {
   double sum = 0.0;
   for (int j = 1; j < k; j++) sum += j * c[j] * b[k - j];
   return (top - sum / k) / b[0];
 }
 
-/* The sign that a(t) has at first for t > 0, as far as its coefficients up to k tell: -1, 0 or 1 */
+/* Returns the sign of a(t) just after t = 0, -1, 0 or 1, as determined by the coefficients up to k. */
 static inline double series_sign(int k, const double *a) {
   int j = 0;
   while (j < k && a[j] == 0.0) j++;
   return (double)((a[j] > 0.0) - (a[j] < 0.0));
 }
 
-/* |a|_k, of the piece that is there first */
+/* Returns |a|_k, on the piece that holds just after t = 0. */
 static inline double series_absolute(int k, const double *a) {
   return series_sign(k, a) * a[k];
 }
 
-/* The coefficient k - 1 of y' x - x' y, divided by k */
+/* Returns coefficient k - 1 of y' x - x' y, divided by k. */
 static inline double series_area(int k, const double *y, const double *x) {
   double sum = 0.0;
   for (int j = 1; j <= k; j++) sum += j * (y[j] * x[k - j] - x[j] * y[k - j]);
   return sum / k;
 }
 
-/* The coefficient k of atan2(y, x), with the series of x^2 + y^2 in b */
+/* Returns atan2(y, x)_k; b holds the coefficients of x^2 + y^2, c the angle's below k. */
 static inline double series_angle(int k, const double *y, const double *x, const double *b, const double *c) {
   return series_ratio_integral(k, series_area(k, y, x), b, c);
 }

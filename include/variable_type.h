@@ -1,4 +1,7 @@
-/* The types that variables have in FMI. Parameters of all types are numbers: whole ones, and 0 or 1 of a Boolean. */
+/*
+ * The types of FMI variables. Parameters of all types are stored as numbers: whole ones for integers, 0 or 1 for
+ * Booleans.
+ */
 #ifndef VARIABLE_TYPE_H
 #define VARIABLE_TYPE_H
 
