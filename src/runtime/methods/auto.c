@@ -1,8 +1,20 @@
 /*
- * Taylor series and Radau IIA in turn: whichever gets further in the motion with its work. Progress and work are watched
- * over windows of a few steps, and work is counted in arithmetic operations, not in time, so that the same choices are
- * made on every machine and after a saved state. The series begin; where their coefficients promise that an implicit
- * method gets further, that is tried, and stays as long as it does.
+ * Automatic choice between the Taylor method and Radau IIA: the one that covers more simulated time for an arithmetic
+ * operation makes the steps. Time and work are summed over windows of a few steps. Work is counted, not timed, so all
+ * machines and restored snapshots choose alike.
+ *
+ * From Taylor to Radau: the series' coefficients show whether fast modes limit the step, and predict Radau's step
+ * (stiffness.c). If its speed would exceed that of the series by a margin, a trial of Radau begins. The trial lasts
+ * while the steps grow, at most TRIAL_LIMIT windows. It succeeds once Radau is faster than the series were; otherwise
+ * the series return. After each failed trial in a row, the wait for the next one doubles in units of the trial's work.
+ * So failed trials cost a bounded share of the work.
+ *
+ * From Radau to Taylor: stability limits the step of the series to a multiple of 1 / (fastest rate). Their present
+ * speed is estimated as their last speed, times the rate then over the rate now (stiffness_rate()). The series return
+ * if Radau is slower than 0.8 of that, after a minimum stay. The stay doubles if Radau was left soon, which prevents
+ * oscillation between the methods.
+ *
+ * If a method cannot make a step, the other one is tried at once.
  */
 #include <float.h>
 #include <math.h>
@@ -19,37 +31,37 @@ extern const struct Solver solver_taylor, solver_radau;
 static const struct Solver *const solvers[AUTO_METHODS] = {&solver_taylor, &solver_radau};
 
 static const int window[AUTO_METHODS] = {6, 3}; /* steps of a window */
-/* All in windows. */
+/* Times in windows. */
 enum {
   WARM_UP = 1,       /* of a trial, before it is judged */
-  TRIAL_LIMIT = 8,   /* how long one goes on while its steps grow */
-  LONGEST_WAIT = 16, /* of the series before their coefficients are looked at again */
-  LONG_RUN = 256,    /* of the series, after which Radau IIA needs to promise half as much */
+  TRIAL_LIMIT = 8,   /* longest trial whose steps grow */
+  LONGEST_WAIT = 16, /* of the series between two checks of their coefficients */
+  LONG_RUN = 256,    /* of the series, after which half the predicted speed suffices for a trial */
   SHORT_STAY = 8,
-  LONG_STAY = 256 /* of Radau IIA where fast motions come again and again: the first, the longest */
+  LONG_STAY = 256 /* minimum stay of Radau IIA if it was left soon: first, and limit of doubling */
 };
-/* How many times the work of a vain trial the series do before the next one: at first, at most. */
+/* Work of the series before the next trial, as a multiple of the failed trial's work: first, and limit of doubling. */
 enum { SHORT_PATIENCE = 2, LONG_PATIENCE = 256 };
-static const double LARGEST_WORK = 1e15; /* operations that no window or trial comes to: days of work */
-static const double GROWTH = 1.25;       /* of progress from window to window that keeps a trial alive */
-static const double FIRST_GROWTH = 8.0;  /* of the first step of Radau IIA over the last one of the series */
+static const double LARGEST_WORK = 1e15; /* plausibility limit of restored counters: days of work */
+static const double GROWTH = 1.25;       /* of speed from window to window that keeps a trial alive */
+static const double FIRST_GROWTH = 8.0;  /* largest ratio of the first Radau step to the last Taylor step */
 
-/* What the situation holds after what the method at work keeps. */
+/* The part of the snapshot behind that of the active method. */
 struct Choice {
-  int64_t method;          /* enum AutoMethod: the one at work */
-  int64_t steps, restarts; /* in the window; it restarts for changed inputs and the like */
-  int64_t windows;         /* since the method was chosen */
-  int64_t patience;        /* windows to wait before Radau IIA is tried */
-  int64_t next_patience;   /* after a vain trial: how many times its work the series do first */
-  int64_t stay;            /* windows that Radau IIA is given at least, more where it was left soon */
-  int64_t is_trial;        /* Radau IIA was not yet found to get further */
-  int64_t crosses;         /* the last step of the series did, over a point where a function has none */
-  double begin, work;      /* of the window: its time, and the operations in it */
-  double last_speed;       /* progress for work in the window before */
+  int64_t method;          /* enum AutoMethod: the active one */
+  int64_t steps, restarts; /* in the window; inputs that change cause restarts */
+  int64_t windows;         /* since the last handover */
+  int64_t patience;        /* windows before the next check of the coefficients */
+  int64_t next_patience;   /* multiple of a failed trial's work that the series do before the next one */
+  int64_t stay;            /* minimum stay of Radau IIA, in windows */
+  int64_t is_trial;        /* 1 until Radau IIA has been faster than the series */
+  int64_t crosses;         /* 1 if the last Taylor step crossed a point without a series */
+  double begin, work;      /* of the window: its start in s, its operations */
+  double last_speed;       /* seconds of progress an operation, in the window before */
   double trial_work;
-  double promised_step;             /* of Radau IIA, the first one */
-  double rate;                      /* stiffness_rate() at the last step of a window of Radau IIA */
-  double taylor_speed, taylor_rate; /* progress for work of the series when they were left, and the rate there */
+  double promised_step;             /* predicted first step of Radau IIA, in s */
+  double rate;                      /* stiffness_rate() at the last step of a Radau window, in 1/s */
+  double taylor_speed, taylor_rate; /* speed and rate of the series when they were left */
 };
 
 struct Auto {
@@ -75,7 +87,7 @@ static bool are_possible_counts(const struct Choice *choice) {
          choice->crosses <= 1;
 }
 
-/* Not NaN, of which no comparison holds. */
+/* True if 0 <= number <= largest; false for NaN. */
 static bool is_up_to(double number, double largest) {
   return number >= 0.0 && number <= largest;
 }
@@ -94,7 +106,7 @@ static bool auto_could_save(const struct Situation *situation, const void *saved
          are_possible_numbers(&choice) && solvers[choice.method]->could_save(situation, saved);
 }
 
-/* Each method finds its own memory in the instance while it works. */
+/* Gives the active method its own memory until auto_leave(). */
 static struct Auto *auto_enter(struct Instance *instance) {
   struct Auto *automatic = instance->solver_memory;
   instance->solver_memory = automatic->memory[automatic->choice->method];
@@ -172,17 +184,20 @@ static bool auto_interpolate_at(struct Instance *instance, const double *times, 
   return are_known;
 }
 
-/* Operations of Radau IIA, counted like those of the series (taylor_rule.h), for so many evaluations of the equations, and so many Jacobians with their factors. */
+/*
+ * Returns the operations of Radau IIA, counted as work_of_series() does, for these numbers of evaluations and of
+ * Jacobians, each with its factorizations.
+ */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
   const struct OperationCounts *count = &lagrangian.steps.operations;
   double s = (double)stages, states = (double)lagrangian.state_count;
-  double systems = 2.0 + 4.0 * (s - 1.0); /* a real one, and complex ones of four times its operations */
+  double systems = 2.0 + 4.0 * (s - 1.0); /* one real system; a complex one counts four times */
   double evaluation = 250.0 + count->derivatives + s * (20.0 + 5.0 * states) + systems / s * count->solve;
   double factors = 20.0 * s + systems * count->factor;
   return evaluations * evaluation + jacobians * (600.0 + count->jacobian + factors + 3.0 * s * s * states);
 }
 
-/* Lets the other method begin at the end of the last step. False where the state or the memory is missing. */
+/* Starts the other method at the end of the last step. False if the state is unknown or memory is missing. */
 static bool hand_over(struct Instance *instance, struct Auto *automatic, const struct CommunicationStep *step) {
   struct Choice *choice = automatic->choice;
   struct Situation *situation = instance->situation;
@@ -205,7 +220,10 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
   return true;
 }
 
-/* Whether Radau IIA would get further than the series do; the less it must promise, the longer they have been at work. */
+/*
+ * True if Radau IIA is predicted to be faster than the series. The required margin falls with the time that they have
+ * been active.
+ */
 static bool series_are_slow(struct Instance *instance, struct Choice *choice, double progress) {
   enum { ITERATIONS = 4 };
   const struct Taylor *taylor = instance->solver_memory;
@@ -233,7 +251,7 @@ static bool judge_series(struct Instance *instance, struct Choice *choice, doubl
   return true;
 }
 
-/* A trial goes on as long as steps grow or want to; one in vain is not soon made again. */
+/* True if the trial has failed: Radau IIA is slower, and its steps neither grow nor are about to. Sets the wait. */
 static bool judge_trial(const struct Instance *instance, struct Choice *choice, double speed, double other) {
   double window_of_series = window[AUTO_TAYLOR] * work_of_series((double)taylor_rule(instance).order);
   choice->trial_work += choice->work;
@@ -247,10 +265,7 @@ static bool judge_trial(const struct Instance *instance, struct Choice *choice, 
   return true;
 }
 
-/*
- * The series would be as fast as they were, but for the rates that have changed since. Where fast motions come again and
- * again, as after each change of an input, the methods do not change with each of them.
- */
+/* True if the series are to return: see the top of this file. */
 static bool judge_radau(const struct Instance *instance, struct Choice *choice, double progress) {
   double speed = progress / choice->work, other = choice->taylor_speed;
   if (choice->taylor_rate == 0.0) choice->taylor_rate = choice->rate;
@@ -263,7 +278,7 @@ static bool judge_radau(const struct Instance *instance, struct Choice *choice, 
   return true;
 }
 
-/* Whether the other method is to go on from here. */
+/* True if the other method is to take over at the end of the last step. */
 static bool judge(struct Instance *instance, struct Choice *choice) {
   double time = instance->situation->last_step.end;
   if (choice->next_patience == 0) choice->next_patience = SHORT_PATIENCE;
@@ -276,7 +291,7 @@ static bool judge(struct Instance *instance, struct Choice *choice) {
   return is_slow;
 }
 
-/* The work of the method at work between two states of the statistics. */
+/* Returns the work of the last step, from the statistics before it and now. */
 static double work_between(const struct Instance *instance, const struct Choice *choice, const int64_t *before) {
   const int64_t *after = instance->situation->statistics;
   if (choice->method == AUTO_TAYLOR)
@@ -306,7 +321,7 @@ static const char *auto_advance(struct Instance *instance, const struct Communic
   if (judge(instance, automatic->choice) && !hand_over(instance, automatic, step)) problem = no_handover;
   if (problem == NULL) problem = make_step(instance, automatic, step);
   if (problem != NULL && hand_over(instance, automatic, step)) {
-    automatic->choice->taylor_speed = 0.0; /* what failed is not tried again before the other one fails */
+    automatic->choice->taylor_speed = 0.0; /* if the series failed, Radau IIA stays until it fails */
     const char *other_problem = make_step(instance, automatic, step);
     if (other_problem == NULL || automatic->choice->method == AUTO_RADAU) problem = other_problem;
   }

@@ -1,10 +1,16 @@
 /*
- * Linear systems, x' = A x + B u + c with inputs that are polynomials over the step, by the matrix exponential: with
- * z = (x, 1, u, u', u'', u''') the system is z' = Z z, and z(h) = exp(Z h) z(0).
+ * Linear systems x' = A x + B u + c, whose inputs u are polynomials over the step, by the matrix exponential. With z =
+ * (x, 1, u, u', u'', u''') the system is z' = Z z, and z(h) = exp(Z h) z(0) (C. F. Van Loan: Computing integrals
+ * involving the matrix exponential, IEEE Trans. Automatic Control 23, 1978).
  *
- * Two things keep the error of many steps near the rounding of the phase. A step adds the change of the state,
- * (exp(Z h) - I) z, whose rounding is that of a small number where the step is short. And what rounding takes from the
- * state is carried along in the saved situation (Kahan's compensated summation).
+ * exp(Z h) comes from scaling and squaring (C. Moler, C. Van Loan: Nineteen dubious ways to compute the exponential of
+ * a matrix, SIAM Review 20, 1978, method 3). Balancing and k halvings reduce the norm to 1/2 or less, where the Taylor
+ * series ends after some twenty terms; k squarings follow. With n rows this costs O(n^3) for each product, in long
+ * double. The matrix is kept while step and parameters stay, and a step then costs O(n^2).
+ *
+ * Two measures keep the error of many steps near the rounding of the phase. A step adds the change (exp(Z h) - I) z,
+ * whose rounding error is small in short steps; squaring keeps the form exp - I. Compensated summation (Kahan) carries
+ * the rounding error of the state in the snapshot.
  */
 #include <math.h>
 #include <string.h>
@@ -14,17 +20,17 @@
 #include "instance/snapshot.h"
 #include "instance/time_laws.h"
 
-/* What is kept of the last step: with the same step and parameters, its matrix serves again. */
+/* State of the method. With the same step and parameters, the matrix is used again. */
 struct Exact {
-  size_t order;      /* 1 + INPUT_ORDER where the matrix takes input derivatives, else 1 */
-  double step;       /* 0 for none */
-  double *parameter; /* parameter_count */
-  /* exp(Z h) = diag(identity) + matrix. The first state_count rows of both, size columns. */
+  size_t order;      /* 1 + INPUT_ORDER if the matrix takes input derivatives, else 1 */
+  double step;       /* of the matrix, in s; 0 if there is none */
+  double *parameter; /* of the matrix; parameter_count */
+  /* exp(Z h) = diag(identity) + matrix: its first state_count rows, each of extended_size(order) columns. */
   double *identity, *matrix;
   double *extended, *linear;
   double *state;           /* at the start of the step */
-  double *next, *next_low; /* the state at the end of the step, and what rounding left of it */
-  /* Workspace for the exponential, size x size by rows, and size powers of two. */
+  double *next, *next_low; /* the state at the end of the step, and its rounding error */
+  /* Workspace of the exponential: size x size each, by rows, and size exponents of 2. */
   long double *generator, *term, *product, *sum;
   int *exponent;
 };
@@ -34,7 +40,7 @@ static size_t extended_size(size_t order) {
 }
 
 static size_t saved_size(void) {
-  return lagrangian.state_count * sizeof(double); /* what rounding left of the state */
+  return lagrangian.state_count * sizeof(double); /* the rounding error of the state */
 }
 
 static bool could_save(const struct Situation *situation, const void *saved) {
@@ -82,7 +88,7 @@ static bool create(struct Instance *instance) {
   return solver_lacks_memory(instance);
 }
 
-/* result = a b for square matrices by rows; zeros of a count as such, whatever they meet. */
+/* Computes result = a b for n x n matrices by rows. A zero in a gives 0 even for infinite elements of b. */
 static void multiply(size_t n, const long double *a, const long double *b, long double *result) {
   for (size_t i = 0; i < n * n; i++) result[i] = 0.0L;
   for (size_t i = 0; i < n; i++)
@@ -93,7 +99,7 @@ static void multiply(size_t n, const long double *a, const long double *b, long 
     }
 }
 
-/* Z h, its columns in the order x, 1, u, u', ... */
+/* Sets the generator Z h; its columns are x, 1, u, u', ... */
 static void fill_generator(struct Instance *instance, struct Exact *exact, double step) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count, n = extended_size(exact->order);
   size_t columns = states + inputs + 1;
@@ -109,7 +115,7 @@ static void fill_generator(struct Instance *instance, struct Exact *exact, doubl
   for (size_t i = states + 1; i + inputs < n; i++) exact->generator[i * n + i + inputs] = step;
 }
 
-/* The power of two by which variable i is to be multiplied, so that its row and column become about equally large. */
+/* Returns the exponent of 2 for column i, and its negative for row i, that makes their norms about equal. */
 static int balancing_exponent(size_t n, const long double *a, size_t i) {
   long double row = 0.0L, column = 0.0L;
   for (size_t j = 0; j < n; j++) {
@@ -118,15 +124,16 @@ static int balancing_exponent(size_t n, const long double *a, size_t i) {
     column += fabsl(a[j * n + i]);
   }
   if (row == 0.0L && column == 0.0L) return 0;
-  /* A constant, or a variable that nothing depends on, can be as small or as large as one likes. */
+  /* A constant, or a variable on which nothing depends, may have any scale. */
   if (row == 0.0L) return ilogbl(column) > 0 ? -ilogbl(column) : 0;
   if (column == 0.0L) return ilogbl(row) > 0 ? ilogbl(row) : 0;
   return (ilogbl(row) - ilogbl(column)) / 2;
 }
 
 /*
- * Replaces a by D^-1 a D with D = diag(2^exponent), which is smaller: few halvings then serve the exponential. (E. E.
- * Osborne: On pre-conditioning of matrices, 1960.) A few sweeps do; none of them rounds.
+ * Replaces a by D^-1 a D with D = diag(2^exponent), of smaller norm, so that fewer halvings are needed (E. E. Osborne:
+ * On pre-conditioning of matrices, Journal of the ACM 7, 1960). Powers of two add no rounding error. A few sweeps
+ * suffice.
  */
 static void balance(size_t n, long double *a, int *exponent) {
   enum { SWEEPS = 50 };
@@ -158,7 +165,7 @@ static long double row_norm(size_t n, const long double *a) {
   return largest;
 }
 
-/* sum = exp(generator) - I by Taylor's series, for a norm below 1; it ends where no element changes. */
+/* Sets sum = exp(generator) - I by the Taylor series, for a norm below 1. Ends when no element changes. */
 static void sum_exponential(struct Exact *exact, size_t n) {
   memcpy(exact->sum, exact->generator, n * n * sizeof *exact->sum);
   memcpy(exact->term, exact->generator, n * n * sizeof *exact->term);
@@ -178,8 +185,8 @@ static void sum_exponential(struct Exact *exact, size_t n) {
 }
 
 /*
- * With E = diag(identity) + sum, the elements of identity being 0 or 1, sum becomes E^2 - diag(identity). As long as E
- * is near the identity, low digits of sum would be lost in it; where a variable decays, it is the other way round.
+ * Squares E = diag(identity) + sum, with identity elements 0 or 1: sum becomes E^2 - diag(identity). Near the identity,
+ * sum keeps digits that E would lose. For a variable that has decayed below 1/2, E itself does, and identity becomes 0.
  */
 static void square(struct Exact *exact, size_t n, double *identity) {
   long double *sum = exact->sum;
@@ -194,7 +201,7 @@ static void square(struct Exact *exact, size_t n, double *identity) {
       sum[i * n + j] = exact->product[i * n + j] + (identity[i] + identity[j]) * sum[i * n + j];
 }
 
-/* Makes the norm of the generator smaller than 1/2; returns by how many halvings, or -1 where it is not finite. */
+/* Balances and halves the generator to a norm of at most 1/2. Returns the number of halvings, -1 if not finite. */
 static int reduce(struct Exact *exact, size_t n) {
   memset(exact->exponent, 0, n * sizeof *exact->exponent);
   long double size = row_norm(n, exact->generator);
@@ -208,13 +215,13 @@ static int reduce(struct Exact *exact, size_t n) {
   return halvings;
 }
 
-/* identity and matrix of exp(generator). */
+/* Computes identity and matrix of exp(generator). False if an element is not finite. */
 static bool exponentiate(struct Exact *exact, size_t n) {
   size_t states = lagrangian.state_count;
   int halvings = reduce(exact, n);
   if (halvings < 0) return false;
   sum_exponential(exact, n);
-  double *identity = exact->extended; /* of all variables */
+  double *identity = exact->extended; /* of all n variables */
   for (size_t i = 0; i < n; i++) identity[i] = 1.0;
   for (int i = 0; i < halvings; i++) square(exact, n, identity);
   memcpy(exact->identity, identity, states * sizeof *identity);
@@ -223,12 +230,12 @@ static bool exponentiate(struct Exact *exact, size_t n) {
     for (size_t j = 0; j < n; j++) {
       double *element = &exact->matrix[i * n + j];
       *element = (double)ldexpl(exact->sum[i * n + j], exact->exponent[i] - exact->exponent[j]);
-      total += *element - *element; /* NaN where one is not finite */
+      total += *element - *element; /* NaN if one is not finite */
     }
   return total == 0.0;
 }
 
-/* Brings the matrix up to date with step and parameters. */
+/* Updates the matrix if step or parameters have changed. False if it is not finite. */
 static bool prepare_matrix(struct Instance *instance, struct Exact *exact, double step) {
   size_t bytes = lagrangian.parameter_count * sizeof(double);
   size_t order = instance->situation->input_derivatives_set ? 1 + INPUT_ORDER : 1;
@@ -241,7 +248,7 @@ static bool prepare_matrix(struct Instance *instance, struct Exact *exact, doubl
   return exact->step != 0.0;
 }
 
-/* The inputs and their derivatives of orders below count at a time, by orders. */
+/* Computes the inputs and their time derivatives of orders 0 to count - 1 at a time, order by order. */
 static void fill_inputs(const struct Instance *instance, double time, size_t count, double *values) {
   double coefficient[INPUT_ORDER + 1];
   static const double factorial[INPUT_ORDER + 1] = {1.0, 1.0, 2.0, 6.0};
@@ -252,9 +259,7 @@ static void fill_inputs(const struct Instance *instance, double time, size_t cou
   }
 }
 
-/*
- * Computes next = exp(Z h) extended from the state, and what rounding takes from that sum. False where it is not finite.
- */
+/* Computes next = exp(Z h) extended from the state, and next_low, its rounding error. False if it is not finite. */
 static bool compute_next(struct Instance *instance, struct Exact *exact, double step) {
   size_t states = lagrangian.state_count;
   if (!prepare_matrix(instance, exact, step)) return false;
@@ -271,12 +276,12 @@ static bool compute_next(struct Instance *instance, struct Exact *exact, double 
     double sum = before + term, part = sum - before;
     exact->next_low[i] = (before - (sum - part)) + (term - part);
     exact->next[i] = sum;
-    total += sum - sum; /* NaN where one is not finite */
+    total += sum - sum; /* NaN if one is not finite */
   }
   return total == 0.0;
 }
 
-/* The longest step, to a millionth of this one, whose end is finite. */
+/* Returns the longest step with a finite end by bisection, to 1e-6 of length. */
 static double longest_step(struct Instance *instance, struct Exact *exact, double length) {
   double possible = 0.0, impossible = length;
   while (impossible - possible > 1e-6 * length) {
@@ -295,7 +300,7 @@ static bool restart(struct Instance *instance, const double *state, const struct
   return true;
 }
 
-/* To the end of the communication step or the next sample, or as far as the state is finite. */
+/* Advances to the end of the communication step, the next sample, or as far as the state is finite. */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Exact *exact = instance->solver_memory;
   struct Span *span = &instance->situation->last_step;
@@ -316,7 +321,7 @@ static const char *advance(struct Instance *instance, const struct Communication
   return is_whole ? NULL : "the motion grows without bound";
 }
 
-/* A step has no states inside: its end is all that advance() computes. */
+/* A state inside the step is not available: advance() computes its end alone. */
 static bool interpolate(struct Instance *instance, double time, double *state) {
   const struct Exact *exact = instance->solver_memory;
   const struct Span *span = &instance->situation->last_step;

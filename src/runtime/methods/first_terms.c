@@ -9,8 +9,8 @@ size_t first_terms_rows(void) {
 }
 
 /*
- * Two terms beside the first: where the system is stiff, higher ones belong to fast modes that the method damps. Kinks,
- * roots and jumps are left to its error estimate.
+ * The series stops at order 3: in stiff systems, higher coefficients belong to fast modes, which the method damps.
+ * Kinks, roots and jumps do not limit the step; the method's error estimate finds them.
  */
 double first_terms_step(struct Instance *instance, Series *rows, double time, const double *state, double bound) {
   enum { ORDER = 3 };

@@ -1,9 +1,16 @@
 /*
- * Projection onto the constraints by Newton's method with the matrix K of the equations of motion: from q,
+ * Projection onto the constraints c(q) = 0 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, section
+ * VII.2). The nearest point q + d in the metric of the mass matrix M minimizes d^T M d / 2. Newton's method solves for
+ * it with the matrix of the equations of motion, where d is the sum of the moves so far:
  *
- *   M dq + J^T mu = -M (what q has been moved so far),   J dq = -constraint,
+ *   M dq + J^T mu = -M d,   J dq = -c(q + d)
  *
- * whose limit is the point on the constraints that is nearest in the metric of M; then the velocities, in one step.
+ * The velocities follow at the new coordinates. Their constraints are linear, so one step M dv + J^T mu = 0, J dv =
+ * -residual suffices.
+ *
+ * Redundant constraints get infinite pivots (saddle.h) and are left out of the step. others_hold() checks that they
+ * agree with the others. An iteration costs one evaluation and factorization. It ends when the change is below
+ * converged, or below rounded_away without shrinking further; otherwise after STEP_LIMIT iterations, as a failure.
  */
 #include "instance/projection.h"
 
@@ -15,26 +22,27 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
+/* Iterations from a state near the constraints, and from start values. */
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 
-static const double converged = 1e-9;    /* a change whose square is below rounding */
-static const double rounded_away = 1e-6; /* a change that gets no smaller: constraints whose terms cancel are rounded */
-static const double largest_move = 0.5;  /* of start values in one iteration, in units of their scales */
-static const double fulfilled = 1e-10;   /* what a constraint may lack, as a share of the scale of the state */
-static const double redundant_lack = 1e-8; /* the same of one that follows from others, before the last change */
-static const double largest_jump = 0.1;    /* of what an input moves, in units of the scale of the state */
-static const double noted_move = 1e-2;     /* the same where it moves as it should, from step to step */
-static const double vanishing = 1e-6;      /* the length of a row of J where a constraint holds, against that nearby */
+static const double converged = 1e-9;      /* change in units of the scales: its square is below rounding */
+static const double rounded_away = 1e-6;   /* change that is rounding error if it stops shrinking: terms may cancel */
+static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
+static const double fulfilled = 1e-10;     /* residual as a length, in units of the scale of the state */
+static const double redundant_lack = 1e-8; /* the same of a redundant constraint, before the last change */
+static const double largest_jump = 0.1;    /* residual by an input's change, in units of the scale of the state */
+static const double noted_move = 1e-2;     /* with prescribed inputs: moves to log, in the same units */
+static const double vanishing = 1e-6;      /* ratio of a row of J where its constraint holds to the row nearby */
 
-/* The parts of the workspace. */
+/* The parts of the workspace. change, lack, pivot and slope follow each other, as lagrangian.constraints has them. */
 struct Work {
-  double *change;               /* of the coordinates, or the velocities */
-  double *lack, *pivot, *slope; /* of each constraint */
-  double *moved;                /* state_count: the coordinates so far */
+  double *change;               /* of the coordinates or velocities */
+  double *lack, *pivot, *slope; /* of each constraint: -residual, pivot, length of its row of J */
+  double *moved;                /* state_count: the sum of the moves of the coordinates */
   double *before;               /* state_count */
-  double *start;                /* state_count: from where project() moves a state */
+  double *start;                /* state_count: where project() began */
   double *first_slope;          /* of each constraint */
-  double *rounding;             /* what rounding may make of what each indicator looks at */
+  double *rounding;             /* rounding error bounds of the indicators */
 };
 
 static struct Work work_of(const struct Instance *instance) {
@@ -50,7 +58,7 @@ static struct Work work_of(const struct Instance *instance) {
   return work;
 }
 
-/* The largest of the n values from first on, in units of the scales of the state. */
+/* Returns the largest of coordinate_count values, in units of the scales of the states from first on. */
 static double size_of(const double *value, const double *state, size_t first) {
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
@@ -60,10 +68,10 @@ static double size_of(const double *value, const double *state, size_t first) {
   return largest;
 }
 
-/* What is to fulfil the constraints: coordinates or velocities, those of a step or of the start. */
+/* What is projected: coordinates or velocities, those of a step or of the start. */
 enum Target { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
 
-/* Evaluates what the target lacks. False where M is singular, or something is not finite. */
+/* Evaluates change, residuals, pivots and slopes. False if M is singular or a value is not finite. */
 static bool evaluate_lack(struct Instance *instance, double time, const double *state, enum Target target) {
   struct Work work = work_of(instance);
   struct Point point = solver_point(instance, time, state);
@@ -79,8 +87,9 @@ static bool evaluate_lack(struct Instance *instance, double time, const double *
 }
 
 /*
- * Whether all that the coordinates lack is rounding: of gaps of closed contacts, whose terms may be many times as large as the
- * coordinates. Moves by it would be no motion, and methods of variable order would go after it with ever shorter steps.
+ * True if all residuals of the coordinates are rounding errors. A closed contact's gap may have terms much larger than
+ * the coordinates. A move by their rounding error is no motion, and would shorten the steps of methods of variable
+ * order. Sets such residuals to 0.
  */
 static bool lacks_only_rounding(struct Instance *instance, double time, const double *state) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -114,7 +123,7 @@ static double move_velocities(struct Instance *instance, double time, double *st
   return size;
 }
 
-/* Whether a constraint that follows from others holds with them: one that only did so at the start may not any more. */
+/* True if redundant constraints agree with the others: a constraint may be redundant at the start alone. */
 static bool others_hold(const struct Work *work, const double *state, size_t first) {
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
@@ -128,7 +137,10 @@ static bool has_redundant(const struct Work *work) {
   return false;
 }
 
-/* The velocities' part of project(), at coordinates that fulfil the constraints. */
+/*
+ * Projects the velocities, at coordinates that fulfil the constraints. Returns the largest change in units of the
+ * scales.
+ */
 static double project_velocities(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = move_velocities(instance, time, state, VELOCITIES);
@@ -138,7 +150,7 @@ static double project_velocities(struct Instance *instance, double time, double 
   return hold ? size : INFINITY;
 }
 
-/* Frictions alone hold velocities, and leave all coordinates where they are. */
+/* True if all constraints are those of frictions, which leave the coordinates alone. */
 static bool holds_velocities_alone(void) {
   return lagrangian.switches != NULL && lagrangian.constraints.count == lagrangian.switches->friction_count;
 }
@@ -170,20 +182,20 @@ static double drift(struct Instance *instance, double time) {
   return project(instance, time, work.before);
 }
 
-/* The first constraint that has no finite value. */
+/* Returns the first constraint whose residual is not finite. */
 static size_t find_without_value(const struct Work *work) {
   size_t j = 0;
   while (j + 1 < lagrangian.constraints.count && isfinite(work->lack[j])) j++;
   return j;
 }
 
-/* What a constraint lacks, as a way in units of the state's scale. */
+/* Returns the residual of a constraint as a length in units of scale. */
 static double way_of(const struct Work *work, size_t constraint, double scale) {
   double lack = work->lack[constraint];
   return lack == 0.0 ? 0.0 : fabs(lack) / (work->slope[constraint] * scale);
 }
 
-/* The constraint that lacks most; constraint_count where none lacks anything. */
+/* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
 static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
   size_t worst = lagrangian.constraints.count;
   double scale = largest_scale(state, first), most = fulfilled;
@@ -197,7 +209,7 @@ static size_t find_lacking(const struct Work *work, const double *state, size_t 
   return worst;
 }
 
-/* What is left behind it counts first, and then what was lacking before. */
+/* Looks at the residuals that project() has left, then at those where it began: of coordinates, then of velocities. */
 static size_t unkept(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   int singular = instance->singular;
@@ -212,8 +224,8 @@ static size_t unkept(struct Instance *instance, double time) {
 }
 
 /*
- * Moves the coordinates onto the constraints from afar, in iterations to the least way, or, where these do not end, to
- * any point on the constraints. False where that fails.
+ * Moves the coordinates from afar onto the constraints: to the nearest point if least, else to any point. False if the
+ * iterations do not converge.
  */
 static bool approach_from(struct Instance *instance, double time, double *state, enum Target target, bool least) {
   struct Work work = work_of(instance);
@@ -221,7 +233,7 @@ static bool approach_from(struct Instance *instance, double time, double *state,
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < START_LIMIT; iteration++) {
     if (!least) memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-    if (evaluate_prepare(instance) != STATUS_DONE) return false; /* before the start the pieces follow the state */
+    if (evaluate_prepare(instance) != STATUS_DONE) return false; /* before the start, modes follow the state */
     if (!evaluate_lack(instance, time, state, target)) return false;
     double size = size_of(work.change, state, 0);
     move_positions(&work, state, least && size > largest_move ? largest_move / size : 1.0);
@@ -230,7 +242,7 @@ static bool approach_from(struct Instance *instance, double time, double *state,
   return false;
 }
 
-/* The constraint that cannot be fulfilled; constraint_count for none. */
+/* Moves the coordinates. Returns the constraint that cannot be fulfilled; constraints.count for none. */
 static size_t approach_positions(struct Instance *instance, double time, double *state, enum Target target) {
   struct Work work = work_of(instance);
   if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
@@ -248,7 +260,7 @@ static size_t approach_velocities(struct Instance *instance, double time, double
   return find_lacking(&work, state, lagrangian.coordinate_count);
 }
 
-/* Those of more than a share of the scale. */
+/* Logs the coordinates and velocities that moved by more than a share of their scales. */
 static void log_moves(const struct Instance *instance, const double *before, double share) {
   char text[600] = "";
   int length = 0;
@@ -265,7 +277,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* one of an open contact has no slope */
+    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* that of an open contact has none */
       log_message(instance, STATUS_DONE,
                   "time %g: the %s '%s' follows from the others; of all forces that carry the load, theirs are "
                   "the smallest",
@@ -290,14 +302,14 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
 }
 
 /*
- * A constraint such as (x^2 + y^2 - l^2)^2 = 0 has no derivatives where it holds, and with them no hold on the motion. The
- * rows of J are held against those of a state nearby. Returns its number; constraint_count for none. state is that of the
- * instance, whose pieces follow it.
+ * Returns the first constraint whose derivatives vanish where it holds, as those of (x^2 + y^2 - l^2)^2 = 0;
+ * constraints.count for none. Such a constraint exerts no force. Compares the rows of J with those at a state nearby.
+ * state: the instance's own, which piecewise functions follow; it is restored.
  */
 static size_t find_vanishing(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
-  double *there = work.moved; /* which the velocities do not need */
+  double *there = work.moved; /* which velocities do not need */
   if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
   memcpy(work.first_slope, work.slope, lagrangian.constraints.count * sizeof *work.slope);
   memcpy(there, state, lagrangian.state_count * sizeof *state);
@@ -307,7 +319,7 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraints.count;
   while (found < lagrangian.constraints.count &&
          (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
-    found++; /* one of an open contact has no slope anywhere */
+    found++; /* that of an open contact is 0 everywhere */
   return found;
 }
 
@@ -320,7 +332,7 @@ static bool refuse_vanishing(struct Instance *instance, size_t constraint) {
   return false;
 }
 
-/* Fixed ones that had to move all the same are refused; what rounding has moved is put back. */
+/* Restores fixed start values after changes by rounding. False, with an error, if one had to move further. */
 static bool keep_fixed(struct Instance *instance, const double *before) {
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < 2 * n; i++) {
@@ -358,7 +370,7 @@ static bool make_consistent(struct Instance *instance) {
   return true;
 }
 
-/* A coordinate cannot follow an input that jumps. */
+/* True if an input has jumped: coordinates cannot follow it. Logs that the step is discarded. */
 static bool has_jumped(struct Instance *instance) {
   struct Work work = work_of(instance);
   double time = instance->situation->time, scale = largest_scale(instance->state, 0);

@@ -1,8 +1,23 @@
 /*
- * Radau IIA of orders 5, 9 and 13 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and
- * IV.8; Stiff differential equations solved by Radau methods, 1999). The stages z_i = Y_i - y0 are found by Newton's
- * method in the coordinates w of the eigenvectors of A^-1, z = V w, where the linear systems fall apart. A step depends on
- * nothing but what the situation holds: the state at its start, the stages, and a few numbers of the control.
+ * Radau IIA methods with 3, 5 and 7 stages, of orders 5, 9 and 13, for stiff systems x' = f(t, x) (E. Hairer, G.
+ * Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8; Stiff differential equations solved by
+ * Radau methods, J. Comput. Appl. Math. 111, 1999).
+ *
+ * A step of length h finds the collocation polynomial, whose stages z_i = x(t + c_i h) - x(t) solve z_i = h sum over j
+ * of a_ij f(t + c_j h, x(t) + z_j). The methods are L-stable; c_s = 1, and the last stage is the result. The polynomial
+ * also is the dense output.
+ *
+ * Simplified Newton iterations solve for the stages, with the Jacobian of the step's start. In the eigenvectors of
+ * A^-1, z = V w, they need one real and (s - 1) / 2 complex linear systems of the system's size (radau.h). They begin
+ * with the polynomial of the last step, and end by the estimated contraction (solve_stages()).
+ *
+ * The error estimate is that of an embedded formula of order s with the additional node 0, filtered by (mu - J)^-1, so
+ * that it stays bounded for stiff parts. The step follows from it by Gustafsson's predictive controller. The order
+ * follows from the contraction (1999, choose_method()). A failed attempt shortens the step to 0.9 of it or less; the
+ * loop ends after ATTEMPT_LIMIT attempts or where time is too coarse.
+ *
+ * A step costs one Jacobian, (s + 1) / 2 factorizations an attempt and s evaluations an iteration. The snapshot holds
+ * all that determines a step: its start, the stages, and the numbers of the controllers.
  */
 #include <float.h>
 #include <math.h>
@@ -14,12 +29,13 @@
 #include "methods/radau.h"
 #include "methods/radau_tables.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/solvers/test_motion.py. */
+/* Fraction of the tolerance for one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static const double radau_safety = 0.05;
 
-/* As a share of the time: in much less, rounding is all that changes. */
+/* Relative to the time: in a shorter first step, rounding would outweigh the change. */
 static const double shortest_first_step = 1e-12;
 
+/* Newton iterations a step, attempts a step, and steps without failure before the order may rise. */
 enum {
   ITERATION_LIMIT = 12,
   ATTEMPT_LIMIT = 60,
@@ -27,26 +43,26 @@ enum {
   METHOD_COUNT = sizeof methods / sizeof *methods
 };
 
-/* What the situation keeps; the state at the start of the last step and its stages follow. */
+/* The part of the snapshot; followed by the state at the start of the last step, and its stages. */
 struct RadauSaved {
-  double step;        /* of the last step; 0 for none: there is no polynomial */
-  double next;        /* the step that the control would take */
-  double error;       /* of the last step, in units of the tolerance */
-  double contraction; /* of Newton's method in the last step */
-  int64_t method;     /* of the last step: its place among the methods */
+  double step;        /* last step in s; 0 if there is none, and no polynomial */
+  double next;        /* proposed by the controller, in s; 0 for none */
+  double error;       /* of the last step, relative to the tolerance, at least 1e-2 */
+  double contraction; /* rate of the Newton iterations in the last step */
+  int64_t method;     /* index of the last step's method */
   int64_t next_method;
-  int64_t steps; /* since Newton's method failed last, as many as matter */
+  int64_t steps; /* since the last failure of the iterations, at most STEPS_OF_CAUTION */
 };
 
 struct Radau {
   struct RadauSaved *saved;
-  double *start, *stages; /* in the situation: states, STAGE_LIMIT x states */
+  double *start, *stages; /* in the snapshot: states, STAGE_LIMIT x states */
   struct RadauSystems systems;
-  double *state, *scale, *first; /* states: where the step being made starts, what an error of 1 is there, f there */
+  double *state, *scale, *first; /* states each: start of the step in progress, its scale of the error, f */
   double *trial;                 /* states: workspace */
-  double *z, *rates;             /* STAGE_LIMIT x states: of the step being made */
-  struct Complex *w;             /* SYSTEM_LIMIT x states */
-  Series *series;                /* of first_terms.h */
+  double *z, *rates;             /* STAGE_LIMIT x states each: stages of the step in progress, f there */
+  struct Complex *w;             /* SYSTEM_LIMIT x states: the stages in eigenvectors */
+  Series *series;                /* workspace of first_terms.h */
 };
 
 static size_t radau_saved_size(void) {
@@ -108,14 +124,17 @@ static bool radau_restart(struct Instance *instance, const double *state, const 
 }
 
 static void radau_resume(struct Instance *instance) {
-  (void)instance; /* all that counts is in the situation */
+  (void)instance; /* the snapshot holds everything */
 }
 
-/* The collocation polynomial less the state at its start, at this share of the step. */
+/*
+ * Computes the collocation polynomial minus the state at its start; share: time since the start as a fraction of the
+ * step.
+ */
 static void evaluate_polynomial(const struct RadauMethod *method, const double *stages, double share, double *change) {
   size_t states = lagrangian.state_count;
   for (size_t k = 0; k < states; k++) change[k] = 0.0;
-  double before[STAGE_LIMIT], after = share; /* products of the distances from the nodes before and after one */
+  double before[STAGE_LIMIT], after = share; /* products of the distances from the nodes before and after i */
   before[0] = 1.0;
   for (int i = 1; i < method->stages; i++) before[i] = before[i - 1] * (share - method->node[i - 1]);
   for (int i = method->stages; i-- > 0;) {
@@ -146,7 +165,7 @@ static double norm(const struct Radau *radau, const double *vector) {
   return sqrt(sum / (double)states);
 }
 
-/* Newton's starting values: the polynomial of the last step, continued; without one, no change. */
+/* Extrapolates the polynomial of the last step as starting values of the stages; zeros if there is none. */
 static void predict(struct Radau *radau, const struct RadauMethod *method, double step) {
   const struct RadauSaved *saved = radau->saved;
   const struct RadauMethod *last = &methods[saved->method];
@@ -161,7 +180,7 @@ static void predict(struct Radau *radau, const struct RadauMethod *method, doubl
   }
 }
 
-/* Row j of V^-1 times the stages of one state variable. */
+/* Returns row j of V^-1 times the stages of one state variable. */
 static struct Complex to_eigenvector(const struct RadauMethod *method, int j, const double *stages) {
   size_t states = lagrangian.state_count;
   struct Complex sum = {0.0, 0.0};
@@ -173,7 +192,7 @@ static struct Complex to_eigenvector(const struct RadauMethod *method, int j, co
   return sum;
 }
 
-/* w = V^-1 z for the eigenvalues that are kept. */
+/* Computes w = V^-1 z for the real eigenvalue and one of each conjugate pair. */
 static void to_eigenvectors(const struct RadauMethod *method, const double *z, struct Complex *w) {
   size_t states = lagrangian.state_count;
   for (int j = 0; j <= method->stages / 2; j++) {
@@ -183,7 +202,7 @@ static void to_eigenvectors(const struct RadauMethod *method, const double *z, s
   }
 }
 
-/* z = V w; of conjugate pairs, one is kept. */
+/* Computes z = V w; the other one of each conjugate pair adds the same real part. */
 static void from_eigenvectors(const struct RadauMethod *method, const struct Complex *w, double *z) {
   size_t states = lagrangian.state_count;
   for (int i = 0; i < method->stages; i++) {
@@ -198,7 +217,7 @@ static void from_eigenvectors(const struct RadauMethod *method, const struct Com
   }
 }
 
-/* f at the stages. False where it does not exist. */
+/* Evaluates f at the stages. False if it does not exist there. */
 static bool evaluate_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
                             double time, double step) {
   size_t states = lagrangian.state_count;
@@ -210,7 +229,7 @@ static bool evaluate_stages(struct Instance *instance, struct Radau *radau, cons
   return true;
 }
 
-/* One iteration of Newton's method; returns the norm of the change of z. */
+/* Makes one Newton iteration; returns the norm of the change of z. */
 static double iterate(struct Radau *radau, const struct RadauMethod *method) {
   size_t states = lagrangian.state_count;
   struct RadauSystems *systems = &radau->systems;
@@ -239,7 +258,12 @@ static double iterate(struct Radau *radau, const struct RadauMethod *method) {
   return sqrt(sum / method->stages);
 }
 
-/* Solves for the stages; the number of iterations, or 0 where Newton's method does not converge. */
+/*
+ * Solves for the stages. Returns the number of iterations, 0 if they do not converge.
+ *
+ * With the contraction theta, theta / (1 - theta) times the last change bounds the remaining error of the iteration. It
+ * must be below a small fraction of the tolerance; the iterations stop early if the remaining ones cannot reach that.
+ */
 static int solve_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
                         double step, double *contraction) {
   double relative = radau_tolerance(instance);
@@ -247,7 +271,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
   double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
   predict(radau, method, step);
   to_eigenvectors(method, radau->z, radau->w);
-  *contraction = expected; /* what one iteration tells nothing about grows from step to step */
+  *contraction = expected; /* one iteration gives no new estimate; the old one moves towards 1 */
   for (int iteration = 1; iteration <= ITERATION_LIMIT; iteration++) {
     if (!evaluate_stages(instance, radau, method, time, step)) return 0;
     double change = iterate(radau, method);
@@ -255,7 +279,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
     if (iteration > 1) {
       double theta = change / before;
       *contraction = iteration == 2 ? theta : sqrt(theta * *contraction);
-      bool rounds = change <= 200 * DBL_EPSILON / relative; /* rounding alone changes the iterates */
+      bool rounds = change <= 200 * DBL_EPSILON / relative; /* the iterates change by rounding errors alone */
       if (*contraction >= 0.99 && !rounds) return 0;
       expected = rounds ? 0.0 : *contraction / (1.0 - *contraction);
       if (expected * change * pow(*contraction, ITERATION_LIMIT - 1 - iteration) > enough && !rounds) return 0;
@@ -266,7 +290,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
   return 0;
 }
 
-/* (mu - J)^-1 (f + the error's weights times the stages / step); the estimate is left in trial. */
+/* Leaves the error estimate (mu - J)^-1 (rate + sum of error weights * stages / step) in trial; returns its norm. */
 static double estimate(struct Radau *radau, const struct RadauMethod *method, const double *rate, double step) {
   size_t states = lagrangian.state_count;
   for (size_t k = 0; k < states; k++) {
@@ -279,7 +303,10 @@ static double estimate(struct Radau *radau, const struct RadauMethod *method, co
   return norm(radau, radau->trial);
 }
 
-/* A second filtering with f at the state moved by the estimate takes what is stiff out of it. */
+/*
+ * Returns the norm of the error estimate. At first steps and after rejections, a second filtering with f at the state
+ * plus the estimate removes stiff components.
+ */
 static double estimate_error(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method,
                              double time, double step, bool is_sudden) {
   double error = estimate(radau, method, radau->first, step);
@@ -290,7 +317,7 @@ static double estimate_error(struct Instance *instance, struct Radau *radau, con
   return fmax(estimate(radau, method, radau->rates, step), 1e-10);
 }
 
-/* What the step is multiplied by; the last two errors tell where they go. */
+/* Returns the factor of the step. Gustafsson's predictive controller also takes the trend of the last two errors. */
 static double factor_of_step(const struct RadauSaved *saved, const struct RadauMethod *method, double step,
                              double error, int iterations) {
   double power = 1.0 / (method->stages + 1);
@@ -301,15 +328,15 @@ static double factor_of_step(const struct RadauSaved *saved, const struct RadauM
   return fmin(8.0, fmax(0.2, factor));
 }
 
-/* A first step that moves the state by a small share of its scale. */
+/* Returns a first step that moves the state by 1e-3 of its size, at most 1e-3 of the communication step. */
 static double first_step(const struct Instance *instance, const struct Radau *radau, double length) {
   double rate = norm(radau, radau->first) * radau_tolerance(instance);
   return rate * length > 1.0 ? 1e-3 / rate : 1e-3 * length;
 }
 
 /*
- * Begins the step at the end of the last one: the state there, its scale and derivative, and the Jacobian. NULL, or why
- * that cannot be.
+ * Begins a step at the end of the last one: projects the state there, and evaluates its scale, f and the Jacobian.
+ * Returns NULL, or the reason for a failure.
  */
 static const char *begin(struct Instance *instance, struct Radau *radau, double time) {
   double relative = radau_tolerance(instance);
@@ -324,8 +351,8 @@ static const char *begin(struct Instance *instance, struct Radau *radau, double 
 }
 
 /*
- * The step to try: what the control says, at first no more than the length of the communication step, of which less may be
- * left behind an event, but always enough to change the time.
+ * Returns the step to try in s. The first one is at most a communication step, and long enough to change the time.
+ * Every step is bounded by the functions in the equations (first_terms.h).
  */
 static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
   const struct RadauSaved *saved = radau->saved;
@@ -351,8 +378,8 @@ static void accept(struct Instance *instance, struct Radau *radau, const struct 
 }
 
 /*
- * A lower order where Newton's method hardly converges, as its starting values come from a polynomial of that order; a
- * higher one again, up to what the tolerance asks for, where it converges well and has for a while.
+ * Chooses the method of the next step. Slow Newton convergence or a failure lowers the order: the extrapolated starting
+ * values are poor. Fast convergence over STEPS_OF_CAUTION steps raises it, up to the order for the tolerance.
  */
 static void choose_method(const struct Instance *instance, struct RadauSaved *saved, bool failed) {
   saved->steps = failed ? 0 : saved->steps < STEPS_OF_CAUTION ? saved->steps + 1 : STEPS_OF_CAUTION;

@@ -1,4 +1,4 @@
-/* What the files of Radau IIA share. */
+/* Interfaces between the files of Radau IIA, and for the choice of the method (auto.c). */
 #ifndef RADAU_H
 #define RADAU_H
 
@@ -7,62 +7,66 @@
 enum { STAGE_LIMIT = 7, SYSTEM_LIMIT = (STAGE_LIMIT + 1) / 2 };
 
 /*
- * A method of an odd number of stages (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5
- * and IV.8). The inverse of its matrix A has one real eigenvalue and pairs of complex ones, of which one each is kept.
+ * A method with an odd number of stages s. A^-1 has one real eigenvalue and (s - 1) / 2 conjugate pairs; index 0 is the
+ * real one, and one of each pair follows.
  */
 struct RadauMethod {
   int stages;
   double node[STAGE_LIMIT];
-  double weight[STAGE_LIMIT]; /* 1 over the product of the node and of its distances from the others */
+  double weight[STAGE_LIMIT]; /* 1 over the product of the node and its distances from the others */
   double value_real[SYSTEM_LIMIT], value_imaginary[SYSTEM_LIMIT];
   double vector_real[STAGE_LIMIT][SYSTEM_LIMIT], vector_imaginary[STAGE_LIMIT][SYSTEM_LIMIT];
-  double back_real[SYSTEM_LIMIT][STAGE_LIMIT], back_imaginary[SYSTEM_LIMIT][STAGE_LIMIT]; /* the inverse's rows */
-  double error[STAGE_LIMIT]; /* weights of the stages in the estimate of the error */
+  double back_real[SYSTEM_LIMIT][STAGE_LIMIT], back_imaginary[SYSTEM_LIMIT][STAGE_LIMIT]; /* rows of V^-1 */
+  double error[STAGE_LIMIT]; /* weights of the stages in the error estimate */
 };
 
-/* A complex number; C's own need functions of the compiler's library. */
+/* A complex number: the operations of C's complex type may need functions of the compiler's library. */
 struct Complex {
   double real, imaginary;
 };
 
 /*
- * The linear systems of a step, (mu - J) x = r for the real or complex mu = eigenvalue / step, J = d f / d state. As
- * q' = v, each is one for q and the states z behind the velocities alone, with dv = mu dq - r_q:
+ * The linear systems (mu - J) x = r of a step, with mu = eigenvalue / step and J = d f / d state. As q' = v, the
+ * unknowns dv = mu dq - r_q are eliminated. The remaining systems have rows for q and for the states z behind the
+ * velocities:
  *
  *     (mu^2 - mu D - K) dq -        E  dz = r_v + (mu - D) r_q        K, D, E: of the accelerations by q, v, z
  *        -(mu G + F)    dq + (mu - H) dz = r_z -       G  r_q         F, G, H: of the rates by q, v, z
  */
 struct RadauSystems {
-  double *values;                        /* of the Jacobian, in the order of lagrangian.implicit.pattern */
-  size_t *place, *diagonal;              /* of J's elements in the matrices, in the same order; of the diagonal */
-  struct Complex mu[SYSTEM_LIMIT];       /* the first one is real, and so is its matrix */
-  double *factors[SYSTEM_LIMIT];         /* by lagrangian.implicit.lu */
-  struct Complex *right_side, *solution; /* workspace, states */
-  double *work;                          /* for lagrangian.implicit.lu */
+  double *values;                        /* elements of J, in the order of lagrangian.implicit.pattern */
+  size_t *place, *diagonal;              /* offsets in the matrices: of J's elements in this order, of the diagonal */
+  struct Complex mu[SYSTEM_LIMIT];       /* the first one and its matrix are real */
+  double *factors[SYSTEM_LIMIT];         /* factored by lagrangian.implicit.lu */
+  struct Complex *right_side, *solution; /* states each: workspace */
+  double *work;                          /* workspace of lagrangian.implicit.lu */
 };
 
-/* Numbers of memory that radau_systems_place() divides for so many systems, and what it leaves. */
+/* Returns the numbers of memory that the systems need; radau_systems_place() divides them. */
 size_t radau_systems_size(void);
 void radau_systems_place(struct RadauSystems *systems, double *memory);
 
-/* Evaluates the Jacobian. False where it does not exist. */
+/* Evaluates the Jacobian. False if it does not exist or is not finite. */
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state);
 
-/* Factors the systems of the method for a step. False where one is singular. */
+/* Factors the systems of the method for a step. False if one is singular. */
 bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod *method, double step);
 
-/* Solves system number j for systems->right_side, which is lost; the solution is in systems->solution. */
+/* Solves system j for systems->right_side, which is overwritten; the solution is in systems->solution. */
 void radau_systems_solve(struct RadauSystems *systems, int j);
 
-/* For whoever chooses between methods: the stages of a step, the step to come, and the Jacobian at the last one's start. */
+/*
+ * For the choice of the method: the proposed step in s, the stages for the tolerance, and the Jacobian at the start of
+ * the last step.
+ */
 double radau_next_step(const struct Instance *instance);
 int radau_stage_count(const struct Instance *instance);
 const double *radau_jacobian(const struct Instance *instance);
 
-/* The step to try first after a restart; 0 for one that follows from the motion. */
+/* Sets the first step after a restart, in s; 0 to derive it from the motion. */
 void radau_try_first(struct Instance *instance, double step);
 
-/* The share of the tolerance that a step may err by. */
+/* Returns the relative tolerance of one step. */
 double radau_tolerance(const struct Instance *instance);
 
 #endif

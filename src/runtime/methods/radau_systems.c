@@ -15,7 +15,7 @@ size_t radau_systems_size(void) {
   return count + (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
 }
 
-/* Where the elements of J stand in a matrix: those by velocities where those by their coordinates do. */
+/* Finds the offsets of J's elements in a matrix. Those by a velocity share the offset of those by its coordinate. */
 static void find_places(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
@@ -48,7 +48,7 @@ bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *syst
          are_finite(systems->values, lagrangian.implicit.pattern.count);
 }
 
-/* The matrix of the system, see radau.h. */
+/* Fills the matrix of the system for mu (radau.h). */
 static void fill(const struct RadauSystems *systems, size_t width, const double *mu, double *matrix) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
@@ -77,7 +77,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
   return true;
 }
 
-/* sum -= the product of the Jacobian's elements by the velocities with x, in the rows behind the coordinates. */
+/* Subtracts from sum the rows of J behind the coordinates, in the columns of the velocities, times x. */
 static void subtract_velocities(const struct RadauSystems *systems, size_t width, const double *x, double *sum) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
@@ -90,7 +90,7 @@ static void subtract_velocities(const struct RadauSystems *systems, size_t width
   }
 }
 
-/* solution = the system's solution for right, both of numbers of this width. */
+/* Solves system j for right: eliminates the velocities, solves, and recovers them. width: numbers in an element. */
 static void solve_system(const struct RadauSystems *systems, int j, size_t width, const double *right,
                          double *solution) {
   size_t n = lagrangian.coordinate_count, rows = lu_rows();

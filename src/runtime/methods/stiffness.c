@@ -1,14 +1,18 @@
 /*
- * A system is stiff where a step is short only so that fast modes which died away do not grow again. The last
- * coefficients of the Taylor series then are those of the fast modes, which go like a z^k / k!, z = rate x step, and the
- * first ones those of the slow motion, which fall off at once.
+ * Detects stiffness from a Taylor step, and predicts the step of an implicit method.
+ *
+ * A system is stiff if the stability of fast modes, which have decayed, limits the step, and not the accuracy of the
+ * slow motion. The last terms at the end of such a step are those of the fast modes, a z^k / k! with z = rate * step.
+ * The terms of orders p and p - 2 give a and z. The first terms are those of the slow motion, which fall geometrically.
+ * An implicit method of order o may take a step longer by the factor r, with errors a (r z)^o / o! in the fast modes
+ * and of the same order in the slow motion.
  */
 #include "methods/stiffness.h"
 
 #include <float.h>
 #include <math.h>
 
-/* The largest term of an order at the end of the step, in units of the variables' scales. */
+/* Returns the largest term of an order at the end of the step, in units of the scales. */
 static double size_of_term(const struct Taylor *taylor, int64_t order) {
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++)
@@ -16,7 +20,7 @@ static double size_of_term(const struct Taylor *taylor, int64_t order) {
   return largest * pow(taylor->saved->reach, (double)order);
 }
 
-/* a and z of the fast modes, from the last terms. */
+/* The parameters a and z of the fast modes. */
 struct FastModes {
   double amplitude, angle;
 };
@@ -29,16 +33,16 @@ static struct FastModes fast_modes(const struct Taylor *taylor) {
   return (struct FastModes){.amplitude = last * exp(lgamma(p + 1.0) - p * log(angle)), .angle = angle};
 }
 
-/* The step that an error a (r z)^order / order! allows, as a multiple r of the last one. */
+/* Returns the multiple r of the last step at which the fast modes' error a (r z)^order / order! is the tolerance. */
 static double multiple_for_fast(struct FastModes fast, int order, double tolerance) {
-  if (fast.amplitude < tolerance) return INFINITY; /* what an implicit method need not follow */
+  if (fast.amplitude < tolerance) return INFINITY; /* modes that the implicit method may damp */
   return pow(tolerance * tgamma(order + 1.0) / fast.amplitude, 1.0 / order) / fast.angle;
 }
 
 /*
- * The same for the slow motion, whose terms fall off by a share that those show which stand out of the fast modes'. Where
- * the second one does not, the share lies between the first term, the part of its scale by which the state changes, and
- * what would show.
+ * Returns the same for the slow motion. The share by which its terms fall follows from the terms that exceed those of
+ * the fast modes. If the second term does not, the share lies between the first term and the bound that the fast modes
+ * set: their geometric mean is taken.
  */
 static double multiple_for_slow(const struct Taylor *taylor, struct FastModes fast, int order, double tolerance) {
   enum { OUTSTANDING = 4 };
@@ -56,8 +60,8 @@ static double multiple_for_slow(const struct Taylor *taylor, struct FastModes fa
 }
 
 /*
- * Whether the last terms can be those of fast modes, a z^k / k! with a z of about order / e. Where the motion itself
- * bounds the step they fall off by exp(-2) from one to the next, as the step was chosen so.
+ * True if the last terms may be those of fast modes, z^k / k! with z of about order / e, which fall by the factor e. If
+ * the motion itself limits the step, they fall by exp(1.5) to exp(2), the choice of taylor_rule.h.
  */
 static bool may_be_fast(const struct Taylor *taylor) {
   int64_t order = taylor->saved->order;
@@ -77,18 +81,18 @@ double stiffness_promise(const struct Taylor *taylor, int order, double toleranc
   return fmin(multiple_for_fast(fast, order, tolerance), multiple_for_slow(taylor, fast, order, tolerance));
 }
 
-/* Columns or rows of the Jacobian: from first to end - 1. */
+/* Columns or rows of the Jacobian, from first to end - 1. */
 struct Range {
   size_t first, end;
 };
 
-/* Accelerations count in units of their coordinates' scales, and so do velocities. */
+/* Velocities, and so accelerations, are measured in units of their coordinates' scales. */
 static double scale_of_state(size_t state) {
   size_t n = lagrangian.coordinate_count;
   return lagrangian.steps.nominal[state >= n && state < 2 * n ? state - n : state];
 }
 
-/* The largest sum over one of the rows of the elements in the columns. */
+/* Returns the norm of a block: the largest row sum of its elements in these units. sum: workspace. */
 static double norm_of_block(const double *jacobian, struct Range rows, struct Range columns, double *sum) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   for (size_t i = rows.first; i < rows.end; i++) sum[i - rows.first] = 0.0;
@@ -105,8 +109,9 @@ static double norm_of_block(const double *jacobian, struct Range rows, struct Ra
 }
 
 /*
- * The modes of the coordinates are roots of rate^2 = damping rate + stiffness. States behind the velocities add their own rates, and those
- * of the circles from the accelerations by them and back by velocities or coordinates.
+ * Modes of the coordinates obey rate^2 = damping * rate + stiffness. The states z behind the velocities add their own
+ * rates, and those of the loops v -> z -> v and v -> q -> z -> v, whose rates are roots of order 2 and 3 of the
+ * products of norms.
  */
 double stiffness_rate(const double *jacobian, double *work) {
   size_t n = lagrangian.coordinate_count;

@@ -1,8 +1,16 @@
 /*
- * Taylor series of the motion (A. Jorba, M. Zou: A software package for the numerical integration of ODEs by means of
- * high-order Taylor methods, 2005). The order follows from the tolerance, the step from taylor_reach.c. A step reaches
- * past the communication point; the series is evaluated there, and goes on to serve the next communication step unless
- * inputs, parameters or the state were changed. The situation holds all that a step depends on.
+ * Taylor method for x' = f(t, x) (A. Jorba, M. Zou: A software package for the numerical integration of ODEs by means
+ * of high-order Taylor methods, Experimental Mathematics 14, 2005).
+ *
+ * A step expands the solution about its start t0: x(t0 + s) = x_0 + x_1 s + ... + x_p s^p. The generated recurrences
+ * give the coefficients by automatic differentiation, at a cost of O(p^2) for each product in f. The tolerance
+ * determines the order p (taylor_rule.h). The coefficients and a defect check determine the step (taylor_reach.c). The
+ * polynomial also is the dense output.
+ *
+ * A step may end after the communication point. The polynomial is evaluated there, and serves the following
+ * communication steps until inputs, parameters or the state are set. The snapshot holds all that determines a step, so
+ * restored simulations continue with equal bits. Compensated summation keeps the rounding error of many steps near that
+ * of one.
  */
 #include <math.h>
 #include <string.h>
@@ -20,7 +28,7 @@ static bool taylor_could_save(const struct Situation *situation, const void *sav
   struct TaylorSaved first;
   memcpy(&first, saved, sizeof first);
   bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
-  bool is_new = first.order == 0 && situation->changed != 0; /* the first step is to come */
+  bool is_new = first.order == 0 && situation->changed != 0; /* no step was made yet */
   return (has_order || is_new) && first.reach >= 0.0 &&
          situation->last_step.end == situation->last_step.start + first.reach &&
          snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
@@ -45,8 +53,8 @@ static bool taylor_create(struct Instance *instance) {
 }
 
 /*
- * d state / dt at the origin, and the first coefficients of all series, which are there already where the defect was
- * measured. False where there are no accelerations.
+ * Evaluates d state / dt at the origin, and the coefficients of order 1 of all series. The defect check has already
+ * done so if is_measured. False if the accelerations do not exist.
  */
 static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
   if (taylor->is_measured) return true;
@@ -55,7 +63,7 @@ static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
   return instance->singular == 0;
 }
 
-/* The series about the origin, where x[i][0] is the state, and its reach. False where no step can be taken. */
+/* Computes the series about the origin, whose state is in x[i][0], and its step. False if no step is possible. */
 static bool expand(struct Instance *instance, struct Taylor *taylor, double communication_step) {
   double origin = taylor->span->start;
   if (!evaluate_origin(instance, taylor)) return false;
@@ -72,8 +80,8 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
 }
 
 /*
- * Moves the origin to the end of the series; what rounding takes from the state is carried along in low. Returns the
- * largest change in units of the variables' scales.
+ * Moves the origin to the end of the step by compensated summation; low takes the rounding error. Returns the largest
+ * change in units of the scales.
  */
 static double move_origin(struct Taylor *taylor) {
   struct TaylorSaved *saved = taylor->saved;
@@ -99,7 +107,7 @@ static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
   if (taylor->rule.tolerance != local_tolerance(instance->situation->tolerance)) taylor->rule = taylor_rule(instance);
 }
 
-/* Brings the state at the origin back to the constraints. NULL, or why that cannot be. */
+/* Projects the state at the origin onto the constraints. Returns NULL, or the reason for a failure. */
 static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
   if (!solver_is_held(instance)) return NULL;
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
@@ -163,9 +171,11 @@ static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
 }
 
 /*
- * Why a system that moved by this much is not worth another step; NULL where it is. Where a system is stiff, many steps
- * hardly move it: none would need to be so short, but that its fast modes must not grow. Where dry friction sticks, one
- * jump comes after another.
+ * Returns the reason for giving up if the steps stagnate; NULL if they do not. moved: the change in the last step in
+ * units of the scales.
+ *
+ * In stiff systems, many steps hardly move the state, because the stability of fast modes limits them. In a system with
+ * friction that sticks but is written as a jump, one crossing follows the other.
  */
 static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
   if (!taylor->crosses) taylor->crossing.path += moved;
@@ -176,7 +186,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
   return NULL;
 }
 
-/* There is no series about the origin: the state is that of the origin. */
+/* Drops the series: the state stays that of the origin. */
 static void cut_series(struct Taylor *taylor) {
   taylor->saved->reach = 0.0;
   taylor->span->end = taylor->span->start;

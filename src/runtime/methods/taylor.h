@@ -1,4 +1,4 @@
-/* The series of the Taylor solver, and their values within a step. */
+/* State of the Taylor method, and the evaluation of its polynomials within a step. */
 #ifndef TAYLOR_H
 #define TAYLOR_H
 
@@ -7,14 +7,23 @@
 #include "instance/instance.h"
 #include "methods/taylor_rule.h"
 
-/* What the situation holds for this solver, beside the span of its last step; they tell all that a step depends on. */
+/*
+ * The part of the snapshot that belongs to this method. Together with the span of the last step it determines the next
+ * step.
+ */
 struct TaylorSaved {
-  double reach; /* how far from the origin the series is right, the length of the last step; 0 for no series yet */
+  double reach; /* length of the last step, for which the series is valid; 0 if there is no series yet */
   int64_t order;
-  /* double low[state_count]: what rounding left of the state at origin; Series x[state_count] */
+  /*
+   * Followed by double low[state_count], the rounding error of the state at the origin (compensated summation), and
+   * Series x[state_count].
+   */
 };
 
-/* Steps of one kind that hardly move the system; the kind goes on where a thousand of them do not. */
+/*
+ * Counter for stagnation: the steps of one kind, and their path in units of the scales. It starts again every
+ * CRAWL_STEPS steps.
+ */
 struct Crawl {
   int steps;
   double path;
@@ -24,33 +33,36 @@ struct Taylor {
   struct TaylorSaved *saved;
   struct Span *span; /* of the last step; its start is the origin of the series */
   double *low;
-  Series *x;            /* coefficients of the state; x[i][0] is the state at origin */
-  Series *input, *work; /* coefficients of the inputs, workspace of lagrangian.taylor.series */
-  /* Of state_count elements each, where is_measured: the changes of the state over the reach, and d state / dt there. */
+  Series *x;            /* coefficients of the state; x[i][0] is the state at the origin */
+  Series *input, *work; /* coefficients of the inputs; workspace of lagrangian.taylor.series */
+  /* state_count each, valid if is_measured: the changes of the state over the step, and d state / dt at its end. */
   double *term, *derivative;
-  double *unit;           /* state_count: 1 / taylor_scale(), as the series began */
-  bool is_measured;       /* lagrangian.taylor.start was called last for the end of the reach */
-  bool is_limited;        /* the step is short for another reason than the size of its coefficients */
-  bool crosses;           /* the step crosses a point where a function has no series */
-  struct SeriesRule rule; /* that the tolerance asks for */
+  double *unit;           /* state_count: 1 / taylor_scale() at the origin */
+  bool is_measured;       /* term, derivative and work are those of the end of the step */
+  bool is_limited;        /* something other than the size of the coefficients limits the step */
+  bool crosses;           /* the step crosses a point at which a function has no series */
+  struct SeriesRule rule; /* order and step margin for the tolerance */
   struct Crawl regular, crossing;
 };
 
-/* The size of a state variable at the origin, or its nominal value where that is larger. */
+/* Returns the scale of state variable i: its absolute value at the origin, at least its nominal value. */
 static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
   double size = fabs(taylor->x[i][0]);
   return size < lagrangian.steps.nominal[i] ? lagrangian.steps.nominal[i] : size;
 }
 
-/* From Horner's sums of even and odd powers, with the first term where these begin with the second. */
+/*
+ * Combines Horner's sums over even and odd powers into the change of the state. For an odd order j is 1, and x[1] is
+ * added.
+ */
 static inline double taylor_end_of_change(const double *x, int64_t j, Pair sum, double s) {
   double change = (pair_second(sum) * s + pair_first(sum)) * s;
   return j == 1 ? (change + x[1]) * s : change;
 }
 
 /*
- * The change of state variable i from the origin to s after it, by Horner's rule for even and odd powers apart, which
- * are a pair.
+ * Returns the change of state variable i from the origin to s after it. Horner's rule runs for even and odd powers in
+ * parallel, as a pair.
  */
 static inline double taylor_change(const struct Taylor *taylor, size_t i, double s) {
   const double *x = taylor->x[i], square = s * s;
@@ -60,7 +72,7 @@ static inline double taylor_change(const struct Taylor *taylor, size_t i, double
   return taylor_end_of_change(x, j, sum, s);
 }
 
-/* The same at three times at once, none of which waits for another. */
+/* Computes the same at three times s[3], with three independent chains of operations. */
 static inline void taylor_three_changes(const struct Taylor *taylor, size_t i, const double *s, double *change) {
   const double *x = taylor->x[i], squares[] = {s[0] * s[0], s[1] * s[1], s[2] * s[2]};
   int64_t j = taylor->saved->order;
@@ -76,7 +88,7 @@ static inline void taylor_three_changes(const struct Taylor *taylor, size_t i, c
   change[2] = taylor_end_of_change(x, j, third, s[2]);
 }
 
-/* What the tolerance asks for. */
+/* Returns the order and the step margin for the tolerance of the simulation. */
 struct SeriesRule taylor_rule(const struct Instance *instance);
 
 #endif

@@ -1,8 +1,17 @@
 /*
- * The step of the Taylor solver. The last two coefficients promise a step (A. Jorba, M. Zou, 2005, section 3.2), but
- * they may vanish by symmetry or because a function is flat at the origin. So the step is a promise only: the functions
- * in the equations limit it (series_limit.h), and its defect is measured, the difference between x'(t) of the
- * polynomials and the right side of the equations of motion.
+ * Step size of the Taylor method, in three parts.
+ *
+ * 1. Prediction (A. Jorba, M. Zou, 2005, section 3.2). With the norms |x_j| in units of the state's scales, the radius
+ * of convergence is about r = min over j = p - 1, p of |x_j|^(-1/j), and the step is r * 2^(-margin) (taylor_rule.h).
+ *
+ * 2. Bound. The last coefficients may vanish by symmetry, or because a function such as exp or tanh is flat at the
+ * origin. series_limit.h bounds the step so that no elementary function in the equations can hide a change.
+ *
+ * 3. Defect check. The defect d(s) = x'(s) - f(s, x(s)) of the polynomial is evaluated at the end of the step. The step
+ * is accepted if |d(s)| s in units of the scales is below the tolerance (allowed_defect()). If the coefficients do not
+ * limit the step, the defect is also measured inside it. A larger defect shortens the step by a factor from 0.1 to 0.8.
+ * So the loop ends: with an accepted step, or below the resolution of time, which is reported as a singularity. The
+ * evaluation at the end serves the next step, so a step costs one series and, usually, one evaluation.
  */
 #include "methods/taylor_reach.h"
 
@@ -14,8 +23,8 @@
 #include "evaluation/inputs.h"
 
 /*
- * The change of state variable i from the origin to s after it, as taylor_change() computes it, and its time derivative
- * there: each step of Horner's rule has its derivative beside it.
+ * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change(), and its
+ * time derivative at s. The derivative takes Horner's rule beside the value.
  */
 static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
   const double *x = taylor->x[i], square = s * s;
@@ -35,32 +44,31 @@ static double change_and_rate(const struct Taylor *taylor, size_t i, double s, d
   return value * s;
 }
 
-/* In units of the variables' scales: 1 / scale of each. */
 void taylor_measure_scales(struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->unit[i] = 1.0 / taylor_scale(taylor, i);
 }
 
-/* The largest coefficients of an order and of the one before, in units of the variables' scales. */
+/* Finds the largest coefficients of this order and of the one before, in units of the scales. A NaN is kept. */
 static void norms(const struct Taylor *taylor, int64_t order, double *last, double *before) {
   *last = *before = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     double size = fabs(taylor->x[i][order]) * taylor->unit[i],
            size_before = fabs(taylor->x[i][order - 1]) * taylor->unit[i];
-    if (size > *last || isnan(size)) *last = size; /* a NaN stays */
+    if (size > *last || isnan(size)) *last = size; /* so that a NaN stays */
     if (size_before > *before || isnan(size_before)) *before = size_before;
   }
 }
 
 /*
- * The logarithm to base 2 of a positive number to 0.01, and 2^x to 1 %: more than a step length needs, without the time
- * of the library's functions, and the same on all machines. Both work on the exponent of an IEEE 754 double.
+ * Returns log2(x) of a positive number to 0.01, and below 2^x to 1 %. A step length needs no more; these are faster
+ * than the library's functions, and give equal bits on all machines. Both use the exponent of an IEEE 754 double.
  */
 static double rough_logarithm(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);
   double exponent = (double)((int)(bits >> 52) - 1023), mantissa;
   bits = (bits & 0xfffffffffffffu) | (uint64_t)1023 << 52;
-  memcpy(&mantissa, &bits, sizeof mantissa); /* from 1 to 2 */
+  memcpy(&mantissa, &bits, sizeof mantissa); /* in [1, 2) */
   return exponent + 1.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
 }
 
@@ -74,7 +82,10 @@ static double rough_power_of_two(double x) {
   return power * (1.0 + rest * (0.66 + 0.34 * rest));
 }
 
-/* Where the last two terms that do not vanish are as small as the tolerance asks; 0 where they are not finite. */
+/*
+ * Returns the predicted step from the last two orders that are not both 0; INFINITY if the upper half of the orders
+ * vanishes, 0 if a coefficient is not finite.
+ */
 static double promised_step(const struct Taylor *taylor) {
   int64_t order = taylor->saved->order, lowest = order / 2;
   double last, before;
@@ -100,8 +111,8 @@ int taylor_start(struct Instance *instance, const struct Taylor *taylor, double 
 }
 
 /*
- * The right side of the equations of motion at s after the origin, at the state that taylor->term leads to, with each
- * of its numbers made larger or smaller by the share; false where it does not exist.
+ * Evaluates d state / dt at s after the origin, at the state to which the changes taylor->term lead. Each number of the
+ * state is perturbed by the relative amount share, with alternating signs. False if d state / dt does not exist.
  */
 static bool right_side(struct Instance *instance, const struct Taylor *taylor, double s, double share,
                        double *derivative) {
@@ -114,8 +125,8 @@ static bool right_side(struct Instance *instance, const struct Taylor *taylor, d
 }
 
 /*
- * The defect times the step that the tolerance allows, in units of the variables' scales. Where the coefficients set the
- * step, the defect grows with the power order, so that the error is smaller by order + 1.
+ * Returns the largest defect * step that the tolerance allows, in units of the scales. If the coefficients limit the
+ * step, the defect grows with s^order, and its integral, the error, is smaller by order + 1.
  */
 static double allowed_defect(const struct Taylor *taylor) {
   double size = taylor->rule.tolerance;
@@ -123,8 +134,9 @@ static double allowed_defect(const struct Taylor *taylor) {
 }
 
 /*
- * The largest defect at s, as the change that it makes over s in units of the variables' scales and of what is allowed.
- * The coordinates follow from the velocities.
+ * Returns the largest defect at s times s, in units of the scales and of allowed_defect(); INFINITY if it does not
+ * exist. The coordinates have none: their series are the integrals of those of the velocities. Leaves the changes and
+ * rates in term and derivative.
  */
 static double defect(struct Instance *instance, struct Taylor *taylor, double s) {
   size_t first = lagrangian.coordinate_count, states = lagrangian.state_count;
@@ -142,8 +154,8 @@ static double defect(struct Instance *instance, struct Taylor *taylor, double s)
 }
 
 /*
- * What rounding of the state at s, where defect() has just been, makes of the right side, in the units of defect(): a
- * stiff spring's force is the difference of large numbers.
+ * Returns the change of the right side by rounding of the state at s, in the units of defect(), which must precede the
+ * call. It is large where forces are differences of large numbers, as in stiff springs.
  */
 static double rounding_of_right_side(struct Instance *instance, struct Taylor *taylor, double s) {
   size_t states = lagrangian.state_count;
@@ -155,7 +167,7 @@ static double rounding_of_right_side(struct Instance *instance, struct Taylor *t
   return largest / allowed_defect(taylor);
 }
 
-/* The larger of the defects inside the step and at its end. */
+/* Returns the largest defect inside the step and at its end; stops at the first one that is too large. */
 static double defect_over(struct Instance *instance, struct Taylor *taylor, double s) {
   double largest = 0.0;
   for (int i = 0; i < DEFECT_PLACES && largest <= 1.0; i++)
@@ -163,7 +175,7 @@ static double defect_over(struct Instance *instance, struct Taylor *taylor, doub
   return fmax(largest, defect(instance, taylor, s));
 }
 
-/* The step as far as the functions in the equations allow it. */
+/* Returns the step after the bounds by the functions in the equations (series_limit.h). */
 static struct SeriesLimit limited(const struct Instance *instance, const struct Taylor *taylor, double step,
                                   bool crosses) {
   struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
@@ -175,19 +187,22 @@ static struct SeriesLimit limited(const struct Instance *instance, const struct 
   return limit;
 }
 
-/* Steps below are no steps in a time of so many digits; a motion that asks for them runs into a singular point. */
+/*
+ * Returns the length below which a step is lost in the rounding of time. A motion that needs such steps runs into a
+ * singularity.
+ */
 static double smallest_step(const struct Taylor *taylor) {
   return 8.0 * DBL_EPSILON * fabs(taylor->span->start);
 }
 
-/* The next origin is a number, so that the time does not drift. */
+/* Rounds the step so that origin + step is exact, and the time does not drift. */
 static double exact_reach(const struct Taylor *taylor, double step) {
   return taylor->span->start + step - taylor->span->start;
 }
 
 /*
- * A root has no series where its operand is 0, but leaves the accelerations finite: the state goes on along its first
- * terms alone.
+ * Sets all coefficients from order 2 on to 0, which leaves Euler's method. A root has no series at 0, but leaves the
+ * accelerations finite.
  */
 static void cut_off(const struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
@@ -195,10 +210,12 @@ static void cut_off(const struct Taylor *taylor) {
 }
 
 /*
- * A point where a root, a kink or a jump has no series is approached by ever shorter steps, and crossed by one in which
- * the state moves by a millionth of a millionth of its scale, so that two such points are not taken for one, and in which
- * all that changes is less than the tolerance, or less than the rounding of time makes of it. Returns that step, whose
- * end was measured, or 0 where a step of the length that has a series does as well.
+ * Returns a step across a point at which a root, a kink or a jump has no series; 0 if a step of the length that has a
+ * series will do.
+ *
+ * Such a point is approached by ever shorter steps, and crossed by one that moves the state by crossing_share of its
+ * scale. So two such points are not mistaken for one. The defect in this step must be allowed by the tolerance, or be
+ * explained by the rounding of time.
  */
 static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step,
                             double length) {
@@ -213,7 +230,7 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0) return step;
     if (step <= 2.0 * smallest && isfinite(size)) {
-      cut_off(taylor); /* no more terms belong to so short a step than the rounding of time leaves */
+      cut_off(taylor); /* in a step this short, rounding of time hides all higher terms */
       if (isfinite(defect(instance, taylor, step))) return step;
     }
     step = fmax(0.1 * step, fmin(step, smallest));
@@ -221,7 +238,10 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
   return 0.0;
 }
 
-/* Shortens the step until its defect is small. A defect that rounding explains stays in a shorter step too. */
+/*
+ * Shortens the step until its defect is allowed, or explained by rounding, which no shorter step removes. Returns 0
+ * below the resolution of time.
+ */
 static double shortened(struct Instance *instance, struct Taylor *taylor, double step) {
   double power = 1.0 / (double)(taylor->saved->order + 1);
   for (;;) {
@@ -242,7 +262,7 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
       situation->stop_time_defined ? situation->stop_time - taylor->span->start : horizon * communication_step;
   double promised = promised_step(taylor), step = promised;
   if (rest < communication_step) rest = communication_step;
-  rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* no shorter step ends the search from an infinite one */
+  rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* keeps the end of the step finite */
   if (rest < step) step = rest;
   if (lagrangian.steps.max_step < step) step = lagrangian.steps.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);

@@ -1,4 +1,4 @@
-/* What the steps of Taylor series follow from, of one run (taylor_reach.c) and of several at once (src/ensemble). */
+/* Order and step of the Taylor method, for one run (taylor_reach.c) and for several at once (src/ensemble). */
 #ifndef TAYLOR_RULE_H
 #define TAYLOR_RULE_H
 
@@ -8,33 +8,44 @@
 #include "lagrangian.h"
 
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
-enum { CRAWL_STEPS = 1000 }; /* so many steps of one kind move a system further than the tolerance */
+enum { CRAWL_STEPS = 1000 }; /* steps of one kind: if they move the system by less than the tolerance, it stagnates */
 
-/* A step of the promised length has a defect of about a third of the order times the tolerance. */
+/*
+ * The defect may exceed (order + 1) * tolerance, where the error equals the tolerance, by this factor. Steps of the
+ * predicted length have a defect of about order * tolerance / 3.
+ */
 static const double defect_margin = 3.0;
-/* The share of its scale by which the state moves where a kink is crossed. */
+/* The change of the state, relative to its scale, in a step that crosses a kink, a jump or a root of 0. */
 static const double crossing_share = 1e-12;
-/* Polynomial motions have no length of their own. */
+/*
+ * The longest step in communication steps if no stop time is defined: the series of a polynomial motion gives no
+ * length.
+ */
 static const double horizon = 1e4;
-/* Rounding of the right side at the end of the step, in units of the last place, and of what rounding of the state does. */
+/*
+ * Rounding error allowed for in the defect: of the right side in units of the last place, and as a multiple of the
+ * effect of rounding the state.
+ */
 static const double rounding = 100.0, rounding_margin = 10.0;
-/* The shares of a step at which its defect is measured beside its end, where the step is short for another reason. */
+/* Fractions of the step at which the defect is measured, beside its end, if the coefficients do not limit the step. */
 static const double places_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
-/* Over a step whose length fast modes set, the terms of the series fall by less than this from one to the next; else by more. */
+/*
+ * Ratio of consecutive terms at the end of the step. It is smaller if fast modes limit the step, and larger otherwise.
+ */
 enum { FALL_OF_FAST = 3 };
 
 enum { DEFECT_PLACES = sizeof places_of_defects / sizeof *places_of_defects };
 
-/* The tolerance of a local error: errors of its order add up to more than it; see tests/solvers/test_motion.py. */
+/* Returns the tolerance of the error in one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static inline double local_tolerance(double tolerance) {
   double local = 0.1 * tolerance;
   return local > 1e-17 ? local : 1e-17;
 }
 
 /*
- * Operations of a step of the series, see lagrangian.steps.operations. The constants were fitted to measured times, 0.3 ns an
- * operation, of systems with one to ten coordinates.
+ * Returns the arithmetic operations of a step of this order, as lagrangian.steps.operations counts them. The constants
+ * were fitted to measured times of systems with one to ten coordinates, at 0.3 ns an operation.
  */
 static inline double work_of_series(double order) {
   const struct OperationCounts *count = &lagrangian.steps.operations;
@@ -43,22 +54,27 @@ static inline double work_of_series(double order) {
          order * (0.5 * count->series + 1.5 * states + 0.45 * order * count->recurrences);
 }
 
-/* What the tolerance of a local error asks for. */
+/* Order and step for a local tolerance. */
 struct SeriesRule {
   double tolerance;
   int64_t order;
-  double margin; /* the logarithm to base 2 of the share of its radius of convergence that a step may go */
+  double margin; /* log2 of the ratio of the radius of convergence to the step */
 };
 
 /*
- * A series of order p whose terms fall by e^-fall from one to the next goes e^-fall of its radius of convergence; its first
- * term that is left out is e^(-fall (p + 1)). Where the work of a step grows with p^2, the least for a way is that with a fall
- * of 2 (A. Jorba, M. Zou, 2005, section 3.1); where it hardly grows with the order, longer steps of a higher order are less.
+ * Chooses the order p of least work per unit of time for the local tolerance (A. Jorba, M. Zou, 2005, sections 3.1 and
+ * 3.2).
+ *
+ * With a step of exp(-fall) times the radius of convergence, each term is exp(-fall) times the one before. The first
+ * term left out is about exp(-fall (p + 1)), which gives the fall for each order. If the work of a step grows with p^2,
+ * a fall of 2 is optimal, as in the paper. If it grows less, higher orders with longer steps and a smaller fall are
+ * cheaper. The search starts at the paper's order and ends where the work begins to grow. The term 0.7 / (p - 1) is the
+ * paper's safety factor.
  */
 static inline struct SeriesRule rule_for(double local) {
-  const double highest_fall = 2.0, near_rounding = 1e-15; /* where longer steps would round more than they err */
+  const double highest_fall = 2.0, near_rounding = 1e-15; /* below it, rounding outweighs what longer steps save */
   double lowest_fall = local < near_rounding ? highest_fall : 1.5;
-  const double reserve = 5.0; /* of the first term that is left out, below the tolerance */
+  const double reserve = 5.0; /* natural logarithms between the tolerance and the first term left out */
   double digits = -log(local), least = INFINITY;
   struct SeriesRule rule = {.tolerance = local};
   int64_t lowest = (int64_t)fmin(fmax(ceil(1.0 + digits / highest_fall), LOWEST_ORDER), HIGHEST_ORDER);

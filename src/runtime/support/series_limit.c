@@ -2,19 +2,22 @@
 
 #include <math.h>
 
-/* Polynomials of the usual orders follow exp over such a change of its argument; nothing narrow hides in it. */
+/* Change of the argument of exp over which Taylor polynomials of the usual orders follow it. */
 static const double exponent_range = 5.0;
-/* exp is 0 below, tanh is 1 above, to all bits that count. */
+/* exp is negligible below the first, and tanh rounds to 1 above the second. */
 static const double exponential_end = -700.0, tanh_end = 20.0;
-/* The share of the way to a singular point that one step may go. */
+/* Fraction of the distance to a singularity that one step may go. */
 static const double approach = 0.99;
-/* A base so small has powers above the wide ones that matter to nothing; its turning points are rounding. */
+/*
+ * Below this base, a power above HIGHEST_WIDE_POWER is negligible, and turning points of the base are rounding errors.
+ */
 static const double negligible_base = 1e-50;
 static const double pi = 3.14159265358979323846;
 
+/* Divisions of the step by 8, enough to pass through all doubles; then bisections of the last factor, to 14 %. */
 enum { TRIALS = 400, REFINEMENTS = 4 };
 
-/* sum over k >= 1 of |u_k| step^k; four of Horner's rules side by side, which do not wait for one another */
+/* Returns sum over k >= 1 of |u_k| step^k, by four independent chains of Horner's rule. */
 static double excursion(const double *u, int order, double step) {
   double square = step * step, fourth = square * square;
   int k = (order - 1) / 4 * 4 + 1;
@@ -35,7 +38,7 @@ static bool excursion_fits(const double *u, int order, double step, double bound
   return excursion(u, order, step) <= bound;
 }
 
-/* Whether u has no turning point: its first derivative that is not 0 outweighs all others over the step. */
+/* True if u has no turning point in the step: its first nonzero derivative outweighs the sum of all further terms. */
 static bool is_monotone(const double *u, int order, double step) {
   int first = 1;
   while (first <= order && u[first] == 0.0) first++;
@@ -44,17 +47,20 @@ static bool is_monotone(const double *u, int order, double step) {
   return first > order || others <= first * fabs(u[first]);
 }
 
-/* A power has its largest value at an end where its base has no turning point; what happens there is measured. */
+/* A power of a base without turning points is largest at an end of the step, where the defect is measured. */
 static bool power_fits(const double *u, int order, double step, double bound) {
   return excursion(u, order, step) <= bound || is_monotone(u, order, step);
 }
 
-/* The same before and behind the origin: u must go through it. */
+/* The same before and after the origin: u must cross it with a nonzero slope. */
 static bool power_fits_around(const double *u, int order, double step, double bound) {
   return excursion(u, order, step) <= bound || (u[1] != 0.0 && is_monotone(u, order, step));
 }
 
-/* Whether an operand has a value that matters: one without belongs to a piece that is not there, one so large to none. */
+/*
+ * True if the operand is meaningful. NaN comes from an inactive piece of a piecewise function, and 1e200 or more from
+ * none.
+ */
 static bool matters(double u) {
   return fabs(u) < 1e200;
 }
@@ -124,7 +130,7 @@ void series_limit_power(struct SeriesLimit *limit, const double *u, double expon
   else if (exponent > HIGHEST_WIDE_POWER) series_limit_whole_power(limit, u, share);
 }
 
-/* Away from 0 without a turning point, or not as far as 0. */
+/* True if u moves away from 0 without a turning point, or cannot reach 0. */
 static bool sign_fits(const double *u, int order, double step, double bound) {
   int first = 0;
   while (first < order && u[first] == 0.0) first++;

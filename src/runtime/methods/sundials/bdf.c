@@ -1,4 +1,4 @@
-/* Backward differentiation formulas with a dense Jacobian matrix, for small systems. */
+/* BDF with a dense Jacobian matrix, for small systems. */
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 

@@ -1,4 +1,4 @@
-/* Backward differentiation formulas with a sparse Jacobian matrix by columns, factored by KLU, for large systems. */
+/* BDF with a Jacobian matrix in compressed columns, factored by KLU, for large systems. */
 #include <sunlinsol/sunlinsol_klu.h>
 #include <sunmatrix/sunmatrix_sparse.h>
 
@@ -6,7 +6,7 @@
 
 struct SparseBdf {
   struct Bdf bdf;
-  /* The pattern of I - gamma J: that of the Jacobian J and the diagonal. Element k of J stands at place[k]. */
+  /* The pattern of I - gamma J: that of J, and the diagonal. place[k] is the index of J's element k in it. */
   sunindextype *start, *row, *place;
 };
 

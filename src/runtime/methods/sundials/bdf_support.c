@@ -1,10 +1,10 @@
 /*
- * Backward differentiation formulas of order 1 to 5, by CVODE of SUNDIALS, with the generated Jacobian. The solver
- * goes on from one communication step to the next and starts anew only where something was changed from outside.
+ * Backward differentiation formulas (BDF) of orders 1 to 5, by CVODE of SUNDIALS, with the generated Jacobian. The
+ * solver continues over communication steps, and restarts only after changes from outside.
  *
- * Measured, and left: with inputs that change at every communication step, ESDIRK547L2SA of ARKODE reaches equal errors
- * in half the time, but it takes 3 to 5 times as long where nothing changes. Going on across the change of an input
- * without a new start takes more steps, loses digits, and fails in the end.
+ * Measurements against alternatives: with inputs that change at every communication step, ESDIRK547L2SA of ARKODE
+ * reaches equal errors in half the time. Without such changes it takes 3 to 5 times as long. Continuing over an input's
+ * change without a restart takes more steps, loses digits, and finally fails.
  */
 #include "methods/sundials/bdf_support.h"
 
@@ -14,7 +14,7 @@
 
 #include "evaluation/services.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/solvers/test_motion.py. */
+/* Fraction of the tolerance for one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static const double safety = 0.01;
 
 static int fill_jacobian(realtype time, N_Vector state, N_Vector derivative, SUNMatrix matrix, void *data,
@@ -30,7 +30,7 @@ static int fill_jacobian(realtype time, N_Vector state, N_Vector derivative, SUN
   return 0;
 }
 
-/* The change that brings a state back to the constraints. */
+/* Computes the change that projects a state onto the constraints. */
 static int correction_to_constraints(realtype time, N_Vector state, N_Vector correction, realtype tolerance,
                                      N_Vector error, void *data) {
   struct Instance *instance = data;
@@ -42,7 +42,7 @@ static int correction_to_constraints(realtype time, N_Vector state, N_Vector cor
   return 0;
 }
 
-/* The estimate of the error is left as it is: an error that the projection takes away is still one of the step. */
+/* Projects steps without projecting their error estimate: an error that the projection removes still is an error. */
 static bool keep_constraints(struct Instance *instance, const struct Bdf *bdf) {
   return lagrangian.constraints.projection == NULL ||
          (SUCCEEDS(instance, CVodeSetProjFn, bdf->cvode, correction_to_constraints) &&
@@ -77,15 +77,18 @@ bool bdf_restart(struct Instance *instance, const double *state, const struct Co
          set_tolerances(instance, bdf);
 }
 
-/* Where inputs or time drive the system, a step longer than the communication step could pass over a pulse. */
+/*
+ * Returns the longest step. If inputs or time drive the system, a step beyond the communication step could miss a
+ * pulse.
+ */
 static double longest_step(const struct CommunicationStep *step) {
   bool driven = lagrangian.input_count > 0 || lagrangian.steps.depends_on_time;
   return driven ? fmin(step->length, lagrangian.steps.max_step) : lagrangian.steps.max_step;
 }
 
 /*
- * Bounds the next step; but for the first ones, the method makes none that is more than ten times as long as the last.
- * NULL, or the reason why there is no step.
+ * Bounds the next step by the functions in the equations. bound lies beyond what CVODE takes: at most ten times the
+ * last step, except for the first ones. Returns NULL, or the reason for a failure.
  */
 static const char *limit_by_functions(struct Instance *instance, const struct Bdf *bdf, double time, double end) {
   double last = 0.0;

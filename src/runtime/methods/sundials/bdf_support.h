@@ -1,4 +1,4 @@
-/* Backward differentiation formulas, for any form of the Jacobian matrix. */
+/* Backward differentiation formulas, for dense and sparse Jacobian matrices. */
 #ifndef BDF_SUPPORT_H
 #define BDF_SUPPORT_H
 
@@ -7,7 +7,7 @@
 
 #include "methods/sundials/sundials_support.h"
 
-/* The descriptor of a form of the matrix. */
+/* The struct Solver for one kind of matrix. */
 #define BDF_SOLVER(title, creator)                                                                                     \
   {                                                                                                                    \
     .name = (title), .alternatives = "auto where inputs change often", .finer = "<solver method=\"taylor\"/>",         \
@@ -20,15 +20,15 @@ struct Bdf {
   void *cvode;
   SUNMatrix matrix;
   SUNLinearSolver linear_solver;
-  double *jacobian; /* the elements in lagrangian.implicit.pattern */
-  /* Writes them into the matrix, whose elements are 0. */
+  double *jacobian; /* elements in lagrangian.implicit.pattern */
+  /* Writes jacobian into the matrix, whose elements are 0. */
   void (*fill)(const struct Bdf *bdf, SUNMatrix matrix);
 };
 
-/* Configures CVODE with matrix, linear_solver and fill, which the caller has set; false where that fails. */
+/* Configures CVODE with matrix, linear_solver and fill, which the caller has set. False if that fails. */
 bool bdf_configure(struct Instance *instance);
 
-/* What the descriptors share. */
+/* The functions of struct Solver, for both kinds of matrix. */
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);

@@ -1,7 +1,6 @@
 /*
- * Dormand and Prince's explicit Runge-Kutta method of order 5(4), by ERKStep of SUNDIALS. Every communication step
- * starts the solver anew from the state and the step size that the situation holds, so that it depends on nothing
- * else.
+ * The explicit Runge-Kutta method of Dormand and Prince, of order 5(4), by ERKStep of SUNDIALS. The solver restarts at
+ * every communication step, from the state and the step size in the snapshot, so that results depend on nothing else.
  */
 #include <math.h>
 
@@ -11,25 +10,25 @@
 
 #include "evaluation/services.h"
 
-/* Local errors of the order of the tolerance add up to more than it; see tests/solvers/test_motion.py. */
+/* Fraction of the tolerance for one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static const double safety = 0.1;
 
 struct Erk {
   struct Sundials sundials;
-  N_Vector before; /* the state before a step */
-  N_Vector rate;   /* workspace for looking at a step */
-  double trial;    /* the length of the step to come */
+  N_Vector before; /* at the start of the step */
+  N_Vector rate;   /* workspace of obeys_equations() */
+  double trial;    /* the next step, in s */
   void *arkode;
 };
 
-/* Brings the end of a step back to the constraints. */
+/* Projects the end of a step onto the constraints. */
 static int keep_constraints(realtype time, N_Vector state, void *data) {
   return solver_project(data, time, N_VGetArrayPointer(state)) == NULL ? 0 : -1;
 }
 
 static bool configure(struct Instance *instance) {
   struct Erk *erk = instance->solver_memory;
-  /* The motion goes on from a state inside of a step where it switches; else such a state is only told. */
+  /* With events, the motion continues from states inside a step; otherwise those are only reported. */
   int degree = lagrangian.event_laws != NULL ? 5 : 3;
   SUNContext context = erk->sundials.context;
   erk->before = N_VClone(erk->sundials.state);
@@ -50,7 +49,7 @@ static bool create(struct Instance *instance) {
   return sundials_create(instance, sizeof(struct Erk), configure);
 }
 
-/* Starts at time and the state there with a step of this length, 0 for one that ERKStep chooses. */
+/* Starts at a time and the state there with this step in s, at most to end; 0 for one that ERKStep chooses. */
 static bool start_method(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
   const struct Sundials *sundials = &erk->sundials;
   return SUCCEEDS(instance, ERKStepReInit, erk->arkode, sundials_right_side, time, sundials->state) &&
@@ -60,8 +59,8 @@ static bool start_method(struct Instance *instance, struct Erk *erk, double time
 }
 
 /*
- * Whether two values of the derivative of state i differ by as much as they are large, and by far more than the
- * tolerance explains over a step.
+ * True if two values of the derivative of state i differ by more than half their size, and by more than 20 times what
+ * the tolerance allows over the step.
  */
 static bool differ(const struct Sundials *sundials, size_t i, double step, double one, double other) {
   double weight =
@@ -70,7 +69,7 @@ static bool differ(const struct Sundials *sundials, size_t i, double step, doubl
   return difference > 0.5 * fmax(fabs(one), fabs(other)) && step * difference > 20.0 * weight;
 }
 
-/* Whether the derivatives at both ends of the last step are alike, as those of most steps are. */
+/* True if the derivatives at both ends of the last step are alike, as in most steps. */
 static bool is_steady(const struct Erk *erk, double before, double time) {
   N_Vector first = erk->sundials.inside, last = erk->rate;
   if (ERKStepGetDky(erk->arkode, before, 1, first) < 0 || ERKStepGetDky(erk->arkode, time, 1, last) < 0) return false;
@@ -81,8 +80,8 @@ static bool is_steady(const struct Erk *erk, double before, double time) {
 }
 
 /*
- * Whether the cubic polynomial through the last step looks like a solution inside of it. The method looks at the right
- * side in few places, and a step across a singularity may please its error estimate.
+ * True if the dense output of the last step obeys the equations, at SAMPLES points inside it. The error estimate sees
+ * the right side at few points, and may accept a step across a singularity.
  */
 static bool obeys_equations(struct Instance *instance, const struct Erk *erk, double before, double time) {
   enum { SAMPLES = 8 };
@@ -109,8 +108,8 @@ static bool restart(struct Instance *instance, const double *state, const struct
 }
 
 /*
- * Where a step cannot be, as a trial stage has no right side or the polynomial does not obey the equations, a tenth of
- * it is tried.
+ * If a step fails, because a stage has no right side or the polynomial does not obey the equations, a tenth of it is
+ * tried, down to the resolution of time.
  */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Erk *erk = instance->solver_memory;

@@ -5,11 +5,11 @@
 
 struct Block {
   struct Block *previous, *next;
-  size_t size; /* of the content */
+  size_t size; /* of content, in bytes */
   _Alignas(max_align_t) char content[];
 };
 
-/* A task on its way. */
+/* A call of sundials_run() in progress. */
 struct Task {
   const struct Allocator *memory;
   struct Block *blocks;
@@ -17,8 +17,8 @@ struct Task {
 };
 
 /*
- * The innermost task of this thread. In the static block of a thread: else the first access in a thread would allocate,
- * and the C library ends the process where it cannot.
+ * The innermost task of this thread. It is in the thread's static block: otherwise the first access in a thread would
+ * allocate, and the C library would end the process if that failed.
  */
 static _Thread_local struct Task *current __attribute__((tls_model("initial-exec")));
 
@@ -70,7 +70,7 @@ static struct Block *block_of(void *content) {
   return (struct Block *)((char *)content - offsetof(struct Block, content));
 }
 
-/* What SUNDIALS calls in place of the functions of the C library. */
+/* The linker sends SUNDIALS' calls of malloc, calloc, realloc and free to these. */
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *content, size_t size);

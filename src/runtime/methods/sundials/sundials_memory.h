@@ -1,28 +1,28 @@
 /*
- * Memory of SUNDIALS. The library does not bear an allocation that fails, and takes no allocator: the linker sends its
- * calls of malloc and the like here (--wrap). They get memory from the caller's functions, and where these have none,
- * the library is left at once, and all that it has allocated goes back.
+ * Memory of SUNDIALS. The library takes no allocator, and does not survive an allocation that fails. The linker sends
+ * its calls of malloc and the like to this file (--wrap), which uses the importer's functions. If memory is missing,
+ * longjmp leaves the library, and all that it has allocated is freed.
  */
 #ifndef SUNDIALS_MEMORY_H
 #define SUNDIALS_MEMORY_H
 
 #include "instance/instance.h"
 
-/* Precedes each block that SUNDIALS or its solver has allocated and not freed. */
+/* Header of each block that SUNDIALS or its solver has allocated. */
 struct Block;
 
-/* The memory of each solver begins with this. */
+/* First member of the memory of each solver. */
 struct SundialsMemory {
   struct Block *blocks;
 };
 
 /*
- * Does a task that may enter SUNDIALS, create solver_memory or give it up: nothing else may call the library. False
- * where there was no memory: the task was left halfway, and solver_memory is freed, and NULL.
+ * Runs a task that may call SUNDIALS, and may create or destroy solver_memory. Nothing else may call the library. False
+ * if memory was missing: the task was left halfway, and solver_memory has been freed and is NULL.
  */
 bool sundials_run(struct Instance *instance, void (*task)(void *argument), void *argument);
 
-/* Zeros; only inside of a task, which it does not come back to where there is no memory. */
+/* Allocates zeros, inside a task only. Does not return if memory is missing. */
 void *sundials_allocate(size_t count, size_t size);
 
 /* Frees solver_memory and all that was allocated for it. */
