@@ -1,8 +1,23 @@
+/*
+ * Code for the projection onto the constraints g(q) = 0. Each correction (dq; F) solves
+ *
+ *     M dq + J^T F = -M moved,   J dq = -g(q),
+ *
+ * with the symmetric indefinite matrix K = (M J^T; J 0) of the equations of motion, where moved is the sum of the
+ * corrections so far. These are Newton's steps, without the second derivatives of g, for the nearest point in the metric
+ * of M: minimize moved^T M moved subject to g = 0. The velocities need one step, as the constraints are linear in
+ * them. The runtime (methods/projection.c) iterates and decides when to stop. A correction costs one factorization of
+ * each constrained block: O(n^3) if it is full, O(n) for a tree, whose solution is symbolic. E. Hairer, C. Lubich,
+ * G. Wanner: Geometric Numerical Integration, section IV.4.
+ */
 #include "program/corrections.h"
 
 #include "saddle.h"
 
-/* What the masses of fixed coordinates are multiplied by, so that others move. */
+/*
+ * Factor on the diagonal elements of M of fixed coordinates: large enough that only the other coordinates move at the
+ * start, small enough that the factors of K keep their digits.
+ */
 static const double weight_of_fixed = 1e12;
 
 static void weigh_fixed(const struct Program *program, struct Values *values, const struct LoopedBlock *looped) {
@@ -17,7 +32,7 @@ static void weigh_fixed(const struct Program *program, struct Values *values, co
   }
 }
 
-/* Forces that follow from others have no part in a correction, nor in what an impulse does by itself. */
+/* Sets the nonsymmetric columns of K to 0: forces that depend on others take no part in corrections and impulses. */
 static void leave_oblique_out(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
@@ -25,7 +40,7 @@ static void leave_oblique_out(struct Values *values, const struct LoopedBlock *l
     values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
 }
 
-/* Factors and solves a block; side: a right side for each row; starting: fixed coordinates stay. */
+/* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */
 static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *side,
                           bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
@@ -36,7 +51,10 @@ static void append_solved(const struct Program *program, struct Values *values, 
   append_solution(values, &program->blocks, number, side);
 }
 
-/* Changes of the coordinates in a block and the last pivots of its constraints, from the block's right sides. */
+/*
+ * Appends the correction of one block: solves for side, then copies the changes of its coordinates and the last pivots
+ * of its constraints to the targets.
+ */
 static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *side,
                          bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
@@ -51,7 +69,7 @@ static void append_block(const struct Program *program, struct Values *values, s
   }
 }
 
-/* Computes the elements of the blocks that constraints hold, their right sides, and further nodes. */
+/* Computes the elements and right sides of all constrained blocks, and the further nodes. */
 static void compute_blocks(const struct Program *program, struct Values *values, const Node *side, const Node *further,
                            size_t further_count) {
   struct NodeList targets = {0};
@@ -65,13 +83,13 @@ static void compute_blocks(const struct Program *program, struct Values *values,
   values_compute(values, targets.nodes, targets.count, false);
 }
 
-/* Whether the row is of a tree that constraints hold. */
+/* True if the row belongs to a kinematic tree that has constraints. */
 static bool is_in_tree(const struct Program *program, size_t row) {
   const struct InertiaBlock *block = inertia_block_of(program->equations->inertia, row);
   return block->tree != NULL && block->constraint_count > 0;
 }
 
-/* The changes in trees are expressions; pivots of constraints too. */
+/* Copies the changes and pivots of kinematic trees, which are expressions, to the targets. */
 static void append_trees(const struct Program *program, struct Values *values, const Node *change) {
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
   for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), is_in_tree(program, i) ? change[i] : ZERO);
@@ -80,7 +98,7 @@ static void append_trees(const struct Program *program, struct Values *values, c
       values_copy(values, target_place(n + constraints + j), program->expressions->corrections.pivot[j]);
 }
 
-/* What of the right sides, of slopes and of pivots is there as expressions. */
+/* Returns the nodes of a correction outside blocks that are factored: slopes, pivots, right sides in trees. */
 static struct NodeList nodes_of_correction(const struct Program *program, const Node *side) {
   const struct Corrections *corrections = &program->expressions->corrections;
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
@@ -92,7 +110,7 @@ static struct NodeList nodes_of_correction(const struct Program *program, const 
   return nodes;
 }
 
-/* side: a right side for each row; starting: fixed coordinates stay where they are. */
+/* Builds a correction for side, which has an element for each row of K. starting: fixed coordinates stay. */
 static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *side,
                                           bool starting) {
   struct Routine *routine = values_begin(values);

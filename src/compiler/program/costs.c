@@ -1,8 +1,13 @@
+/*
+ * The cost model counts additions, multiplications, divisions and roots as 1 and calls of elementary functions as 20.
+ * Counts, unlike measured times, are the same on every machine, so that the runtime's choices are reproducible. An
+ * order of a series costs its operations plus, for each recurrence, a number of terms that grows with the order.
+ */
 #include "program/costs.h"
 
 #include <math.h>
 
-/* 0 for none. */
+/* Returns the operations of an instruction list; 0 for NULL. */
 static double operations_of(const struct Routine *routine) {
   enum { OPERATIONS_OF_CALL = 20 };
   if (routine == NULL) return 0.0;
@@ -13,14 +18,17 @@ static double operations_of(const struct Routine *routine) {
   return count;
 }
 
-/* Of a Jacobian matrix; 0 for none. */
+/* Returns the operations of a Jacobian, by elements or by directional derivatives; 0 without one. */
 static double operations_of_jacobian(const struct Program *program) {
   if (program->expressions->jacobian == NULL || program->expressions->jacobian->value != NULL)
     return operations_of(program->routines[FUNCTION_JACOBIAN]);
   return (double)program->interface->state_count * operations_of(program->routines[FUNCTION_DIRECTIONAL]);
 }
 
-/* Elements of the rows of L with their diagonals, and the sum of the squares of their numbers. */
+/*
+ * Sums the elements of the rows of L, diagonals included, and the squares of these row lengths: the multiplications of
+ * a triangular solution, and of a factorization.
+ */
 static void count_factors(const struct Program *program, double *elements, double *squares) {
   const struct Elimination *factors = program->expressions->jacobian->factors;
   *elements = *squares = 0.0;
@@ -42,10 +50,10 @@ struct OperationCounts operation_counts_of(const struct Program *program) {
                                   .solve = elements};
 }
 
-/* For orders and iterations as they are at middling tolerances. */
+/* Typical at medium tolerances: order of series, stages of Radau IIA, evaluations for each Jacobian. */
 enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
 
-/* Of an evaluation of the equations by a method of Runge and Kutta or an implicit one, with its share in linear algebra. */
+/* Returns the work of one evaluation by a Runge-Kutta or implicit method, with its share of linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
   double work = 250.0 + operations_of(program->routines[FUNCTION_DERIVATIVES]);
   if (program->expressions->jacobian == NULL) return work;
@@ -62,9 +70,9 @@ static double work_of_series(const struct Program *program) {
 }
 
 /*
- * What counts against the limit of work in a communication step: each evaluation; each step, which takes what the series take
- * beyond one, is brought back to the constraints and is searched for events; each event. The constants were fitted like those
- * of auto.c, to the times of the systems in fmu/.
+ * Estimates what counts against the limit of work in a communication step. A step costs, beyond its evaluation, the
+ * rest of the series, the projection onto the constraints and the search for events. The constants were fitted, like
+ * those of auto.c, to measured times of the systems in fmu/.
  */
 struct StepWork step_work_of(const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };

@@ -1,10 +1,13 @@
-/* What the generated functions cost, by which the runtime chooses between methods and bounds the work of a step. */
+/*
+ * The cost model: arithmetic operations of the generated functions. By them the runtime chooses between methods and
+ * limits the work of a communication step.
+ */
 #pragma once
 
 #include "program/program.h"
 
-/* For a method that hands over, which has series and a Jacobian. */
+/* Returns the operations of each part of a step, for a method that integrates by Taylor series. */
 struct OperationCounts operation_counts_of(const struct Program *program);
 
-/* For a system with coordinates. */
+/* Returns the work of an evaluation, a step and an event, for a system with coordinates. */
 struct StepWork step_work_of(const struct Program *program);

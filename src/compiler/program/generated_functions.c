@@ -34,7 +34,7 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   return routine;
 }
 
-/* Where differentiated equations hold accelerations, or blocks must be factored. */
+/* Appends the accelerations if some node depends on them; otherwise only the factors of the blocks. */
 static void append_needed_accelerations(const struct Program *program, struct Values *values, const Node *nodes,
                                         size_t count) {
   bool needed = false;
@@ -43,11 +43,11 @@ static void append_needed_accelerations(const struct Program *program, struct Va
   else append_factors(values, &program->blocks);
 }
 
-/* Where the rows of K stand in large blocks: 1 + the block's number, 0 for none, and the place of the right side. */
+/* The location of each row of K in the blocks that are factored at run time. */
 struct BlockRows {
   size_t *number;
   Place *side;
-  size_t *solved; /* of each block: 1 + the column of the Jacobian that its right side holds the solution for */
+  size_t *solved; /* of each block: 1 + the column of the Jacobian whose solution its right side holds; 0 for none */
 };
 
 static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t count) {
@@ -64,8 +64,8 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
 }
 
 /*
- * The accelerations along the direction of the seed, and of the forces of constraints as many as count reaches, to the
- * targets from first on. further: nodes that are computed afterwards, and may hold accelerations.
+ * Appends the directional derivatives of the first count accelerations and constraint forces along the seed, to the
+ * targets from first on. further: nodes that are computed afterwards and may depend on accelerations.
  */
 static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count,
                          const Node *further, size_t further_count) {
@@ -100,7 +100,7 @@ static struct Routine *directional_routine(const struct Program *program, struct
   return routine;
 }
 
-/* In large blocks the multipliers are where the solutions are. */
+/* Solves for the multipliers of the blocks that are factored at run time; their symbols then name the solutions. */
 static void append_multipliers(const struct Program *program, struct Values *values) {
   const struct WeightedGradient *gradient = program->expressions->weighted_gradient;
   for (size_t b = 0; b < program->blocks.count; b++) {
@@ -123,7 +123,10 @@ static struct Routine *weighted_gradient_routine(const struct Program *program, 
   return routine;
 }
 
-/* First the right sides of large blocks, of which a column has all rows or none; then their solutions. */
+/*
+ * Appends a column of the Jacobian: copies its right sides, which a column has for all rows of a block or for none,
+ * then solves each block and copies the solutions.
+ */
 static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
                                    struct BlockRows *rows) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
@@ -142,7 +145,7 @@ static void append_jacobian_column(const struct Program *program, struct Values 
   }
 }
 
-/* The right sides of constraints stand by columns. */
+/* Copies the right sides of the constraints in this column; *next runs through the list, which is sorted by columns. */
 static void append_constraint_sides(const struct Program *program, struct Values *values, size_t column,
                                     const struct BlockRows *rows, size_t *next) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
@@ -169,7 +172,7 @@ static struct Routine *jacobian_routine(const struct Program *program, struct Va
   return routine;
 }
 
-/* Rows of A, B and c. */
+/* Builds linear(): row i holds row i of A, row i of B, and c_i. */
 static struct Routine *linear_routine(const struct Program *program, struct Values *values) {
   const struct LinearSystem *linear = program->expressions->linear;
   struct Routine *routine = values_begin(values);
@@ -183,7 +186,7 @@ static struct Routine *linear_routine(const struct Program *program, struct Valu
   return routine;
 }
 
-/* Of the start values that follow, or of their derivatives. Without prepared values, which may not exist. */
+/* Builds start values or their directional derivatives. Uses no prepared values, as prepare() may fail. */
 static struct Routine *starts_routine(const struct Program *program, struct Values *values, const Node *nodes) {
   const struct Interface *interface = program->interface;
   struct Routine *routine = values_begin(values);

@@ -1,11 +1,11 @@
-/* The functions of the generated code: a row for each, and what builds those of one routine. */
+/* The functions that lagc generates: declaration, field in struct Lagrangian, and builder of the instructions. */
 #pragma once
 
 #include "program/values/values.h"
 
 struct Program;
 
-/* Those of one routine come first, in the order in which they are built and written. */
+/* Functions with one instruction list come first, in the order in which they are built and written. */
 enum FunctionName {
   FUNCTION_PREPARE,
   FUNCTION_INITIAL_STATE,
@@ -22,11 +22,12 @@ enum FunctionName {
   FUNCTION_RESPOND,
   FUNCTION_START_POSITIONS,
   FUNCTION_START_VELOCITIES,
-  LAGRANGIAN_ROUTINES, /* those of struct Lagrangian; those of struct SwitchTable are statements always */
+  /* before: struct Lagrangian; from here on: struct SwitchTable, as statements unless switches_are_table */
+  LAGRANGIAN_ROUTINES,
   FUNCTION_INDICATORS = LAGRANGIAN_ROUTINES,
   FUNCTION_ROUNDINGS,
   FUNCTION_SWITCHING_VALUES,
-  ROUTINE_COUNT, /* the others have several routines, or are one of many */
+  ROUTINE_COUNT, /* from here on: functions with several instruction lists, or one of several of their kind */
   FUNCTION_START = ROUTINE_COUNT,
   FUNCTION_SERIES,
   FUNCTION_LIMIT,
@@ -35,34 +36,34 @@ enum FunctionName {
   FUNCTION_RESULT,
   FUNCTION_RESULT_ALONG,
   FIELD_COUNT,
-  FUNCTION_RESULTS = FIELD_COUNT, /* which result() calls */
+  FUNCTION_RESULTS = FIELD_COUNT, /* called by result() for a group of variables */
   FUNCTION_COUNT
 };
 
 enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
 
-/* Where a function finds or leaves accelerations. */
+/* Where a function reads or leaves the accelerations: its workspace, the array that it fills, or an argument. */
 enum Accelerations { IN_WORKSPACE, IN_TARGET, IN_ARGUMENT };
 
-/* struct Lagrangian itself, a group of it, or struct SwitchTable. */
+/* The struct that has the function's field: struct Lagrangian, a table in it, or struct SwitchTable. */
 enum FunctionGroup { IN_LAGRANGIAN, IN_RESULTS, IN_TAYLOR, IN_IMPLICIT, IN_CONSTRAINTS, IN_SWITCHES };
 
 struct GeneratedFunction {
   const char *comment, *name;
-  const char *arguments; /* as declared */
-  const char *target;    /* the argument that it fills; NULL where a value is returned */
+  const char *arguments; /* the declared parameter list */
+  const char *target;    /* the array argument that it fills; NULL if it returns a value */
   enum Returned returned;
   enum Accelerations accelerations;
-  enum FunctionGroup group;                         /* where its field stands, which has its name */
-  bool (*is_needed)(const struct Program *program); /* by a system; NULL where each does */
-  /* Builds it, where it has one routine; NULL for the others. */
+  enum FunctionGroup group;                         /* the struct that has its field, of the same name */
+  bool (*is_needed)(const struct Program *program); /* true if the system needs it; NULL: every system does */
+  /* Builds its instruction list; NULL for a function that has several. */
   struct Routine *(*build)(const struct Program *program, struct Values *values);
 };
 
 extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
 
-/* Of those that are not of one routine: where the program has what they consist of. */
+/* True if the program needs the function. */
 bool has_function(const struct Program *program, enum FunctionName name);
 
-/* A routine that computes nodes as its targets. */
+/* Builds an instruction list that computes the nodes and copies them to the targets 0 .. count - 1. */
 struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count);

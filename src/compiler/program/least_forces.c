@@ -1,17 +1,25 @@
 /*
- * The forces of least norm are F = J w. Along a direction dF = dJ w + J dw: of some dF that solves the equations, the
- * part dF - dJ w is to be one of least norm again.
+ * Derivatives of the least-norm constraint forces. Where constraints are redundant, J^T F is determined but F is not;
+ * the solution of least norm lies in the range of J, F = J w. Along a direction
+ *
+ *     dF = dJ w + J dw,
+ *
+ * so that dF - dJ w is again in the range of J. Hence, from any dF that solves the differentiated equations, subtract
+ * dJ w, take the least-norm representative of the rest, and add dJ w. w solves K (w; y) = (0; F) with the factors of K
+ * that are there. Costs one solution and one least-norm projection for each block, and the elements of dJ. The rank of
+ * J is constant nearby (G. Golub, V. Pereyra: The differentiation of pseudo-inverses and nonlinear least squares
+ * problems whose variables separate, 1973).
  */
 #include "program/least_forces.h"
 
 #include "base/memory.h"
 
-/* A constraint that is solved for at run time. */
+/* A constraint, with the places of its numbers in the block that is factored at run time. */
 struct Row {
   Place side, target, force;
-  Place turn;     /* its element of dJ w */
-  bool turns;     /* has one */
-  bool is_looped; /* others have forces that no other constraint can take over */
+  Place turn;     /* its element of dJ w, if turns */
+  bool turns;     /* it has a nonzero element of dJ w */
+  bool is_looped; /* in a block that is factored at run time; no other constraint is redundant */
 };
 
 static struct Row *rows_create(const struct Program *program) {
@@ -31,7 +39,7 @@ static struct Row *rows_create(const struct Program *program) {
   return rows;
 }
 
-/* The side of the block holds w then: K (w; y) = (0; F). */
+/* Solves K (w; y) = (0; F) for the block, whose right side then holds w. */
 static void append_origins(const struct Program *program, struct Values *values, size_t number,
                            const struct Row *rows) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
@@ -53,7 +61,7 @@ static Place side_of(const struct Program *program, size_t coordinate) {
   return 0;
 }
 
-/* dJ w, in local variables. */
+/* Computes dJ w into local variables. */
 static void append_turns(const struct Program *program, struct Values *values, struct Row *rows) {
   const struct Elements *jacobian = &program->equations->constraints->jacobian;
   const Node *along = program->expressions->constraints_along;

@@ -1,10 +1,11 @@
-/* The forces of least norm along a direction, where constraints follow from others, as instructions. */
+/* Directional derivatives of the constraint forces of least norm, where constraints are redundant, as instructions. */
 #pragma once
 
 #include "program/program.h"
 
 /*
- * The targets hold the accelerations and some forces of constraints along the direction, and the space of accelerations
- * those at the point, with the forces of least norm: makes the former those of least norm too.
+ * Replaces, in the targets, the directional derivatives of constraint forces by those of the forces of least norm. The
+ * targets must hold one solution of the differentiated equations, and SPACE_ACCELERATION the accelerations and
+ * least-norm forces at the point.
  */
 void append_least_forces_along(const struct Program *program, struct Values *values);

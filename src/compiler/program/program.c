@@ -4,10 +4,11 @@
 #include "program/costs.h"
 
 /*
- * A C compiler takes more than proportionally long for long functions: for so many instructions a second or two, where a
- * table takes a fraction of one. The derivatives and the series of the motion may be as long by themselves: as statements,
- * they take a fifth and three quarters of the time. Those of trees are written in parts, which a compiler takes as long for as
- * they are together; so are directions, if a column of a Jacobian is one.
+ * Lengths, in instructions, above which functions become tables, as compile time grows faster than linearly with the
+ * length of a function. STATEMENT_LIMIT takes a second or two to compile; a table takes a fraction of one. The
+ * derivatives and the series get higher limits, since their statements run in a fifth and in three quarters of the
+ * time of their tables. Code of kinematic trees, and directional derivatives that give the columns of a Jacobian, are
+ * written as several functions, whose compile time grows linearly.
  */
 enum {
   STATEMENT_LIMIT = 6000,
@@ -17,7 +18,7 @@ enum {
   DIRECTIONAL_STATEMENT_LIMIT = 40000
 };
 
-/* Series of up to this many recurrences an order have code of their own for each product: more of it would leave the caches. */
+/* Up to this many recurrences an order, one loop computes all products; a longer one exceeds the instruction cache. */
 enum { RECURRENCES_TOGETHER = 40 };
 
 static void create_results(struct Program *program, struct Values *values) {
@@ -38,7 +39,7 @@ static void create_results(struct Program *program, struct Values *values) {
   }
 }
 
-/* The methods of SUNDIALS need the series for its limits alone. */
+/* A method that takes only the first terms needs the series for the step limits; without limits it needs none. */
 static void create_series(struct Program *program, struct Values *values) {
   const struct Expressions *expressions = program->expressions;
   if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
@@ -87,7 +88,7 @@ bool program_solves_by_statements(const struct Program *program, size_t number) 
   return !program->is_table && block->count <= ROWS && block->constraint_count > 0 && block->force_count == 0;
 }
 
-/* Whether a Jacobian is made of directions, which can be written in parts. */
+/* True if the columns of the Jacobian are directional derivatives that can be written as several functions. */
 static bool has_columns_in_parts(const struct Program *program) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   return jacobian != NULL && jacobian->value == NULL && program->blocks.count == 0;

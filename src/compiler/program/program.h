@@ -1,4 +1,4 @@
-/* The program of an FMU: the routines that the functions of include/lagrangian.h consist of. */
+/* The program of an FMU: the instruction lists (struct Routine) of the functions in include/lagrangian.h. */
 #pragma once
 
 #include "program/expressions/accelerations.h"
@@ -8,12 +8,15 @@
 #include "program/series/series_program.h"
 
 /*
- * How the instructions are written; BY_SIZE: small systems as statements, large ones as tables; ALL_TABLES: what switches
- * too, for a program that carries them out itself.
+ * The form of the generated code. BY_SIZE: small systems as C statements, large ones as instruction tables; TABLES:
+ * tables except for the functions of struct SwitchTable; ALL_TABLES: tables for these too, for an interpreter.
  */
 enum CodeForm { BY_SIZE, STATEMENTS, TABLES, ALL_TABLES };
 
-/* How the middle terms of products are computed (include/series.h): each where it stands, all in one loop, or from a list. */
+/*
+ * How the middle terms of the Cauchy products in an order are computed (include/series.h): at each product, in one
+ * loop for all products, or in a loop over an array of factor pairs.
+ */
 enum ProductForm { PRODUCTS_APART, PRODUCTS_TOGETHER, PRODUCTS_LISTED };
 
 struct Program {
@@ -23,30 +26,33 @@ struct Program {
   const struct Expressions *expressions;
   struct Prepared *prepared;
   struct LoopedBlocks blocks;
-  struct Routine *routines[ROUTINE_COUNT]; /* NULL where a system needs none */
+  struct Routine *routines[ROUTINE_COUNT]; /* NULL for a function that the system does not need */
   struct ResultGroups groups;
-  /* Of each result that leads a group, for the whole group; along by itself, NULL unless it is an output. */
+  /*
+   * Of each result that leads a group: the code of the whole group. result_along, of outputs and calculated
+   * parameters: the directional derivative of the one variable; NULL for others.
+   */
   struct Routine **result, **result_along;
   struct SeriesProgram *series, *output_series;
-  struct SeriesProgram *watched_series; /* NULL where events look at nothing that can hide */
-  bool is_table;                        /* as a whole too large for statements, which a C compiler takes long for */
-  /* So are those parts of the motion in which a simulation spends its time. */
+  struct SeriesProgram *watched_series; /* NULL without limits on the search for events */
+  bool is_table;                        /* too long to compile quickly as statements, see program.c */
+  /* The same for the functions in which a simulation spends its time. */
   bool derivatives_are_table, directional_is_table, series_is_table;
-  bool switches_are_table;   /* so are the functions of struct SwitchTable */
-  enum ProductForm products; /* of an order of the series */
-  const char *solver, *lu; /* names of struct Solver and struct Lu of the runtime, and of their files; NULL for none */
-  struct StepWork work;    /* where there is a solver */
-  struct OperationCounts operations; /* where it hands over */
+  bool switches_are_table;   /* the same for the functions of struct SwitchTable */
+  enum ProductForm products; /* in an order of the series */
+  const char *solver, *lu;   /* names and source files of the runtime's struct Solver and struct Lu; NULL without */
+  struct StepWork work;      /* empty without a solver */
+  struct OperationCounts operations; /* empty unless the method integrates by Taylor series */
 };
 
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
 
-/* Whether the solutions of a block are statements: it has few rows, of which one is a constraint's. */
+/* True if the block has statements of its own: at most 3 rows, some of constraints, and a symmetric matrix. */
 bool program_solves_by_statements(const struct Program *program, size_t block);
 
-/* Visits each routine of the program, with the function that it is of, in the order in which they are built. */
+/* Calls visit for each instruction list and its function, in the order in which they are built. */
 typedef void RoutineVisitor(void *context, enum FunctionName name, const struct Routine *routine);
 void program_visit(const struct Program *program, RoutineVisitor *visit, void *context);
 
-/* How many instructions all routines have together, but those of linear(), which copies alone. */
+/* Returns the number of instructions of all functions except linear(), which only copies. */
 size_t instruction_count(const struct Program *program);

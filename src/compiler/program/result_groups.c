@@ -7,25 +7,25 @@
 #include "program/values/form.h"
 
 /*
- * Things that need fewer nodes are computed by themselves; so many results of a group at most stand in an array; so many
- * groups are open at a time, as those of frames and of bodies, which come by turns.
+ * LONG_ENOUGH: objects that need fewer nodes stay by themselves. SIZE_LIMIT: results in a group, whose values stand in
+ * a local array. OPEN_GROUPS: groups that objects can join at a time, since frames and bodies alternate.
  */
 enum { LONG_ENOUGH = 1000, SIZE_LIMIT = 1024, OPEN_GROUPS = 4 };
 
-/* A group that things may join, and the nodes that it needs. */
+/* A group that objects can still join, and the nodes that it needs. */
 struct Group {
   size_t leader, size;
-  bool *needs; /* each node of the graph */
+  bool *needs; /* indexed by node */
   struct NodeList needed;
-  size_t shortest; /* how many nodes the thing needs that needs the fewest */
+  size_t shortest; /* the node count of the object that needs the fewest */
 };
 
 struct OpenGroups {
   struct Group groups[OPEN_GROUPS];
-  size_t next; /* that a new one takes the place of */
+  size_t next; /* index of the group that the next new one replaces */
 };
 
-/* Whether the thing whose nodes the cone has may join the group: not where one of both would take half as long again. */
+/* True if the object in the cone may join: the group then needs at most 1.5 times the nodes of each object. */
 static bool may_join(const struct Cone *cone, const struct Group *group, size_t things) {
   size_t shortest = smaller(cone->count, group->shortest), count = group->needed.count;
   if (group->size == 0 || group->size + things > SIZE_LIMIT) return false;
@@ -51,7 +51,7 @@ static void add_needs(const struct Cone *cone, struct Group *group) {
   }
 }
 
-/* The group that the thing joins or, in place of the one that was begun first, begins. */
+/* Returns the group that the object joins, or a new one in place of the oldest. */
 static struct Group *find_group(const struct Needs *needs, struct OpenGroups *open, size_t leader, size_t things) {
   for (size_t i = 0; i < OPEN_GROUPS; i++)
     if (may_join(needs->cone, &open->groups[i], things)) return &open->groups[i];
@@ -61,7 +61,7 @@ static struct Group *find_group(const struct Needs *needs, struct OpenGroups *op
   return group;
 }
 
-/* Things whose results are first .. first + size - 1. */
+/* Assigns the object with the results first .. first + size - 1 to a group. */
 static void place_thing(struct ResultGroups *groups, struct Needs *needs, const Node *result, size_t first, size_t size,
                         struct OpenGroups *open) {
   const struct Cone *cone = needs->cone;
@@ -84,7 +84,7 @@ struct ResultGroups result_groups_of(const struct Expressions *expressions) {
   const struct Graph *graph = expressions->model->graph;
   struct ResultGroups groups = groups_of_one(interface->result_count);
   struct Needs *needs = needs_create(graph);
-  struct OpenGroups open[2] = {0}; /* without and with accelerations, which cannot always be had */
+  struct OpenGroups open[2] = {0}; /* without and with accelerations, which may be undetermined */
   for (size_t i = 0; i < interface->count && graph_limit(graph) == NULL; i++) {
     const struct InterfaceVariable *variable = &interface->variables[i];
     size_t first = variable->entry.index, size = 1;

@@ -1,22 +1,23 @@
-/* Which computed variables one routine computes together. */
+/* Groups of computed variables: one function computes all variables of a group together. */
 #pragma once
 
 #include "program/expressions/expressions.h"
 
 struct ResultGroups {
-  size_t count;           /* of results */
-  size_t *leader, *place; /* of each: the first of those that are computed together, and its place among them */
+  size_t count;           /* number of results */
+  size_t *leader, *place; /* of each result: the first one of its group, and its index in the group */
 };
 
 /*
- * The components of one thing, such as a point's x, y and z, are a group. So are things that need much and the same, as the
- * bodies at the end of a chain do, as long as none costs half as much again as by itself: the routines of a chain are
- * then as long together as the chain, and not as its square.
+ * Groups the components of one object, such as a point's x, y and z. Objects join a group if they need many and mostly
+ * the same nodes, as the bodies at the end of a chain do, and if the group needs at most 1.5 times the nodes of each
+ * object alone. The code of a chain is then as long as the chain, not as its square. Greedy: each object joins the
+ * first of the open groups that fits; O(objects * nodes).
  */
 struct ResultGroups result_groups_of(const struct Expressions *expressions);
 
-/* Each by itself. */
+/* Returns groups of one result each. */
 struct ResultGroups groups_of_one(size_t count);
 
-/* The results of the group of this leader; a new list. */
+/* Returns a new list of the results in the group of this leader. */
 struct NodeList group_members(const struct ResultGroups *groups, const Node *result, size_t leader);

@@ -1,3 +1,11 @@
+/*
+ * Accelerations a and constraint forces F from K (a; F) = b with K = (M J^T; J 0), block by block; the blocks are the
+ * connected components of the rows that K couples. Small blocks and kinematic trees are solved symbolically
+ * (mechanics/mass_matrix/) and appear as expressions. Each other block is factored at run time, K = L D L^T without
+ * pivoting (ldlt.h, saddle.h), in the sparse pattern of a minimum-degree elimination in which each constraint follows
+ * its coordinates. A factorization costs the sum of the squares of the column lengths of L, a solution twice the
+ * elements of L. A. George, J. W. H. Liu: Computer Solution of Large Sparse Positive Definite Systems, 1981.
+ */
 #include "program/expressions/accelerations.h"
 
 #include "base/memory.h"
@@ -71,10 +79,10 @@ void append_solution(struct Values *values, const struct LoopedBlocks *blocks, s
   routine_append(values->routine, SOLVE, (Place)number, 0, 0, 0);
 }
 
-/* Multiplications, divisions and additions of factoring a block and solving it once. */
+/* Returns the arithmetic operations of one factorization and one solution of the block. */
 static size_t factor_operations(const struct InertiaBlock *block) {
   size_t elements = block->start[block->count], operations = block->count + 4 * (elements - block->count);
-  size_t *below = allocate(block->count, sizeof *below); /* the diagonal of each column */
+  size_t *below = allocate(block->count, sizeof *below); /* the elements of each column of L, diagonal included */
   for (size_t i = 0; i < elements; i++) below[block->column[i]]++;
   for (size_t j = 0; j < block->count; j++) operations += (below[j] - 1) * below[j] + 2 * (below[j] - 1);
   return operations;
@@ -105,12 +113,12 @@ void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
   }
 }
 
-/* True if the forces of the block's constraints are those of least norm where they are not determined. */
+/* True if undetermined constraint forces of the block are to be those of least norm. */
 static bool has_least_forces(const struct InertiaBlock *block) {
   return block->constraint_count > 0 && block->force_count == 0;
 }
 
-/* Factors a large block and solves it for its accelerations. */
+/* Factors a block, solves it, and copies the solution to SPACE_ACCELERATION. */
 static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
                          size_t number, bool with_forces) {
   const struct LoopedBlock *looped = &blocks->items[number];

@@ -10,7 +10,7 @@
 #include "program/expressions/jacobian.h"
 #include "program/expressions/lu_pattern.h"
 
-/* A seed symbol for every symbol that results can depend on; returned in the order of the graph's symbols. */
+/* Returns a seed symbol for each of the graph's symbols, in their order; ZERO if results cannot depend on it. */
 static Node *create_seeds(struct Graph *graph) {
   static const enum SymbolKind seed_kinds[] = {
       [PARAMETER] = SEED_PARAMETER,       [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
@@ -22,7 +22,7 @@ static Node *create_seeds(struct Graph *graph) {
   for (size_t i = 0; i < count; i++) {
     enum SymbolKind kind = graph->symbols[i].kind;
     if (kind == DISPLACEMENT || kind == REACTION || kind == MODE || kind == DUMMY)
-      continue; /* 0, replaced, held, or gone */
+      continue; /* these are zero, replaced, constant along a direction, and eliminated */
     seeds[i] =
         graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, format_text("d %s", graph->symbols[i].name));
   }
@@ -30,8 +30,10 @@ static Node *create_seeds(struct Graph *graph) {
 }
 
 /*
- * Along a direction, 0 = d (M a - right_side) = M da + d(M a - right_side)|a held; explicit accelerations are
- * differentiated as they are. In large blocks result holds the right side of this system.
+ * Forward mode through the implicit equations R = M a - b = 0: along a direction, M da = -dR at constant a. Explicit
+ * accelerations are differentiated directly. result holds da; in blocks that are factored at run time, the right side
+ * -dR. Costs one forward sweep and one solution. A. Griewank, A. Walther: Evaluating Derivatives, 2nd ed., 2008,
+ * section 3.1.
  */
 static void accelerations_along(struct Graph *graph, const struct Equations *equations, const Node *seeds,
                                 Node *result) {
@@ -45,7 +47,7 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
     if (is_looped(equations, i)) result[i] = right[i];
 }
 
-/* Replaces the right sides of the coordinates in a tree by the changes. */
+/* Solves a kinematic tree; replaces the right sides of its coordinates by the solution. */
 static void solve_tree(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block,
                        Node *side) {
   Node *x = allocate(block->count, sizeof *x);
@@ -70,8 +72,8 @@ static void solve_trees(struct Graph *graph, const struct Equations *equations, 
 }
 
 /*
- * K (change; forces) = (-M moved; -constraint): with the total of the changes in moved, the limit has the constraints
- * fulfilled and M moved + J^T forces = 0, the least way in the metric of M.
+ * Right sides of K (change; forces) = (-M moved; -constraint), where moved is the sum of the changes. In the limit the
+ * constraints hold and M moved + J^T forces = 0: the nearest point in the metric of M.
  */
 static void create_corrections(struct Expressions *expressions, const Node *seeds) {
   const struct Model *model = expressions->model;
@@ -94,7 +96,7 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
   solve_trees(graph, equations, corrections);
 }
 
-/* Adds what a push along a gap, or a velocity, does along the coordinates. */
+/* Adds the generalized impulse of an impulse seed along the gradient of a gap, or of a velocity. */
 static void add_push(const struct Model *model, Node along, enum SymbolKind kind, Node seed, Node *push) {
   struct Graph *graph = model->graph;
   struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
@@ -105,7 +107,7 @@ static void add_push(const struct Model *model, Node along, enum SymbolKind kind
   }
 }
 
-/* Contacts push along their gaps, frictions along their velocities. */
+/* Sums the generalized impulses: contacts act along their gaps, frictions along their velocities. */
 static void create_pushes(struct Expressions *expressions, const Node *seeds) {
   const struct Model *model = expressions->model;
   const struct Switches *switches = &model->switches;
@@ -157,7 +159,7 @@ static void create_initial(struct Expressions *expressions, const Node *seeds) {
   derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
 }
 
-/* Rates of states may hold the accelerations and forces that are found at run time, and so may their derivatives. */
+/* Rates of first-order states, and their derivatives, may depend on accelerations and forces found at run time. */
 static void create_rates(struct Expressions *expressions, const Node *seeds) {
   const struct Model *model = expressions->model;
   const struct NodeList *rates = &expressions->equations->rates;
@@ -225,7 +227,7 @@ static void create_jacobian(struct Expressions *expressions, struct Diagnostics 
                           expressions->equations->count + expressions->equations->rates.count);
 }
 
-/* The methods of SUNDIALS take the first coefficients alone, to see how far a step may go. */
+/* Other methods than Taylor's take the first terms only, for the limits of their steps. */
 static void create_series(struct Expressions *expressions, struct Diagnostics *diagnostics) {
   const struct Model *model = expressions->model;
   const struct Equations *equations = expressions->equations;
@@ -244,7 +246,7 @@ static void create_output_series(struct Expressions *expressions) {
   expressions->output_series = series_plan_of_outputs(model->graph, expressions->result, count);
 }
 
-/* A function that is folded has no series where it turns, and hides nothing. */
+/* Skips expressions with a kink that has no series; they need no limit. */
 static void create_watched_series(struct Expressions *expressions) {
   const struct SwitchingExpressions *switching = expressions->equations->switching;
   struct Graph *graph = expressions->model->graph;

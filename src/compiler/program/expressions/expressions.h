@@ -1,4 +1,4 @@
-/* All expressions that the generated code computes: what derivation gave, differentiated once more where needed. */
+/* All expressions that the generated code computes: the equations of motion and their derivatives. */
 #pragma once
 
 #include "interface/interface.h"
@@ -11,64 +11,67 @@
 #include "algebra/node_list.h"
 
 /*
- * d derivatives / d state by columns: column j has elements start[j] .. start[j + 1] - 1, their rows ascending. In
- * blocks of M that are factored at run time, the values are right sides: each column has all rows of such a block, or
- * none. Right sides of constraints are no elements, but apart.
+ * d derivatives / d state in compressed columns: column j has elements start[j] .. start[j + 1] - 1, rows ascending.
+ * In rows of a block that is factored at run time, value holds right sides, and each column has all rows of the block
+ * or none. Right sides of constraint rows are in sides, not among the elements.
  */
 struct JacobianExpressions {
   size_t *start, *row;
-  Node *value; /* NULL where derivatives along the directions of the state give the columns */
+  Node *value; /* NULL: directional derivatives along each state give the columns */
   size_t count;
-  struct ConstraintSide *sides; /* by columns */
+  struct ConstraintSide *sides; /* ascending by columns */
   size_t side_count;
-  struct Elimination *factors; /* of a method that factors; NULL for none, and where full matrices are cheaper */
+  struct Elimination *factors; /* of a method that factors; NULL: full matrices are cheaper, or nothing is factored */
 };
 
-/* The right side of a constraint in a column of the Jacobian. */
+/* The right side of a constraint row in a column of the Jacobian. */
 struct ConstraintSide {
   size_t column, constraint;
   Node value;
 };
 
 /*
- * Right sides of K for what brings the state back to the constraints, one for each row: that of the positions rests on
- * the seed of the state, which holds by how much they have been moved.
+ * Right sides of the projection onto the constraints, one for each row of K. position depends on the seed of the
+ * state, which holds the corrections so far.
  */
 struct Corrections {
-  Node *position, *velocity; /* in trees, of coordinates, the solutions */
-  Node *pivot;               /* of each constraint in a tree, see articulated.h; ZERO of others */
-  Node *slope;               /* of each constraint, see constraint_slopes() */
-  Node *push; /* of each coordinate: what the seeds of the forces of contacts and frictions push along it */
+  Node *position, *velocity; /* of coordinates in kinematic trees: the solutions themselves */
+  Node *pivot;               /* of each constraint in a kinematic tree, see articulated.h; ZERO of others */
+  Node *slope;               /* of each constraint: the length of its row of J, see constraint_slopes() */
+  Node *push; /* of each coordinate: the generalized impulse of the contact and friction impulses in the seeds */
 };
 
 struct Expressions {
   const struct Model *model;
   const struct Equations *equations;
   const struct Interface *interface;
-  struct LinearSystem *linear;          /* NULL unless the solver is exact */
-  struct SeriesPlan *series;            /* of the motion; NULL for exact and without coordinates */
-  struct SeriesPlan *output_series;     /* NULL where outputs have no derivatives above the first, or are variables */
-  struct SeriesPlan *watched_series;    /* of what events look at; NULL where nothing switches */
-  Node *along;                          /* derivative of the accelerations, or right sides for it, of each row */
-  Node *constraints_along;              /* of the elements of the constraints' J */
-  struct Corrections corrections;       /* NULL without constraints */
-  Node *unknowns, *unknowns_along;      /* of each row: the symbol of its acceleration or force, and of its seed */
-  Node *rates_along;                    /* of the rates of the states behind the velocities */
-  struct JacobianExpressions *jacobian; /* NULL unless the solver asks */
-  Node *initial, *initial_along;        /* one for each state: its start where it follows, else ZERO */
-  Node *result, *result_along;          /* one for each result; along is ZERO unless it is an output */
-  struct WeightedGradient *weighted_gradient; /* NULL unless asked for, and where there is none */
+  struct LinearSystem *linear;       /* NULL unless the method needs a linear system */
+  struct SeriesPlan *series;         /* of the motion; NULL if the method takes no series */
+  struct SeriesPlan *output_series;  /* NULL unless outputs have time derivatives above the first */
+  struct SeriesPlan *watched_series; /* of the expressions that events depend on; NULL without events */
+  /* of each row: directional derivative of its acceleration, or the right side for it in factored blocks */
+  Node *along;
+  Node *constraints_along;        /* directional derivatives of the elements of J */
+  struct Corrections corrections; /* empty without constraints */
+  /* of each row: the symbol of its acceleration or force, and of its directional derivative */
+  Node *unknowns, *unknowns_along;
+  Node *rates_along;                    /* directional derivatives of the rates of the first-order states */
+  struct JacobianExpressions *jacobian; /* NULL unless the method needs it */
+  Node *initial, *initial_along;        /* one for each state: its start value if that is an expression, else ZERO */
+  /* one for each result; result_along is ZERO unless it is an output or a calculated parameter */
+  Node *result, *result_along;
+  struct WeightedGradient *weighted_gradient; /* NULL unless requested, and if K is not symmetric */
 };
 
-/* What lagc can be asked for beside what every FMU has. */
+/* Optional parts of an FMU. */
 struct Extras {
-  bool adjoint; /* gradients by a reverse sweep */
+  bool adjoint; /* gradients in reverse mode */
 };
 
-/* Reports errors where the chosen solver does not fit the system; NULL then. */
+/* Derives all expressions. Reports an error if the chosen solver does not fit the system, and returns NULL then. */
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
                                        const struct Interface *interface, struct Extras extras,
                                        struct Diagnostics *diagnostics);
 
-/* All nodes that are computed. */
+/* Returns all nodes that the generated code computes. */
 struct NodeList expressions_targets(const struct Expressions *expressions);

@@ -1,3 +1,14 @@
+/*
+ * The Jacobian d(derivatives)/d(state), exact. With R = M a - b = 0, each column of the accelerations solves
+ *
+ *     M da/dx_j = -dR/dx_j   at constant a.
+ *
+ * One reverse sweep for each row of R gives its gradient, so that only nonzero elements are formed; the columns are
+ * then solved symbolically in small blocks, and by the factors of M at run time in others. For kinematic trees,
+ * directional derivatives along each state (forward mode) are cheaper: only the pattern is found here, from the states
+ * that each block depends on. The number of elements is bounded by JACOBIAN_LIMIT. A. Griewank, A. Walther: Evaluating
+ * Derivatives, 2nd ed., 2008, chapters 3 and 7.
+ */
 #include "program/expressions/jacobian.h"
 
 #include <stdlib.h>
@@ -36,13 +47,13 @@ static void append_gradient(struct ElementList *list, struct Graph *graph, size_
     append(list, row, column_of(graph, coordinates, gradient.symbols[i]), gradient.values[i]);
 }
 
-/* The elements of one column in the rows of a block: M da = -d(M a - right_side), solved where the block is small. */
+/* Appends one column of a block: its solution, or right sides if the block is factored at run time. */
 static void append_column(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                           const struct InertiaBlock *block, size_t column, Node *right) {
   if (block->is_unrolled) block_solve(graph, block, right);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
-    if (row >= equations->count) row += equations->rates.count; /* behind all states */
+    if (row >= equations->count) row += equations->rates.count; /* constraint rows follow all states */
     if (!block->is_unrolled || right[i] != ZERO) append(list, equations->count + row, column, right[i]);
   }
 }
@@ -63,7 +74,7 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
   }
 }
 
-/* Rows beyond the states are those of constraints. */
+/* Sorts the elements into compressed columns. Rows beyond the states are constraint rows. */
 static struct JacobianExpressions *by_columns(struct ElementList *list, size_t columns) {
   struct JacobianExpressions *jacobian = allocate(1, sizeof *jacobian);
   if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare_positions);
@@ -86,7 +97,7 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   return jacobian;
 }
 
-/* Collects in the graph's cone what the equations of a block rest on. */
+/* Collects in the graph's cone all nodes that the equations of the block depend on. */
 static void collect_block(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block) {
   Node *residuals = allocate(block->count, sizeof *residuals);
   for (size_t i = 0; i < block->count; i++) residuals[i] = equations->residual[block->coordinates[i]];
@@ -97,7 +108,7 @@ static bool is_symbol_of(const struct Graph *graph, Node node, unsigned kinds) {
   return graph->vertices[node].operation == SYMBOL && (graph->vertices[node].kinds & kinds) != 0;
 }
 
-/* An element of the pattern for each state that the nodes rest on, in all rows of the block. */
+/* Appends the pattern of a block: each state that its equations depend on, in all its rows. */
 static void append_pattern(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
                            const struct InertiaBlock *block) {
   const struct Cone *cone = graph->cone;
@@ -111,7 +122,7 @@ static void append_pattern(struct ElementList *list, struct Graph *graph, const 
   }
 }
 
-/* Marks the columns of the states that the cone holds. */
+/* Marks the columns of the states in the cone. */
 static void mark_columns(const struct Graph *graph, size_t coordinates, bool *is_marked) {
   const struct Cone *cone = graph->cone;
   for (size_t k = 0; k < cone->count; k++)
@@ -119,7 +130,7 @@ static void mark_columns(const struct Graph *graph, size_t coordinates, bool *is
       is_marked[column_of(graph, coordinates, cone->nodes[k])] = true;
 }
 
-/* The rows of the rates where some hold accelerations or forces, and so all states of the blocks of these. */
+/* Appends the pattern of first-order states. A rate that depends on an acceleration depends on its block's states. */
 static void append_pattern_of_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
   size_t n = equations->count, states = 2 * n + equations->rates.count;
   for (size_t i = 0; i < equations->rates.count; i++) {
@@ -140,15 +151,15 @@ static void append_pattern_of_rates(struct ElementList *list, struct Graph *grap
   }
 }
 
-/* The rows behind the velocities. */
+/* Appends the rows of the first-order states. */
 static void append_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
   for (size_t i = 0; i < equations->rates.count; i++)
     append_gradient(list, graph, equations->count, equations->rates.nodes[i], 2 * equations->count + i);
 }
 
 /*
- * Where accelerations are found by articulated inertias, directions cost less than a formula for each element; where rates of states
- * hold what is found at run time, directions know it.
+ * Returns the pattern alone, for a Jacobian by directional derivatives: of kinematic trees, where they cost less than
+ * formulas for each element, and of rates that depend on values found at run time.
  */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
   struct ElementList list = {0};

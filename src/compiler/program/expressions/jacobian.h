@@ -1,10 +1,10 @@
-/* The Jacobian matrix of the motion, from gradients of the equations one by one. */
+/* The Jacobian matrix of the motion, differentiated symbolically, element by element. */
 #pragma once
 
 #include "program/expressions/expressions.h"
 
-/* More elements than this are refused: where M couples all coordinates, each depends on all others. */
+/* Largest number of elements; a dense M makes each acceleration depend on all states. Bounds memory and code size. */
 enum { JACOBIAN_LIMIT = 2500000 };
 
-/* NULL where there are more than JACOBIAN_LIMIT elements. */
+/* Returns the Jacobian; NULL if it would have more than JACOBIAN_LIMIT elements. */
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations);

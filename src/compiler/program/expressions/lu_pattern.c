@@ -1,13 +1,20 @@
+/*
+ * Sparse LU for implicit methods. The stage systems of Radau IIA, with the coordinates eliminated, have the matrices
+ *
+ *     mu^2 - mu df/dv - df/dq
+ *
+ * for several complex mu, where f are the accelerations; rows of first-order states have mu in place of mu^2. All
+ * share one pattern: the elements of df/dv and df/dq, made symmetric, and the diagonal. A minimum-degree elimination
+ * (mechanics/mass_matrix/elimination.h) gives the order and the fill-in. T. A. Davis: Direct Methods for Sparse Linear
+ * Systems, 2006, chapter 7.
+ */
 #include "program/expressions/lu_pattern.h"
 
 #include <stdlib.h>
 
 #include "base/memory.h"
 
-/*
- * Where a matrix of Radau IIA has elements, in the lower triangle, each position once: its rows are those of the velocities and of the
- * states behind them, its columns those of the coordinates and these states. Returns the count.
- */
+/* Finds the positions in the lower triangle of the symmetric pattern, each once and sorted. Returns their number. */
 static size_t find_positions(const struct JacobianExpressions *jacobian, size_t coordinates, size_t rows,
                              struct Position *positions) {
   size_t found = 0, count = 0;
@@ -25,7 +32,7 @@ static size_t find_positions(const struct JacobianExpressions *jacobian, size_t 
   return count;
 }
 
-/* For rows of masses, springs and dampers, sparse factors were measured to be faster from 15 masses on. */
+/* True if sparse factors are cheaper. Measured on chains of masses, springs and dampers. */
 static bool is_sparse(const struct Elimination *pattern, size_t rows) {
   return rows >= 16 && pattern->start[rows] <= rows * rows / 6;
 }

@@ -24,14 +24,14 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
   }
 }
 
-/* The time derivative of a node that is linear in time, whatever the motion; ZERO where it is not. */
+/* Returns the time derivative of a node that is linear in time and independent of the state; ZERO for other nodes. */
 static Node slope_of(struct Graph *graph, Node node, Node time) {
   if ((graph->vertices[node].kinds & ~(1u << PARAMETER | 1u << MODE)) != 1u << TIME) return ZERO;
   Node slope = derivative_by(graph, node, time);
   return graph_is_constant_in_time(graph, slope) ? slope : ZERO;
 }
 
-/* The slopes of what functions with an integral for their series take, as targets too. */
+/* Finds the slopes of the operands of functions with the recurrence INTEGRAL, and adds them to the targets. */
 static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
   Node time = ZERO;
   for (size_t i = 0; i < graph->symbol_count; i++)
@@ -50,7 +50,10 @@ static void append_slopes(struct SeriesPlan *plan, struct Graph *graph) {
   for (size_t i = size; i < graph->count; i++) plan->slope[i] = ZERO;
 }
 
-/* Adds the auxiliary nodes of all nodes that the targets need, and theirs, until there are no new ones. */
+/*
+ * Adds the auxiliary nodes of all needed nodes, and those of the added ones, until none is new. Ends, as auxiliary
+ * nodes of auxiliary nodes lead back: sin(x) needs cos(x), which needs sin(x).
+ */
 static void close(struct SeriesPlan *plan, struct Graph *graph) {
   bool *visited = NULL;
   size_t known = 0;
@@ -71,7 +74,7 @@ static void close(struct SeriesPlan *plan, struct Graph *graph) {
   }
 }
 
-/* The plan with its targets given. */
+/* Completes a plan whose targets are given. */
 static struct SeriesPlan *finish(struct SeriesPlan *plan, struct Graph *graph) {
   plan->root_count = plan->targets.count;
   close(plan, graph);

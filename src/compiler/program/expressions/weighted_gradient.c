@@ -1,3 +1,13 @@
+/*
+ * Adjoints by reverse mode. The weighted sum s = w^T dx/dt + r^T y of state derivatives and outputs depends on the
+ * known values x, and on accelerations and forces a, which solve R = K a - b = 0. By the implicit function theorem
+ *
+ *     K lambda = (ds/da)^T,   grad s = ds/dx - lambda^T dR/dx   at constant a and lambda,
+ *
+ * where K is symmetric, so that its factors serve. Each term is one reverse sweep, so that all elements of the
+ * gradient cost a small multiple of one evaluation and one solution, however many parameters there are. A. Griewank,
+ * A. Walther: Evaluating Derivatives, 2nd ed., 2008, section 3.2.
+ */
 #include "program/expressions/weighted_gradient.h"
 
 #include "algebra/differentiate.h"
@@ -7,7 +17,7 @@
 
 enum { KNOWN_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE | 1 << INPUT | 1 << PARAMETER | 1 << TIME };
 
-/* Expressions, and what each counts by. */
+/* A sum of expressions times weights. */
 struct WeightedSum {
   struct NodeList targets, weights;
 };
@@ -23,7 +33,7 @@ static bool is_symmetric(const struct Inertia *inertia) {
   return true;
 }
 
-/* The outputs, and the rates of the states behind the velocities. */
+/* Returns the outputs and the rates of the first-order states, weighted by their seeds. */
 static struct WeightedSum what_is_read(struct Graph *graph, const struct Equations *equations,
                                        const struct Interface *interface, const Node *result) {
   struct WeightedSum sum = {0};
@@ -40,8 +50,8 @@ static struct WeightedSum what_is_read(struct Graph *graph, const struct Equatio
 }
 
 /*
- * Along any direction K da = -d(K a - right_side)|a held, so that side^T da = -multiplier^T d(K a - right_side). What is
- * multiplied stays as it is while the gradient is taken.
+ * Appends -lambda^T R, or explicit accelerations with their weights. Blocks that are solved at run time have symbols
+ * for lambda. The weights stay constant while the gradient is taken.
  */
 static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, const struct Model *model,
                                  const struct Equations *equations, const Node *seeds,
@@ -58,7 +68,7 @@ static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, c
   }
 }
 
-/* The place of a symbol among the elements. */
+/* Returns the index of a symbol's element in the gradient. */
 static size_t place_of(const struct Model *model, const struct Interface *interface, const struct Symbol *symbol) {
   size_t index = (size_t)symbol->index, n = model->coordinates.count, states = interface->state_count;
   switch ((int)symbol->kind) {

@@ -1,23 +1,21 @@
-/*
- * The gradient of one number, a weighted sum of the derivatives of the state and of the outputs, by all that these depend
- * on: what a reverse sweep gives in the time of a few evaluations, however many parameters there are.
- */
+/* The gradient of a weighted sum of state derivatives and outputs, in reverse mode. */
 #pragma once
 
 #include "interface/interface.h"
 #include "mechanics/equations.h"
 
 struct WeightedGradient {
-  Node *side; /* of each row of K: what the sum depends on its acceleration or force by */
-  Node
-      *multiplier; /* of each row: the solution of K multiplier = side; symbols in blocks that are solved at run time */
-  Node *elements;  /* by the state, the inputs, the parameters and modes, and time */
-  size_t count;    /* of these */
+  Node *side; /* of each row of K: the partial derivative of the sum by its acceleration or force */
+  /* of each row: the solution of K multiplier = side; symbols in blocks that are solved at run time */
+  Node *multiplier;
+  Node *elements; /* by state, inputs, parameters and modes, and time, in this order */
+  size_t count;   /* number of elements */
 };
 
 /*
- * The weights are seeds: those of the state for its derivatives, and new symbols for results, of which result holds the
- * nodes. seeds: of each symbol of the graph. NULL where forces follow from others, so that K is not symmetric.
+ * Derives the gradient. Weights are the seeds of the state, for its derivatives, and new symbols SEED_RESULT for the
+ * outputs. seeds: for each symbol of the graph. Returns NULL if some forces depend on others, as K is not symmetric
+ * then.
  */
 struct WeightedGradient *weighted_gradient_create(const struct Model *model, const struct Equations *equations,
                                                   const struct Interface *interface, const Node *result,

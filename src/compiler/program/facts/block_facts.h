@@ -1,4 +1,4 @@
-/* What tables tell of large blocks of the mass matrix. */
+/* Metadata of the blocks that are factored at run time, for instruction tables. */
 #pragma once
 
 #include "program/program.h"
@@ -8,5 +8,5 @@ struct BlockNumbers {
   size_t count;
 };
 
-/* The numbers of a block's coordinates, from 1 on, and negative ones of its constraints, from -1 on; see also oblique.h. */
+/* Returns the numbers of a block's rows: 1 + index of coordinates, -1 - index of constraints; see also oblique.h. */
 struct BlockNumbers block_numbers_of(const struct InertiaBlock *block, size_t coordinates);

@@ -3,7 +3,9 @@
 #include "algebra/cone.h"
 #include "base/memory.h"
 
-/* Marks the inputs that the constraint holds, or whose derivatives it holds. Returns their names, NULL for none. */
+/*
+ * Marks the inputs that the constraint contains, directly or by their derivatives. Returns their names, NULL for none.
+ */
 static char *mark_inputs(const struct Model *model, Node constraint, bool *is_guide) {
   const struct Graph *graph = model->graph;
   struct Cone *cone = graph->cone;

@@ -1,7 +1,7 @@
-/* What struct Lagrangian tells of constraints. */
+/* Metadata of the constraints for struct Lagrangian. */
 #pragma once
 
 #include "program/program.h"
 
-/* Without the functions; empty for a system without constraints. */
+/* Returns the table without its functions; empty without constraints. */
 struct ConstraintTable constraint_facts_of(const struct Program *program);

@@ -1,10 +1,10 @@
-/* What struct Lagrangian tells of a system beside its functions. */
+/* Metadata of a system for struct Lagrangian. */
 #pragma once
 
 #include "program/program.h"
 
 /*
- * Without functions, the solver and other parts of the runtime, the name of the GUID, and what switches. work_count: what tables
- * need, 0 for statements.
+ * Returns the struct without functions, parts of the runtime, GUID and switches. work_count: workspace of tables; 0
+ * for statements.
  */
 struct Lagrangian facts_of(const struct Program *program, size_t work_count);

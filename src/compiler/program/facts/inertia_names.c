@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "interface/symbol_names.h"
 
-/* The elimination of a row rests on the rows of the block up to it. */
+/* Names a block's dependences. The pivot of a row depends on the rows eliminated up to it. */
 static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates,
                        const char **texts) {
   struct SymbolNames names = {0};
@@ -14,7 +14,7 @@ static void name_block(const struct Graph *graph, const struct InertiaBlock *blo
   }
 }
 
-/* The inertia of a link rests on that of the links behind it. */
+/* Names dependences in kinematic trees. The articulated inertia of a link depends on the links behind it. */
 static void name_pivots_of_trees(const struct Graph *graph, const struct Inertia *inertia, const char **texts) {
   const struct Pivot **pivots = allocate(inertia->pivot_count, sizeof(struct Pivot *));
   Node *values = allocate(inertia->pivot_count, sizeof *values);

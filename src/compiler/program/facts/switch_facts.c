@@ -46,7 +46,7 @@ static const struct FrictionFacts *frictions_of(const struct Program *program) {
   return facts;
 }
 
-/* Of the frictions along, whose next ones are those across. */
+/* Adds the planar frictions. Each has two successive components, along and across. */
 static void add_planes(struct SwitchTable *facts, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   struct PlaneFacts *planes = allocate(switches->friction_count, sizeof *planes);
@@ -68,7 +68,7 @@ static struct AssignmentFacts assignment_of(const struct Program *program, Node 
                                   state_place(program->equations->count, symbol)};
 }
 
-/* The events and, one after the other, what they assign. */
+/* Adds the events and the concatenated list of their assignments. */
 static void add_events(struct SwitchTable *facts, const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
   struct EventFacts *events = allocate(facts->event_count, sizeof *events);

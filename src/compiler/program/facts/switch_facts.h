@@ -1,7 +1,7 @@
-/* What struct Lagrangian tells of what switches. */
+/* Metadata of events, contacts and frictions for struct Lagrangian. */
 #pragma once
 
 #include "program/program.h"
 
-/* Without the functions and the laws; empty for a system in which nothing switches. */
+/* Returns the table without functions and laws; empty without events. */
 struct SwitchTable switch_facts_of(const struct Program *program);

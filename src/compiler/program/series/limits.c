@@ -1,3 +1,22 @@
+/*
+ * Step limits by bounds of series. A feature of f(u(t)) whose Taylor coefficients vanish at the start of a step, such
+ * as a pulse of exp(u) or a pole of 1/u, is invisible to the truncated series of f. The argument u is a polynomial in
+ * t whose excursion over a step h,
+ *
+ *     sum over k >= 1 of
+ * u_k
+ *  h^k,
+ *
+ * bounds
+ * u(t) - u_0
+ *  on the complex disc
+ * t
+ *  <= h. The runtime shortens h until the excursion is so small that f has no singularity in the disc and changes at
+ *  most by the factor e^5, so that by Cauchy's estimate its coefficients decay as the truncation assumes. This file
+ *  finds which checks a system needs: one for each rule, argument and guard, shared by all powers of one base. Whole
+ *  powers up to HIGHEST_WIDE_POWER need none. One pass over the nodes; at run time, a check costs a few evaluations
+ *  of a polynomial.
+ */
 #include "program/series/limits.h"
 
 #include <math.h>
@@ -26,27 +45,27 @@ const struct LimitFacts *limit_facts(enum LimitRule rule) {
   return &facts[rule];
 }
 
-/* A check whose rows are still nodes; ZERO for none. */
+/* A check before its rows have places; ZERO for rows that it does not have. */
 struct Check {
   enum LimitRule rule;
   Node rows[2];
   const char *function;
-  Node exponent; /* known at run time alone; ZERO for none */
-  double share;  /* for powers with a number as exponent, else NAN */
-  size_t next;   /* 1 + the next check of the same first row, 0 for none */
+  Node exponent; /* known only at run time; ZERO for none */
+  double share;  /* for powers with a constant exponent, else NAN */
+  size_t next;   /* 1 + the next check with the same first row, 0 for none */
   bool is_covered;
-  Node opener; /* of the gate under which it matters; ZERO for always */
+  Node opener; /* the guard condition under which it applies; ZERO: always */
 };
 
 struct CheckList {
   const struct SeriesBuilder *builder;
   struct Check *items;
   size_t count;
-  size_t *first;                 /* for each node: 1 + the first check of this row, 0 for none */
-  const struct Openers *openers; /* under which the present node matters; NULL for always */
+  size_t *first;                 /* for each node: 1 + the first check with this row, 0 for none */
+  const struct Openers *openers; /* guard conditions of the present node; NULL: always needed */
 };
 
-/* One check serves all powers of a base; of two, the one with the smaller share shortens more. */
+/* Adds a check, or merges it with an equal one. Of two powers of one base, the smaller share is the stricter. */
 static void append_under(struct CheckList *list, struct Check check, Node opener) {
   check.opener = opener;
   size_t *end = &list->first[check.rows[0]];
@@ -64,7 +83,7 @@ static void append_under(struct CheckList *list, struct Check check, Node opener
   list->items[list->count++] = check;
 }
 
-/* A check for each gate under which the present node matters. */
+/* Adds a check for each guard condition of the present node. */
 static void append(struct CheckList *list, struct Check check) {
   const struct Openers *openers = list->openers;
   if (openers == NULL || openers->always) {
@@ -79,7 +98,7 @@ static bool can_have_row(const struct SeriesBuilder *builder, Node node) {
          (builder->is_computed[node] || builder->graph->vertices[node].operation == SYMBOL);
 }
 
-/* base^exponent with constant factors and inner powers of the base taken off, as they do not matter here. */
+/* Strips constant factors and inner powers from base^exponent; they do not change the relative variation. */
 static Node bare_base(const struct SeriesBuilder *builder, Node base, double *exponent) {
   const struct Graph *graph = builder->graph;
   for (;;) {
@@ -98,7 +117,7 @@ static Node bare_base(const struct SeriesBuilder *builder, Node base, double *ex
   }
 }
 
-/* The numerator is known to be 0 for some motions through a point where the denominator vanishes. */
+/* Adds the check of a quotient. Its numerator may be zero throughout a motion through a zero of the denominator. */
 static void check_division(struct CheckList *list, Node numerator, Node denominator) {
   double exponent = -1.0;
   Node base = bare_base(list->builder, denominator, &exponent);
@@ -136,7 +155,7 @@ static enum LimitRule rule_named(const char *name) {
   return (enum LimitRule)rule;
 }
 
-/* What a rule of the table of functions says of an operand or of the auxiliary node. */
+/* Adds the check that the table of functions names for an operand or an auxiliary node. */
 static void check_by_rule(struct CheckList *list, const char *rule, Node row, const char *function) {
   if (rule != NULL && can_have_row(list->builder, row))
     append(list, (struct Check){.rule = rule_named(rule), .rows = {row}, .function = function, .share = NAN});
@@ -146,7 +165,7 @@ static void check_function(struct CheckList *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
   const struct Function *function = &functions[vertex->operation];
-  /* What authors do not write comes from the derivatives of what they do. */
+  /* internal functions only occur in derivatives of min and max */
   const char *name = function->is_internal ? "min or max" : function->name;
   check_by_rule(list, function->operand_limit, vertex->left, name);
   check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
@@ -155,7 +174,7 @@ static void check_function(struct CheckList *list, Node node) {
   if (is_angle) append(list, (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
 }
 
-/* Where a power of the denominator itself is checked, its numerators do not matter. */
+/* Marks checks of quotients that a check of the denominator alone covers. */
 static void find_covered(struct CheckList *list) {
   for (size_t i = 0; i < list->count; i++) {
     struct Check *check = &list->items[i];

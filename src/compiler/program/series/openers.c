@@ -1,3 +1,8 @@
+/*
+ * A backward data-flow analysis: each node passes its set of guard conditions to its operands, and a gate passes its
+ * own condition to its operand. Repeats until nothing changes. Ends, as the sets only grow and hold at most
+ * OPENER_LIMIT conditions; nodes are numbered after their operands, so that auxiliary nodes alone need a second pass.
+ */
 #include "program/series/openers.h"
 
 #include "base/memory.h"
@@ -17,7 +22,7 @@ static bool add_opener(struct Openers *openers, Node opener) {
   return true;
 }
 
-/* What matters under the openers of one node does so under those of another. Whether these have grown. */
+/* Adds the guard conditions of one node to those of another. Returns true if these have grown. */
 static bool inherit(struct Openers *to, const struct Openers *from) {
   bool grown = from->always && !to->always;
   to->always |= from->always;
@@ -25,7 +30,7 @@ static bool inherit(struct Openers *to, const struct Openers *from) {
   return grown;
 }
 
-/* Hands the openers of a node on to what it rests on. Whether any have grown. */
+/* Passes the guard conditions of a node to its operands. Returns true if any set has grown. */
 static bool hand_on(const struct Graph *graph, const struct SeriesPlan *plan, struct Openers *openers, Node node) {
   const struct Vertex *vertex = &graph->vertices[node];
   int arity = operation_arity(vertex->operation);

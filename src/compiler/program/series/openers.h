@@ -1,6 +1,6 @@
 /*
- * Under which gates a node of a series matters: where all of them are closed, it may have no value, and must not shorten a
- * step.
+ * Guard conditions of the nodes in a series. GATE(a, b) is b where a > 0, else 0. A node that is needed only under
+ * gates that are closed may have no value, and must not limit the step.
  */
 #pragma once
 
@@ -8,12 +8,15 @@
 
 enum { OPENER_LIMIT = 6 };
 
-/* The openers of the gates, one of which must be open; with more than the limit, or without a gate, it always matters. */
+/*
+ * The guard conditions, of which at least one must be positive for the node to be needed. always: needed in any case,
+ * also if it has more conditions than the limit.
+ */
 struct Openers {
   Node nodes[OPENER_LIMIT];
   size_t count;
   bool always;
 };
 
-/* One for each node of the graph; NULL where there are no gates. */
+/* Returns the guard conditions of each node of the graph; NULL without gates. */
 struct Openers *openers_of(const struct Graph *graph, const struct SeriesPlan *plan);

@@ -1,4 +1,18 @@
-/* Which recurrence of series.h gives the coefficients of a node. */
+/*
+ * Taylor coefficients by recurrences. For u(t) = sum over k of u_k t^k, each operation gives the coefficient k of its
+ * result from coefficients of its operands up to k, and of the result and auxiliary nodes below k:
+ *
+ *     c = a b         c_k = sum over j of a_j b_(k-j)  (Cauchy)
+ *     c = a / b       c_k = (a_k - sum over j >= 1 of b_j c_(k-j)) / b_0
+ *     c = a^n         a c' = n a' c
+ *     exp, sin, ...   c' = a' b with an auxiliary b, as cos(a) for sin(a)  (INTEGRAL)
+ *     log, asin, ...  c' = a' / b with an auxiliary b  (RATIO)
+ *
+ * Linear operations cost O(1) for an order, others O(k), so that all coefficients up to order K cost O(K^2). This file
+ * chooses the instruction for each node; include/series.h has the recurrences. A. Griewank, A. Walther: Evaluating
+ * Derivatives, 2nd ed., 2008, chapter 13; A. Jorba, M. Zou: A software package for the numerical integration of ODEs
+ * by means of high-order Taylor methods, 2005.
+ */
 #include <math.h>
 
 #include "algebra/functions.h"
@@ -33,7 +47,7 @@ static void append(struct SeriesBuilder *builder, enum Opcode opcode, Place resu
   routine_append(builder->order, opcode, result, a, b, c);
 }
 
-/* A value that is constant in time, as an operand. */
+/* Returns the place of a value that is constant in time. */
 static Place value_of(const struct SeriesBuilder *builder, Node node) {
   return values_place(builder->values, node);
 }
@@ -47,7 +61,7 @@ static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
   return graph->vertices[node].operation == SYMBOL && graph_symbol_of(graph, node)->kind == COORDINATE;
 }
 
-/* The row of the time derivative of an operand: that of a velocity, or a further one, filled once for all functions. */
+/* Returns the row of the time derivative: that of a velocity, or one that all functions of the operand share. */
 static Place rate_row(struct SeriesBuilder *builder, Node operand) {
   if (is_coordinate(builder, operand))
     return place_in(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
@@ -67,7 +81,7 @@ static void append_product(struct SeriesBuilder *builder, Place result, Node lef
   else append(builder, SERIES_PRODUCT, result, series_row(builder, left), series_row(builder, right), 0);
 }
 
-/* top / below; the inverse of below's first coefficient has a row of its own. */
+/* Appends top / below; the inverse of below's coefficient 0 has a row of its own. */
 static void append_quotient(struct SeriesBuilder *builder, Node node, Node top, Node below) {
   if (is_constant_series(builder, below)) {
     append(builder, SERIES_SHARE, series_coefficient(builder, node), series_coefficient(builder, top),
@@ -79,7 +93,7 @@ static void append_quotient(struct SeriesBuilder *builder, Node node, Node top, 
          series_row(builder, below), place_in((enum Space)SPACE_OF_RATES, builder->inverse[below] - 1));
 }
 
-/* The coefficient of sign * factor * top, where the factor is constant in time. */
+/* Returns the coefficient k of sign * factor * top, where factor is constant in time. */
 static Place scaled(struct SeriesBuilder *builder, double sign, Node factor, Node top) {
   Place coefficient = series_coefficient(builder, top);
   if (factor != ONE) {
@@ -95,7 +109,7 @@ static Place scaled(struct SeriesBuilder *builder, double sign, Node factor, Nod
   return coefficient;
 }
 
-/* y' = sign factor top' / below */
+/* Appends y' = sign factor top' / below. */
 static void append_ratio_integral(struct SeriesBuilder *builder, Node node, double sign, Node factor, Node top,
                                   Node below) {
   Place coefficient = scaled(builder, sign, factor, top);
@@ -104,7 +118,7 @@ static void append_ratio_integral(struct SeriesBuilder *builder, Node node, doub
   else append(builder, SERIES_RATIO_INTEGRAL, series_row(builder, node), coefficient, series_row(builder, below), 0);
 }
 
-/* y' = sign operand' factor */
+/* Appends y' = sign operand' factor. */
 static void append_integral(struct SeriesBuilder *builder, Node node, double sign, Node operand, Node factor) {
   Place result = series_coefficient(builder, node);
   if (is_constant_series(builder, operand)) append(builder, SERIES_ZERO, result, 0, 0, 0);
@@ -149,8 +163,8 @@ static void append_power(struct SeriesBuilder *builder, Node node, Node base, No
 }
 
 /*
- * c = atan2(y, x): (x^2 + y^2) c' = y' x - x' y. Any of y, x and x^2 + y^2 may be constant, the last one as the square of
- * a rod's length.
+ * Appends c = atan2(y, x): (x^2 + y^2) c' = y' x - x' y. Any of y, x and x^2 + y^2 may be constant, the last one for a
+ * rod of constant length.
  */
 static void append_angle(struct SeriesBuilder *builder, Node node, Node y, Node x, Node square) {
   if (is_constant_series(builder, x)) append_ratio_integral(builder, node, 1.0, x, y, square);
@@ -165,8 +179,8 @@ static void append_angle(struct SeriesBuilder *builder, Node node, Node y, Node 
 }
 
 /*
- * The coefficients of the piece that is there first: that of the larger or of the smaller operand. Where their
- * difference is constant, both have the same.
+ * Appends the coefficients of the operand that is larger, or smaller, just after the start. If the difference of both
+ * is constant, their coefficients k >= 1 are equal.
  */
 static void append_choice(struct SeriesBuilder *builder, Node node, Node left, Node right, Node difference) {
   enum Opcode opcode = builder->graph->vertices[node].operation == MAXIMUM ? SERIES_LARGER : SERIES_SMALLER;
@@ -192,7 +206,7 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
     append(builder, SERIES_GATE, series_coefficient(builder, node), value_of(builder, operand),
            series_coefficient(builder, vertex->right), 0);
     return;
-  case ARITHMETIC: return; /* no function */
+  case ARITHMETIC: return; /* not a function */
   }
 }
 

@@ -1,3 +1,14 @@
+/*
+ * Taylor series of the implicit equations of motion, M(t) a(t) = b(t). With M and b expanded about the present time,
+ * the coefficient k of the accelerations solves
+ *
+ *     M_0 a_k = b_k - sum over l = 1 .. k of M_l a_(k-l),
+ *
+ * and the state follows from v_(k+1) = a_k / (k + 1), q_(k+1) = v_k / (k + 1). M_0 is factored once a step, and its
+ * factors serve all orders. An order costs its recurrences and one solution; only elements of M that change in time
+ * take part in the sum. A. Jorba, M. Zou: A software package for the numerical integration of ODEs by means of
+ * high-order Taylor methods, 2005.
+ */
 #include "program/series/series_program.h"
 
 #include <stdlib.h>
@@ -5,7 +16,7 @@
 #include "base/memory.h"
 #include "program/series/series_builder.h"
 
-/* The nodes that change in time and are computed. */
+/* Finds the nodes that change in time and must be computed. */
 static void find_computed(struct SeriesBuilder *builder) {
   struct Needs *needs = builder->needs;
   const struct Cone *cone = needs->cone;
@@ -46,7 +57,7 @@ static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const
 
 static void append_next(struct SeriesBuilder *builder, Node node);
 
-/* Auxiliary nodes may be younger than those that need them, so that numeric order alone does not do. */
+/* Appends the operands first; auxiliary nodes may have higher numbers than the nodes that need them. */
 static void append_operands(struct SeriesBuilder *builder, Node node) {
   struct Form form = form_of(builder->needs, node);
   if (!is_integrated_power(builder, node)) {
@@ -63,7 +74,7 @@ static void append_next(struct SeriesBuilder *builder, Node node) {
   builder->is_done[node] = true;
   append_operands(builder, node);
   append_recurrence(builder, node);
-  /* The sine and the cosine of one argument need each other, one coefficient behind. */
+  /* sine and cosine of one argument need each other's coefficients below k */
   enum Operation operation = builder->graph->vertices[node].operation;
   if (operation == SINE || operation == COSINE || operation == SINH || operation == COSH)
     append_next(builder, builder->plan->auxiliary[node]);
@@ -77,7 +88,7 @@ static void append_nodes_of_order(struct SeriesBuilder *builder) {
   for (size_t i = 0; i < builder->nodes.count; i++) append_next(builder, builder->nodes.nodes[i]);
 }
 
-/* Those that need no accelerations of large blocks, which are not known yet. */
+/* Appends the nodes that do not depend on accelerations of factored blocks, which are not known yet. */
 static void append_nodes_before_blocks(struct SeriesBuilder *builder) {
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (!has_accelerations(builder, builder->nodes.nodes[i])) append_next(builder, builder->nodes.nodes[i]);
@@ -87,13 +98,13 @@ static Place acceleration_row(size_t coordinate) {
   return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
-/* An element of a block that changes in time. */
+/* An element of M that changes in time. */
 struct ChangingMass {
   struct Position at;
   Node mass;
 };
 
-/* Those of both triangles, by columns, which are the rows too. */
+/* Returns the elements of a block that change in time, of both triangles, sorted by columns. */
 static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder, const struct InertiaBlock *block,
                                             size_t *count) {
   struct ChangingMass *masses = allocate(2 * block->start[block->count], sizeof *masses);
@@ -109,14 +120,14 @@ static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder,
   return masses;
 }
 
-/* The coefficient k of a right side less that of M_ij a_j without its part M_0 a_k. */
+/* Appends sum - (M_ij a_j)_k without the term with a_k, which is solved for. */
 static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, size_t coordinate) {
   Place rest = place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
   routine_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
   return rest;
 }
 
-/* M_0 a_k = b_k - sum over l of M_l a_(k-l) in each large block. */
+/* Appends M_0 a_k = b_k - sum over l of M_l a_(k-l) for one block. */
 static void append_block(struct SeriesBuilder *builder, const struct Equations *equations,
                          const struct LoopedBlock *looped, size_t number) {
   const struct InertiaBlock *block = looped->block;
@@ -143,7 +154,7 @@ static void append_state(struct SeriesBuilder *builder, size_t state, Place deri
   routine_append(builder->order, SERIES_STATE, place_in(SPACE_STATE_ROW, state), derivative, 0, 0);
 }
 
-/* The coefficient k + 1 of the state from coefficient k of its derivative. */
+/* Appends the coefficients k + 1 of the state from the coefficients k of its derivative. */
 static void append_states(struct SeriesBuilder *builder, const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
@@ -154,15 +165,15 @@ static void append_states(struct SeriesBuilder *builder, const struct Equations 
     append_state(builder, 2 * n + i, series_coefficient(builder, equations->rates.nodes[i]));
 }
 
-/* Where the spaces of an incomplete routine have gone. */
+/* The final places of the provisional spaces. */
 struct Rows {
   const struct SeriesBuilder *builder;
-  size_t *row; /* for each node: its row */
+  size_t *row; /* for each node with has_row of the builder: its row */
   size_t acceleration_row, further_row;
   struct Routine *order;
-  Place *local; /* for each node: its local variable */
+  Place *local; /* for each node with has_local: its local variable */
   bool *has_local;
-  Place *factor; /* of each local variable without a node */
+  Place *factor; /* of each local variable that belongs to no node; 0: not assigned yet */
 };
 
 static Place settled(struct Rows *rows, Place place) {
@@ -182,7 +193,10 @@ static Place settled(struct Rows *rows, Place place) {
   }
 }
 
-/* Which instructions have an effect: not those of a node that nothing rests on, as sines of what is linear in time. */
+/*
+ * Dead-code elimination: returns which instructions have an effect. Nodes whose coefficients nothing reads have none,
+ * such as an argument that is linear in time.
+ */
 static bool *find_used(const struct SeriesBuilder *builder) {
   const struct Routine *open = builder->order;
   bool *is_used = allocate(open->count, sizeof *is_used);
@@ -198,7 +212,7 @@ static bool *find_used(const struct SeriesBuilder *builder) {
   return is_used;
 }
 
-/* The order with all places final. */
+/* Returns the instructions of an order with final places. */
 static struct Routine *settle(struct Rows *rows) {
   const struct Routine *open = rows->builder->order;
   bool *is_used = find_used(rows->builder);
@@ -214,7 +228,7 @@ static struct Routine *settle(struct Rows *rows) {
   return rows->order;
 }
 
-/* Rows for the nodes that need them, then for accelerations, for the factors of large blocks, and for further ones. */
+/* Assigns rows to the nodes that need them, then to accelerations, factors of K, time derivatives and inverses. */
 static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accelerations, size_t mass_count,
                                struct SeriesProgram *program) {
   size_t size = builder->graph->count, count = 0;
@@ -233,7 +247,7 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   return rows;
 }
 
-/* The final order, and the places of the limits. */
+/* Completes the order, and the places of the limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
   program->order = settle(rows);
   for (size_t i = 0; i < program->order->count; i++)
@@ -244,7 +258,7 @@ static void complete(struct SeriesProgram *program, struct Rows *rows) {
   }
 }
 
-/* Computes what has a row and needs no accelerations of large blocks. */
+/* Computes the nodes that have rows and do not depend on accelerations. */
 static void compute_before_blocks(const struct SeriesBuilder *builder, struct Values *values) {
   struct NodeList targets = {0};
   for (size_t i = 0; i < builder->nodes.count; i++) {
@@ -254,7 +268,7 @@ static void compute_before_blocks(const struct SeriesBuilder *builder, struct Va
   values_compute(values, targets.nodes, targets.count, false);
 }
 
-/* Computes what has a row, and further nodes. */
+/* Computes the nodes that have rows, and further nodes. */
 static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further,
                           size_t count) {
   struct NodeList targets = {0};
@@ -264,7 +278,7 @@ static void compute_first(const struct SeriesBuilder *builder, struct Values *va
   values_compute(values, targets.nodes, targets.count, false);
 }
 
-/* Coefficient 0 of all rows, and the inverses of some. */
+/* Copies coefficient 0 of all rows, and computes the inverses. */
 static void copy_first(const struct Rows *rows, struct Values *values) {
   const struct SeriesBuilder *builder = rows->builder;
   for (size_t i = 0; i < builder->nodes.count; i++) {
@@ -350,7 +364,7 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   struct SeriesBuilder *builder = builder_create(plan, values);
   size_t forces = uses_accelerations(plan, values->graph) ? row_count(expressions->equations) : 0;
   program->limit = limits_of(builder);
-  /* What no limit asks for has no row, and is left out. */
+  /* Nodes that no limit needs have no row. */
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (builder->has_row[builder->nodes.nodes[i]]) append_next(builder, builder->nodes.nodes[i]);
   struct Rows rows = rows_create(builder, forces, 0, program);

@@ -1,6 +1,6 @@
 /*
- * Taylor series as instructions: one routine for the coefficients 0, one for the coefficients k of all series. Nodes
- * whose coefficients are needed again have a row of the workspace; of the others, only coefficient k is there.
+ * Taylor series as instructions: start computes the coefficients 0, order the coefficients k >= 1 of all series. Nodes
+ * whose lower coefficients are needed again have a row of the workspace; others keep coefficient k only.
  */
 #pragma once
 
@@ -9,25 +9,22 @@
 #include "program/series/limits.h"
 
 struct SeriesProgram {
-  struct Routine *start; /* of the motion: d state / dt too */
+  struct Routine *start; /* of the motion: also computes d state / dt */
   struct Routine *order;
   struct LimitChecks limit;
   size_t row_count;
-  size_t mass_row;         /* where the factors of large blocks begin */
-  size_t acceleration_row; /* where those of accelerations begin, as many as acceleration_count */
+  size_t mass_row;         /* first row of the factors of K */
+  size_t acceleration_row; /* first of acceleration_count rows of accelerations and forces */
   size_t acceleration_count;
-  size_t recurrences; /* in an order */
+  size_t recurrences; /* number of recurrences in an order */
 };
 
-/* For the motion. */
+/* Returns the program of the motion. */
 struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
                                                struct Values *values);
 
-/* For the outputs, which are the first results; the accelerations are the derivatives of the velocities. */
+/* Returns the program of the outputs, which are the first results. Accelerations are derivatives of the velocities. */
 struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct Values *values);
 
-/*
- * For the limits of what events look at, as far as they need series; the rows of the accelerations and forces are given. NULL
- * where nothing limits them.
- */
+/* Returns the program of the limits on the search for events, given accelerations and forces; NULL without limits. */
 struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values);

@@ -1,3 +1,8 @@
+/*
+ * Encodes routines as tables of 32-bit words for the interpreter in src/runtime/support/instructions.c. Instructions
+ * with the same opcode, function and spaces form a run, whose header is decoded once; the interpreter loops over its
+ * instructions. Compile time is then independent of the length of the code.
+ */
 #include "program/tables/encoding.h"
 
 #include "algebra/functions.h"
@@ -10,13 +15,13 @@ static void add_number(struct Encoding *encoding, Node node) {
   encoding->number[node] = encoding->numbers.count;
 }
 
-/* Whether it is written as a table where the program is. */
+/* True if the function is a table in a program that has tables. */
 static bool is_in_tables(const struct Program *program, enum FunctionName name) {
   if (name == FUNCTION_START || name == FUNCTION_SERIES) return program->series_is_table;
   return program->switches_are_table || generated_functions[name].group != IN_SWITCHES;
 }
 
-/* Notes the numbers and functions that a routine uses. */
+/* Collects the constants and functions that a routine in tables uses. */
 static void note(void *target, enum FunctionName name, const struct Routine *routine) {
   struct Encoding *encoding = target;
   if (!is_in_tables(encoding->program, name)) return;
@@ -38,7 +43,10 @@ static void note_limit(struct Encoding *encoding, const struct SeriesProgram *se
   }
 }
 
-/* Those of prepare() stand behind what it computes, and statements have theirs. */
+/*
+ * Updates the largest number of local variables. prepare() has its own behind its results, and statements declare
+ * theirs.
+ */
 static void find_most_locals(void *target, enum FunctionName name, const struct Routine *routine) {
   struct Encoding *encoding = target;
   const struct Program *program = encoding->program;
@@ -66,7 +74,7 @@ size_t encoding_work_count(const struct Encoding *encoding) {
          row_count(program->equations);
 }
 
-/* The index of a place in its space, as tables count it. */
+/* Returns the index of a place in its space, in numbers; rows have SERIES_LENGTH numbers each. */
 static uint32_t index_of(const struct Encoding *encoding, Place place) {
   enum Space space = space_of(place);
   size_t index = index_in(place);
@@ -79,7 +87,7 @@ static void append_word(struct Words *words, uint32_t word) {
   words->items[words->count++] = word;
 }
 
-/* The instructions first .. end - 1 of the schedule, which are one run. */
+/* Appends one run: instructions first .. end - 1 of the schedule. */
 static void append_run(struct Words *words, const struct Encoding *encoding, const struct Routine *routine,
                        const size_t *schedule, size_t first, size_t end) {
   const struct Instruction *instructions = routine->instructions;

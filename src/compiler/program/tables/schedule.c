@@ -1,3 +1,8 @@
+/*
+ * Level scheduling. The level of an instruction is 1 + the highest level that it must follow: the last writes of its
+ * operands, and the last writes and reads of the place that its result overwrites. Instructions of one level are
+ * independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
+ */
 #include "program/tables/schedule.h"
 
 #include <stdlib.h>
@@ -5,12 +10,12 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
-/* When a place was written and read last; levels count from 1, and 0 is before all. */
+/* The levels at which a place was last written and read; 0: not yet. */
 struct Access {
   size_t written, read;
 };
 
-/* The accesses of each space, as many as the routine has places there. */
+/* The accesses of the places in each space. */
 struct Accesses {
   struct Access *of[SPACE_COUNT];
   size_t count[SPACE_COUNT];
@@ -38,7 +43,7 @@ static struct Access *access_of(const struct Accesses *accesses, Place place) {
   return &accesses->of[space_of(place)][index_in(place)];
 }
 
-/* A block's instruction reads and writes its whole part of the spaces. */
+/* Returns the level of an instruction on a block, which reads and writes the block's whole ranges of both spaces. */
 static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors,
                              size_t level) {
   struct Access *mass = accesses->of[SPACE_MASS] + looped->first_mass;
@@ -57,7 +62,7 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
   return level;
 }
 
-/* One after this level, after the last writing of all operands, and after all uses of what the result replaces. */
+/* Returns the level of an instruction, above the given level, and records its accesses. */
 static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
                        const struct LoopedBlocks *blocks, size_t level) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
@@ -79,7 +84,9 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
   return level;
 }
 
-/* Of several checks that fail, the first one tells why: they keep their order. */
+/*
+ * True if the instruction may return. Such instructions keep their order, so that the first failing check is reported.
+ */
 static bool may_return(enum Opcode opcode) {
   return opcode == FACTOR || opcode_facts(opcode)->result == NUMBER;
 }

@@ -1,4 +1,4 @@
-/* How a node is computed: an operation of the graph, or a shorter one that stands for two of them. */
+/* Fused operations: an operation of the graph, or one operation that replaces two. */
 #pragma once
 
 #include "algebra/cone.h"
@@ -12,24 +12,24 @@ struct Form {
 };
 
 /*
- * The nodes that are computed for some targets, and how often each is needed. What is fetched, as symbols, numbers and
- * prepared values are, has members, but not what it is made of.
+ * The nodes needed for some targets, with use counts. Fetched nodes (symbols, numbers and prepared values) are
+ * members, but their operands are not.
  */
 struct Needs {
   const struct Graph *graph;
   struct Cone *cone;
-  size_t *uses; /* of each member; a target counts twice, as it is written by itself */
+  size_t *uses; /* uses of each member; being a target counts as 2, since its value is stored */
   size_t capacity;
-  bool preparing; /* expressions of parameters are computed, not fetched */
+  bool preparing; /* builds prepare(): expressions of parameters are computed, not fetched */
 };
 
 struct Needs *needs_create(const struct Graph *graph);
 
-/* Replaces what was collected before. */
+/* Collects the nodes that the targets need, in place of those collected before. */
 void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing);
 
-/* Whether the node is a symbol, a number or a prepared value. */
+/* True if the node is a symbol, a number or a prepared value. */
 bool is_fetched(const struct Needs *needs, Node node);
 
-/* The form of a member, with a + (-b) turned to a - b and a * (1 / b) to a / b where nothing else needs 1 / b. */
+/* Returns a member's operation, with a + (-b) fused into a - b, and a * (1 / b) into a / b if 1 / b has one use. */
 struct Form form_of(const struct Needs *needs, Node node);

@@ -6,7 +6,7 @@ bool is_of_parameters(const struct Graph *graph, Node node) {
   return operation_arity(graph->vertices[node].operation) > 0 && graph_is_constant_in_time(graph, node);
 }
 
-/* Marks the prepared values with 1 in slot. */
+/* Sets slot to 1 for the prepared values. */
 static void mark(const struct Graph *graph, struct NodeList targets, size_t *slot) {
   bool *needed = allocate(graph->count, sizeof *needed);
   graph_mark(graph, targets.nodes, targets.count, needed);

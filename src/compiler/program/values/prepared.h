@@ -1,4 +1,4 @@
-/* What depends on parameters alone is computed once, when parameters change: the prepared values. */
+/* Prepared values: expressions of parameters alone, computed once when parameters change. */
 #pragma once
 
 #include "algebra/node_list.h"
@@ -6,11 +6,11 @@
 struct Prepared {
   Node *nodes; /* ascending */
   size_t count;
-  size_t *slot; /* for each node of the graph: 1 + its place in nodes, 0 for none */
+  size_t *slot; /* for each node of the graph: 1 + its index in nodes, 0 for none */
 };
 
-/* Whether the node is an operation on parameters and numbers alone. */
+/* True if the node is an operation on parameters and numbers alone. */
 bool is_of_parameters(const struct Graph *graph, Node node);
 
-/* The prepared values that the targets need, directly or as operands of what changes in time. */
+/* Returns the largest expressions of parameters in the targets, and in operands of nodes that change in time. */
 struct Prepared *prepared_create(const struct Graph *graph, struct NodeList targets);

@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 
-/* Checks and blocks have statements of their own, which the writers know. */
+/* FACTOR, SOLVE and the like have no expression; the writers know their statements. */
 static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [COPY] = {"$1", VALUE, {VALUE}, 0, false},
     [FIRST_SLOPE] = {"$1[1]", VALUE, {ROW}, 0, false},

@@ -1,6 +1,6 @@
 /*
- * A routine: the instructions of one function of the generated code, in an order in which each result stands before
- * its uses. The instructions themselves are those of include/instructions.h.
+ * The intermediate representation: a routine holds the instructions of one function of the generated code, each result
+ * before its uses. include/instructions.h has the instruction set.
  */
 #pragma once
 
@@ -14,7 +14,7 @@ enum { OPERAND_LIMIT = 3 };
 struct Instruction {
   enum Opcode opcode;
   enum Operation function; /* of CALL and CALL_OF_TWO */
-  Place result;            /* in checks the number to return, in FACTOR, SOLVE and LEAST_FORCES the block */
+  Place result;            /* of checks: the number to return; of FACTOR, SOLVE and LEAST_FORCES: the block */
   Place operands[OPERAND_LIMIT];
 };
 
@@ -22,15 +22,15 @@ struct Routine {
   struct Instruction *instructions;
   size_t count;
   size_t local_count;
-  size_t operation_count; /* additions, multiplications, functions, ... */
-  uint32_t spaces;        /* bit s: some operand or result is in enum Space s */
+  size_t operation_count; /* arithmetic operations, see costs.h */
+  uint32_t spaces;        /* bit s: some operand or result is in space s */
 };
 
 static inline Place place_in(enum Space space, size_t index) {
   return (Place)space << PLACE_BITS | (Place)index;
 }
 
-/* An element of what the function fills. */
+/* Returns the place of an element of the array that the function fills. */
 static inline Place target_place(size_t index) {
   return place_in(SPACE_TARGET, index);
 }
@@ -43,7 +43,7 @@ static inline size_t index_in(Place place) {
   return place & ((1u << PLACE_BITS) - 1);
 }
 
-/* How an operand is used; the result likewise. */
+/* How an instruction uses an operand or result, at the order k of a series. */
 enum Role {
   NO_OPERAND,
   VALUE,
@@ -56,9 +56,10 @@ enum Role {
   NUMBER
 };
 
-/* What the writers need to know of an opcode. */
+/* Properties of an opcode for the writers and the schedule. */
 struct OpcodeFacts {
-  const char *statement; /* of C: $0 is the result, $1, $2, $3 the operands, $f the function, $( opens the arguments */
+  /* C expression: $0 is the result; $1, $2, $3 are the operands, $f is the function; $( opens the arguments */
+  const char *statement;
   enum Role result, operands[OPERAND_LIMIT];
   size_t operations;
   bool is_recurrence;
@@ -66,28 +67,25 @@ struct OpcodeFacts {
 
 const struct OpcodeFacts *opcode_facts(enum Opcode opcode);
 
-/* Of its product of two rows, as SERIES_MIDDLES of include/series.h takes them; NULL for none. */
+/* Returns the arguments of the opcode's Cauchy product for SERIES_MIDDLES of include/series.h; NULL if it has none. */
 const char *opcode_factors(enum Opcode opcode);
 
-/* Whether the opcode has a place for its result. */
+/* True if the opcode stores a result in a place. */
 bool opcode_has_result(enum Opcode opcode);
 
-/* How many operands the opcode has. */
 int opcode_arity(enum Opcode opcode);
 
 struct Routine *routine_create(void);
 
-/* Appends an instruction; operands that the opcode does not have are ignored. */
+/* Appends an instruction; operands beyond the opcode's arity are ignored. */
 void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c);
 
-/* Appends a copy of what is in a place to another. */
 void routine_copy(struct Routine *routine, Place to, Place from);
 
-/* Appends a call of a function. */
 void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b);
 
-/* A new local variable. */
+/* Returns a new local variable. */
 Place routine_local(struct Routine *routine);
 
-/* Whether any operand or result is in the space. */
+/* True if any operand or result is in the space. */
 bool routine_uses(const struct Routine *routine, enum Space space);

@@ -40,7 +40,7 @@ static Place place_of_symbol(const struct Values *values, const struct Symbol *s
   case SEED_STATE: return place_in(SPACE_SEED_STATE, 2 * n + index);
   case SEED_ACCELERATION: return place_in(SPACE_SEED_ACCELERATION, index);
   case SEED_RESULT: return place_in(SPACE_SEED_RESULT, index);
-  case DISPLACEMENT: /* replaced in all that is computed, and without seeds */
+  case DISPLACEMENT: /* these are replaced in all expressions and have no seeds */
   case REACTION:
   case DUMMY:
   case SEED_INPUT:
@@ -67,7 +67,7 @@ void values_copy(struct Values *values, Place target, Node node) {
   routine_copy(values->routine, target, values_place(values, node));
 }
 
-/* The opcode of a power with a number as exponent that needs no pow(); COPY for none. */
+/* Returns the opcode of a constant power that needs no pow(); COPY for none. */
 static enum Opcode opcode_of_power(double exponent) {
   static const enum Opcode powers[] = {INVERSE_FOURTH, INVERSE_CUBE, INVERSE_SQUARE, RECIPROCAL, COPY,
                                        COPY,           SQUARE,       CUBE,           FOURTH};
@@ -111,12 +111,12 @@ static bool is_missing(const struct Values *values, Node node) {
   return !is_fetched(values->needs, node) && !values->has_local[node];
 }
 
-/* Steps for a node that a routine needs, which becomes an instruction and a line of code. */
+/* Steps that each node adds to the graph's limit of work: it becomes an instruction and a line of code. */
 enum { COMPUTE_WORK = 10 };
 
 void values_compute(struct Values *values, const Node *targets, size_t count, bool preparing) {
   struct Needs *needs = values->needs;
-  if (graph_limit(values->graph) != NULL) return; /* nothing is written then */
+  if (graph_limit(values->graph) != NULL) return; /* the limit is reached, and no code will be written */
   needs_collect(needs, targets, count, preparing);
   graph_work(values->graph, COMPUTE_WORK * needs->cone->count);
   const struct Cone *cone = needs->cone;

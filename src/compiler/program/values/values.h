@@ -1,4 +1,4 @@
-/* Values: expressions as instructions, where each shared operation is computed once. */
+/* Code generation for expressions: appends instructions to a routine, each shared node once. */
 #pragma once
 
 #include "program/values/form.h"
@@ -8,12 +8,12 @@
 struct Values {
   const struct Graph *graph;
   const struct Prepared *prepared;
-  size_t coordinates; /* velocities are the states behind the coordinates */
+  size_t coordinates; /* number of coordinates, after which the velocities follow in the state */
   struct Needs *needs;
-  struct Routine *routine; /* the one being filled */
-  Place *local;            /* for each node: its local variable in the routine */
+  struct Routine *routine; /* the routine under construction */
+  Place *local;            /* for each node with has_local: the place of its value in the routine */
   bool *has_local;
-  struct NodeList computed; /* the nodes that have one */
+  struct NodeList computed; /* the nodes with has_local */
 };
 
 struct Values *values_create(const struct Graph *graph, const struct Prepared *prepared, size_t coordinates);
@@ -21,14 +21,14 @@ struct Values *values_create(const struct Graph *graph, const struct Prepared *p
 /* Begins a new routine. */
 struct Routine *values_begin(struct Values *values);
 
-/* Computes what the targets need and the routine does not hold yet. preparing: as in form.h. */
+/* Appends instructions for the targets and all nodes they need that are not computed yet. preparing: see form.h. */
 void values_compute(struct Values *values, const Node *targets, size_t count, bool preparing);
 
-/* The place of a leaf, a prepared value or a computed node. */
+/* Returns the place of a symbol, a number, a prepared value or a computed node. */
 Place values_place(const struct Values *values, Node node);
 
-/* The routine has the value of the node in this place. */
+/* Declares that the routine has the value of the node in this place. */
 void values_hold(struct Values *values, Node node, Place place);
 
-/* The routine copies the value of a node to a place. */
+/* Appends a copy of the node's value to a place. */
 void values_copy(struct Values *values, Place target, Node node);
