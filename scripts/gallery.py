@@ -39,6 +39,8 @@ READ = {
         "The Python package": "scripts/wheel/README.md",
         "Scripts": "scripts/README.md",
         "The code": "src/README.md",
+        "Contributing": "CONTRIBUTING.md",
+        "Style guide": "src/STYLE.md",
         "Changes": "CHANGELOG.md",
     },
 }
