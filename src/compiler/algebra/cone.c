@@ -17,7 +17,10 @@ size_t cone_place(const struct Cone *cone, Node node) {
   return cone->place[node];
 }
 
-/* The places of nodes that are no members hold anything, so that nothing is cleared between two collections. */
+/*
+ * Adds a node. The set is a sparse set, which needs no clearing: place[] of other nodes may hold any number (P. Briggs,
+ * L. Torczon: An efficient representation for sparse sets, ACM Letters on Programming Languages and Systems 2, 1993).
+ */
 static void add(struct Cone *cone, Node node) {
   if (cone_has(cone, node)) return;
   cone->place[node] = cone->count;
@@ -33,10 +36,13 @@ static void grow(struct Cone *cone, size_t capacity) {
   cone->capacity = capacity;
 }
 
-/* A visit comes with the algebra that the sweep is for. */
+/* Steps of graph_work() for a visit, with the algebra that follows it. */
 enum { VISIT_WORK = 8 };
 
-/* Puts the members in order: by going through all nodes between the first and the last, where most of them are members. */
+/*
+ * Sorts the members. Loops over all nodes between the first and the last if at least one in SPARSENESS is a member,
+ * else uses qsort().
+ */
 static void sort(struct Cone *cone) {
   enum { SPARSENESS = 16 };
   Node first = (Node)-1, last = 0;
@@ -51,7 +57,7 @@ static void sort(struct Cone *cone) {
   }
   size_t count = 0;
   for (Node node = first; count < cone->count; node++) {
-    /* Members before have moved to the places below count; those to come keep their places in the list until then. */
+    /* Members below node are sorted, in nodes[0] to nodes[count - 1]; the others exchange places with them. */
     if (!cone_has(cone, node)) continue;
     size_t place = cone->place[node];
     Node other = cone->nodes[count];

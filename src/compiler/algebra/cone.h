@@ -1,33 +1,36 @@
 /*
- * The nodes that some targets need, found at a cost that grows with their number and not with that of the graph's. A
- * cone is a workspace: it is created once and collects again and again.
+ * The cone of some targets: the nodes below them. Collecting it costs time in proportion to its size, not to that of
+ * the graph. A cone is a workspace that is created once and used for many collections.
  */
 #pragma once
 
 #include "algebra/graph.h"
 
 struct Cone {
-  Node *nodes; /* ascending, operands before what they are operands of */
+  Node *nodes; /* ascending, so that operands come first */
   size_t count;
-  size_t *place; /* for each node of the graph; see cone_place() */
+  size_t *place; /* of each node of the graph, its index in nodes; see cone_has() */
   size_t capacity;
-  size_t work; /* steps of all sweeps so far; see graph_work() */
+  size_t work; /* steps of all sweeps so far, see graph_work() */
 };
 
 struct Cone *cone_create(void);
 
-/* Collects the targets and all that they need. */
+/* Collects the targets and all nodes below them. */
 void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count);
 
-/* Where a collection goes from a member: on to its operands, not below it, or no further at all. */
+/* How a collection goes on from a member: to its operands, not below it, or not at all. */
 enum Visit { VISIT_OPERANDS, VISIT_NOTHING_BELOW, VISIT_NO_MORE };
 
-/* The same as far as visit() says, which sees each member once; false, and no member, where it ended the collection. */
+/*
+ * Collects as visit() decides, which is called once for each member. False, with no members, if visit() ended the
+ * collection.
+ */
 bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
                        enum Visit (*visit)(void *context, const struct Graph *graph, Node node), void *context);
 
-/* Whether the node is a member. */
+/* True if the node is a member. */
 bool cone_has(const struct Cone *cone, Node node);
 
-/* The place of a member in nodes. */
+/* Returns the index of a member in nodes. */
 size_t cone_place(const struct Cone *cone, Node node);

@@ -15,8 +15,8 @@ void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by
 }
 
 /*
- * What the exponent of a power contributes along a direction: log(base) base^exponent seed, which is 0 for a parameter
- * that is not varied, even where the base is negative and has no logarithm.
+ * Returns the contribution of an exponent's seed: log(base) base^exponent seed. It is 0 for a parameter with seed 0,
+ * even if the base is negative and has no logarithm.
  */
 static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Node seed) {
   if (!graph_depends_on(graph, seed, SEED_PARAMETER)) return multiply(graph, by_exponent, seed);
@@ -25,10 +25,7 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
   return multiply(graph, multiply(graph, function(graph, LOGARITHM, base, ZERO), node), seed);
 }
 
-/*
- * weight by, where what is gated may have no value while its gate is closed: the gates of the weight are put around the
- * product.
- */
+/* Returns weight by. The guards of weight enclose the product, since by may be undefined where a guard is closed. */
 static Node gated_product(struct Graph *graph, Node weight, Node by) {
   const struct Vertex vertex = graph->vertices[weight];
   if (vertex.operation == GATE) return function(graph, GATE, vertex.left, gated_product(graph, vertex.right, by));
@@ -39,7 +36,7 @@ static Node gated_product(struct Graph *graph, Node weight, Node by) {
   return add(graph, first, gated_product(graph, vertex.right, by));
 }
 
-/* The derivative of an operation whose operands have these. */
+/* Returns the derivative of an operation from those of its operands. */
 static Node along_operands(struct Graph *graph, Node node, Node along_left, Node along_right) {
   const struct Vertex vertex = graph->vertices[node];
   if (along_left == ZERO && along_right == ZERO) return ZERO;
@@ -55,7 +52,7 @@ static Node along_operands(struct Graph *graph, Node node, Node along_left, Node
 
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives) {
   struct Cone *cone = graph->cone;
-  if (graph_limit(graph) != NULL) count = 0; /* the derivatives are then what they were, and have no meaning */
+  if (graph_limit(graph) != NULL) count = 0; /* results then have no meaning */
   cone_collect(cone, graph, targets, count);
   Node *along = allocate(cone->count, sizeof *along);
   for (size_t place = 0; place < cone->count; place++) {
@@ -112,14 +109,14 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   return derivative;
 }
 
-/* Adds weight to the adjoint of an operand, unless no symbol of the kinds is below it. */
+/* Adds weight by to the adjoint of an operand, if the operand depends on the kinds. */
 static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node operand, Node weight, Node by) {
   if ((graph->vertices[operand].kinds & kinds) == 0) return;
   Node *sum = &adjoint[cone_place(graph->cone, operand)];
   *sum = add(graph, *sum, gated_product(graph, weight, by));
 }
 
-/* Moves what symbols of the kinds have in adjoint, one element for each member of the cone. */
+/* Returns the adjoints of the symbols of the kinds; adjoint has one element for each member of the cone. */
 static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, const Node *adjoint) {
   const struct Cone *cone = graph->cone;
   struct Gradient gradient = {allocate(cone->count, sizeof(Node)), allocate(cone->count, sizeof(Node)), 0};
@@ -132,7 +129,7 @@ static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, c
   return gradient;
 }
 
-/* What has no symbol of the kinds below it has no part in the gradient. */
+/* Skips nodes that depend on no symbol of the kinds. */
 static enum Visit visit_kinds(void *kinds, const struct Graph *graph, Node node) {
   return (graph->vertices[node].kinds & *(unsigned *)kinds) != 0 ? VISIT_OPERANDS : VISIT_NOTHING_BELOW;
 }

@@ -1,60 +1,66 @@
 /*
- * Differentiation of the expression graph: forward sweeps for directions, one reverse sweep for a gradient. Each costs
- * as much as the targets have nodes below them, however large the graph is.
+ * Symbolic differentiation of the expression graph by the rules of automatic differentiation (A. Griewank, A. Walther:
+ * Evaluating Derivatives, SIAM, 2008). The forward mode computes d y = sum of (d y / d x_i) d x_i from the operands up,
+ * for one direction. The reverse mode computes adjoints from the targets down, for a gradient by all symbols at once.
+ * Each is one sweep over the nodes below the targets, in numeric order, and adds at most a constant number of nodes for
+ * each.
  */
 #pragma once
 
 #include "algebra/graph.h"
 
-/* The partial derivatives of an operation with respect to its operands; by_right becomes ZERO for one operand. */
+/* Returns the partial derivatives of an operation by its operands; by_right is ZERO for one operand. */
 void partial_derivatives(struct Graph *graph, Node node, Node *by_left, Node *by_right);
 
 /*
- * The derivative of each target along a direction: sum over symbols s of d target / d s * seeds[s].
- * seeds: one node for each symbol of the graph, ZERO where the direction has no part.
+ * Computes the derivative of each target along a direction, the sum over symbols s of d target / d s * seeds[s]. seeds
+ * has one element for each symbol of the graph, ZERO for those that do not change.
  */
 void derivative_along(struct Graph *graph, const Node *targets, size_t count, const Node *seeds, Node *derivatives);
 
-/* Derivatives along one direction that are known; empty where none is. */
+/* Known derivatives along one direction; zeros at first. */
 struct Derivatives {
-  Node *of; /* each node of the graph that is known */
+  Node *of; /* for each node of the graph */
   bool *is_known;
   size_t capacity;
 };
 
-/* The same for a direction along which derivatives are found again and again: those that are known cost nothing. */
+/*
+ * Computes the same, and keeps the derivatives of all nodes below the targets in known, for further calls with the same
+ * seeds.
+ */
 void derivatives_find(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
                       struct Derivatives *known, Node *derivatives);
 
-/* d target / d symbol; symbol is a SYMBOL node. */
+/* Returns d target / d symbol; symbol is a SYMBOL node. */
 Node derivative_by(struct Graph *graph, Node target, Node symbol);
 
-/* The elements of a gradient that are not ZERO. */
+/* The nonzero elements of a gradient. */
 struct Gradient {
   Node *symbols; /* SYMBOL nodes, ascending */
   Node *values;
   size_t count;
 };
 
-/* With respect to all symbols of the kinds (bit k: SymbolKind k). */
+/* Returns the gradient by all symbols of the kinds (bit k: SymbolKind k). */
 struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds);
 
-/* The same for sum over k of weights[k] * targets[k], with the weights held constant. */
+/* Returns the gradient of the sum over k of weights[k] * targets[k], at constant weights. */
 struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, const Node *weights, size_t count,
                                   unsigned kinds);
 
-/* The gradient of target with respect to all symbols of one kind: element i belongs to the symbol with index i. */
+/* Computes the gradient by all symbols of one kind; element i belongs to the symbol with index i. */
 void gradient_of(struct Graph *graph, Node target, enum SymbolKind kind, size_t count, Node *gradient);
 
-/* The same for sum over k of weights[k] * targets[k], with the weights held constant. */
+/* Computes the gradient of the sum over k of weights[k] * targets[k], at constant weights. */
 void weighted_gradient_of(struct Graph *graph, const Node *targets, const Node *weights, size_t target_count,
                           enum SymbolKind kind, size_t count, Node *gradient);
 
-/* Each symbol of the graph for itself: replacements that change nothing yet. */
+/* Returns the identity as replacements: each symbol for itself. */
 Node *own_symbols(const struct Graph *graph);
 
-/* What stands for a symbol among replacements, or seeds, of all symbols. */
+/* Returns the element of a symbol in replacements or seeds. */
 Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol);
 
-/* The targets with each symbol s replaced by replacements[s] (one node for each symbol of the graph). */
+/* Replaces each symbol s in the targets by replacements[s]; one element for each symbol of the graph. */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);

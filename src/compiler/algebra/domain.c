@@ -18,7 +18,7 @@ bool domain_contains(enum Operation operation, double argument) {
 
 const char *domain_text(enum Operation operation) {
   const char *text = functions[operation].domain_text;
-  return text != NULL ? text : "nearer to 0"; /* of what overflows */
+  return text != NULL ? text : "nearer to 0"; /* the function overflows */
 }
 
 void require_domain(struct Requirements *requirements, const struct Graph *graph, enum Operation operation,

@@ -1,10 +1,10 @@
-/* Where functions of real numbers have real values, and what an expression asks of its arguments for that. */
+/* Domains of real functions, and the conditions that an expression imposes on its arguments. */
 #pragma once
 
 #include "algebra/graph.h"
 #include "base/diagnostics.h"
 
-/* An argument that must be in the domain of its function. POWER: of a base whose exponent is no whole number. */
+/* An argument that must be in the domain of its function. POWER: a base whose exponent is not whole. */
 struct Requirement {
   enum Operation operation;
   Node argument;
@@ -18,13 +18,13 @@ struct Requirements {
 
 bool domain_contains(enum Operation operation, double argument);
 
-/* Completes "expected an argument ...", for a value that is not finite. */
+/* Returns the end of "expected an argument ..." for a value that is not finite. */
 const char *domain_text(enum Operation operation);
 
-/* Notes the argument of an operation, unless that is defined everywhere or the argument is a number. */
+/* Adds the argument to the requirements, unless it is a number or the operation is defined everywhere. */
 void require_domain(struct Requirements *requirements, const struct Graph *graph, enum Operation operation,
                     Node argument, long line);
 
-/* Warns of arguments out of their domains; values: one of each node. Says so once a line and function. */
+/* Warns of arguments outside their domains, once for each line and function; values has one element for each node. */
 void warn_outside_domains(const struct Requirements *requirements, const struct Graph *graph, const double *values,
                           const struct Diagnostics *diagnostics);

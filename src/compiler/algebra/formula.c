@@ -8,14 +8,14 @@
 
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
 
-/* What surrounds an expression: a looser one inside a tighter place needs parentheses. */
+/* Context of an expression: a sum in a product, and a product in a power, need parentheses. */
 enum Tightness { IN_SUM, IN_PRODUCT, IN_POWER };
 
 struct Printer {
   FILE *file;
   const struct Graph *graph;
   const struct NodeNames *names; /* NULL for none */
-  Node whole;                    /* what is printed, which is not named itself */
+  Node whole;                    /* the printed expression, which is not replaced by its name */
   int depth;
 };
 
@@ -40,13 +40,16 @@ static bool is_cut(struct Printer *printer) {
   return true;
 }
 
-/* The name that stands for a node in the text, NULL for none. */
+/* Returns the name that stands for a node; NULL for none. */
 static const char *name_of(const struct Printer *printer, Node node) {
   const struct NodeNames *names = printer->names;
   return names != NULL && node != printer->whole && (size_t)node < names->count ? names->of[node] : NULL;
 }
 
-/* The node with a name that is a power of the base with an exponent of which *exponent is a multiple, or the base. */
+/*
+ * Returns a named node base^p of which base^exponent is a whole power, and sets *exponent to that power; else returns
+ * base.
+ */
 static Node named_root(const struct Printer *printer, Node base, double *exponent) {
   const struct Vertex *vertices = printer->graph->vertices;
   for (size_t i = 0; printer->names != NULL && i < printer->names->named_count; i++) {
@@ -61,7 +64,7 @@ static Node named_root(const struct Printer *printer, Node base, double *exponen
   return base;
 }
 
-/* Formulas are for reading: the last two digits of a double only show how it was rounded. */
+/* Prints 15 digits: the other two of a double show rounding alone. */
 static void print_rounded(FILE *file, double value) {
   fprintf(file, "%.15g", value);
 }
@@ -80,7 +83,10 @@ static void print_power(struct Printer *printer, Node base, double exponent) {
   print_rounded(printer->file, exponent);
 }
 
-/* One side of the fraction bar: the factors whose exponent has this sign, led by a number unless it is 1. */
+/*
+ * Prints the numerator (sign 1) or denominator (sign -1): the factors whose exponent has that sign, after the number
+ * unless it is 1.
+ */
 static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count, int sign) {
   const char *separator = "";
   if (number != 1.0) {
@@ -96,7 +102,7 @@ static void print_factors(struct Printer *printer, double number, const struct F
   if (*separator == '\0') fputs("1", printer->file);
 }
 
-/* A product with a positive coefficient. */
+/* Prints a product with a positive coefficient. */
 static void print_product(struct Printer *printer, double coefficient, Node base) {
   struct Factor factors[FACTOR_LIMIT];
   bool named = name_of(printer, base) != NULL;

@@ -1,14 +1,14 @@
-/* Expressions as readable infix text, in the language of system.xml. */
+/* Expressions as infix text in the language of system.xml. */
 #pragma once
 
 #include <stdio.h>
 
 #include "algebra/graph.h"
 
-/* A very long one is cut off with "...". */
+/* Returns the text; a very long one is cut off with "...". */
 char *expression_text(const struct Graph *graph, Node node);
 
-/* Names that stand for expressions: of[node] is that of a node below count, or NULL. */
+/* Names that replace expressions: of[node] is the name of a node below count, or NULL. */
 struct NodeNames {
   const char **of;
   size_t count;
@@ -16,11 +16,11 @@ struct NodeNames {
   size_t named_count;
 };
 
-/* The same with these names for all that is inside the expression. */
+/* Returns the text with these names for all subexpressions. */
 char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names);
 
 enum { NUMBER_LENGTH = 40 };
 
-/* The shortest decimal form that reads back as the same number. */
+/* Writes the shortest decimal form, of at least 15 digits' precision, that reads back as the same number. */
 void number_text(double value, char text[NUMBER_LENGTH]);
 void print_number(FILE *file, double value);

@@ -5,7 +5,7 @@
 #include "algebra/simplify.h"
 #include "random_numbers.h"
 
-/* --- Values on numbers, where C's math library has none or a less exact one --- */
+/* --- Values on numbers, if C's math library has no function or a less exact one --- */
 
 static double sum_of(double left, double right) {
   return left + right;
@@ -27,7 +27,10 @@ static double sign_of(double x) {
   return (double)((x > 0.0) - (x < 0.0));
 }
 
-/* sin and cos of whole quarter turns are exact, so that linearising about theta = pi leaves no rounding. */
+/*
+ * Returns sin(angle + quarter_turns pi/2). Multiples of pi/2 give exact values, so that linearization at theta = pi has
+ * no rounding errors.
+ */
 static double exact_sine(double angle, double quarter_turns) {
   double turns = quarter_turns + nearbyint(angle / (M_PI / 2));
   if (fabs(turns) < 1e6 && angle == (turns - quarter_turns) * (M_PI / 2)) {
@@ -76,7 +79,7 @@ static Node cosh_of_operand(struct Graph *graph, Node node) {
   return function(graph, COSH, operand(graph, node), ZERO);
 }
 
-/* constant + factor node^2 */
+/* Returns constant + factor node^2. */
 static Node with_square(struct Graph *graph, double constant, double factor, Node node) {
   Node square = scale(graph, factor, power_number(graph, node, 2.0));
   return add(graph, graph_constant(graph, constant), square);
@@ -121,8 +124,8 @@ static Node difference(struct Graph *graph, Node node) {
 }
 
 /*
- * Whole powers come from smaller ones, so that a base of 0 is no pole, and negative ones are quotients; variable
- * exponents go by exp and log.
+ * Returns the auxiliary of a power. Whole powers come from smaller ones, so that a base of 0 is allowed; negative ones
+ * are reciprocals; exponents that vary in time use exp and log.
  */
 static Node auxiliary_of_power(struct Graph *graph, Node node) {
   Node base = graph->vertices[node].left, exponent = graph->vertices[node].right;
@@ -135,7 +138,7 @@ static Node auxiliary_of_power(struct Graph *graph, Node node) {
   return graph_node(graph, POWER, base, graph_constant(graph, lower));
 }
 
-/* --- Partial derivatives of what has no recurrence that gives them; by_right stays ZERO for one operand --- */
+/* --- Partial derivatives of operations whose recurrence does not give them; by_right stays ZERO for one operand --- */
 
 static void along_sum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   (void)graph;
@@ -202,7 +205,7 @@ const struct Function functions[OPERATION_COUNT] = {
                .recurrence = ANGLE,
                .auxiliary = sum_of_squares,
                .partial_derivatives = along_angle,
-               .auxiliary_limit = "positive"}, /* and by both operands: series_limit_angle() */
+               .auxiliary_limit = "positive"}, /* both operands too: series_limit_angle() */
     [MINIMUM] = {.name = "min",
                  .c_name = "fmin",
                  .of_two = fmin,

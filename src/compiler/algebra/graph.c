@@ -30,7 +30,7 @@ struct Graph *graph_create(void) {
   return graph;
 }
 
-/* Constants are told apart by their bits: -0 is not 0, and NaN is itself. */
+/* Constants are compared by their bits, so that NaN equals itself. */
 static uint64_t bits_of(double value) {
   uint64_t bits;
   memcpy(&bits, &value, sizeof bits);
@@ -76,7 +76,7 @@ const char *graph_limit(const struct Graph *graph) {
 }
 
 static Node intern(struct Graph *graph, struct Vertex vertex) {
-  graph_work(graph, 2); /* with the algebra that asks for it */
+  graph_work(graph, 2); /* the cost of the algebra around it */
   size_t place = hash(&vertex) & (graph->bucket_count - 1);
   for (; graph->buckets[place] != 0; place = (place + 1) & (graph->bucket_count - 1)) {
     Node node = graph->buckets[place] - 1;
@@ -93,7 +93,7 @@ static Node intern(struct Graph *graph, struct Vertex vertex) {
 
 Node graph_constant(struct Graph *graph, double value) {
   graph->not_finite |= !isfinite(value);
-  if (value == 0.0) value = 0.0; /* one zero: -0.0 and 0.0 are the same node */
+  if (value == 0.0) value = 0.0; /* -0.0 becomes 0.0: there is one zero */
   return intern(graph, (struct Vertex){.operation = CONSTANT, .value = value});
 }
 

@@ -4,8 +4,8 @@
 #include "base/memory.h"
 
 /*
- * The name of the kink that a node makes, NULL for none. An inverse function of its own function is piecewise linear:
- * its series goes on where it turns.
+ * Returns the name of the kink of an inverse function of its own function, such as asin(sin(x)); NULL for none. It is
+ * piecewise linear, and the series of a piece continues beyond the kink.
  */
 static const char *kink_without_series(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = &graph->vertices[node];
@@ -21,7 +21,7 @@ static const char *kink_at(const struct Graph *graph, Node node) {
   return row->has_pieces ? row->name : kink_without_series(graph, node);
 }
 
-/* What `at` says of the first node below these that changes in time and of which it says something. */
+/* Returns the result of `at` for the first node below these that varies in time and has one; NULL for none. */
 static const char *find_kink(const struct Graph *graph, const Node *nodes, size_t count,
                              const char *(*at)(const struct Graph *, Node)) {
   bool *needed = allocate(graph->count, sizeof *needed);

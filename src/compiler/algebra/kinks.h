@@ -1,13 +1,13 @@
-/* Where functions turn or jump. */
+/* Kinks and jumps of functions. */
 #pragma once
 
 #include "algebra/graph.h"
 
 /*
- * The name of a function with a kink or a jump, such as "min", below the nodes; NULL for none. Its pieces have series,
- * which end where the next piece begins.
+ * Returns the name of a function below the nodes that has a kink or a jump, such as "min"; NULL for none. Each of its
+ * pieces has a series, which ends at the next one.
  */
 const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 
-/* The same for a kink that no series sees, as that of asin(sin(x)). */
+/* Returns that of a kink that no series shows, as that of asin(sin(x)). */
 const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);

@@ -1,9 +1,9 @@
-/* Nodes in a row. */
+/* Lists of nodes. */
 #pragma once
 
 #include "algebra/graph.h"
 
-/* A growing list. */
+/* A growing list of nodes. */
 struct NodeList {
   Node *nodes;
   size_t count;
@@ -12,5 +12,5 @@ struct NodeList {
 void append_node(struct NodeList *list, Node node);
 void append_nodes(struct NodeList *list, const Node *nodes, size_t count);
 
-/* Puts nodes in ascending order. */
+/* Sorts nodes in ascending order. */
 void sort_nodes(Node *nodes, size_t count);

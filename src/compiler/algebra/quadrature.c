@@ -2,7 +2,10 @@
 
 #include <math.h>
 
-/* The Legendre polynomial of a degree and its derivative, by the recurrence of three terms. */
+/*
+ * Returns the Legendre polynomial P_n(x), and its derivative, by the three-term recurrence
+ *  k P_k = (2 k - 1) x P_(k-1) - (k - 1) P_(k-2).
+ */
 static long double legendre(size_t degree, long double x, long double *derivative) {
   long double before = 1.0L, value = x;
   for (size_t k = 2; k <= degree; k++) {
@@ -14,7 +17,10 @@ static long double legendre(size_t degree, long double x, long double *derivativ
   return value;
 }
 
-/* Each zero by Newton's method from Tricomi's estimate, which it reaches in some four steps. */
+/*
+ * Finds each zero of P_n by Newton's method from Tricomi's estimate. Newton's method converges quadratically in about
+ * four steps.
+ */
 void quadrature_rule(size_t count, double *nodes, double *weights) {
   enum { NEWTON_STEPS = 10 };
   for (size_t i = 0; i < count; i++) {

@@ -10,7 +10,7 @@ static Node magnitude(struct Graph *graph, Node node) {
   return function(graph, ABSOLUTE, node, ZERO);
 }
 
-/* Of a value whose operands have these. */
+/* Returns the bound of a value from those of its operands. */
 static Node rounding_of(struct Graph *graph, Node node, Node left, Node right) {
   enum Operation operation = graph->vertices[node].operation;
   if (operation == GATE) return function(graph, GATE, graph->vertices[node].left, right);

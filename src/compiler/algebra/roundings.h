@@ -1,12 +1,13 @@
-/* How much of an expression's value is rounding. */
+/* Rounding error bounds of expressions. */
 #ifndef ROUNDINGS_H
 #define ROUNDINGS_H
 
 #include "algebra/graph.h"
 
 /*
- * What the roundings of all operations below the targets may make of their values, in units of the relative rounding
- * error, by a running error analysis to first order; symbols are taken as exact.
+ * Computes first-order bounds of the rounding errors of the targets, in units of the relative rounding error, by
+ * running error analysis (N. J. Higham: Accuracy and Stability of Numerical Algorithms, SIAM, 2002, section 3.3):
+ * E(f(x, y)) = |f_x| E(x) + |f_y| E(y) + |f|. Symbols count as exact.
  */
 void roundings_of(struct Graph *graph, const Node *targets, size_t count, Node *roundings);
 

@@ -12,7 +12,7 @@ static bool is_whole(double value) {
   return value == floor(value) && fabs(value) < 1e9;
 }
 
-/* The number that a POWER node has as its exponent, or NAN. */
+/* Returns the exponent of a POWER node if it is a number, else NAN. */
 static double numeric_exponent(const struct Graph *graph, const struct Vertex *vertex) {
   return graph_is_constant(graph, vertex->right) ? graph_value(graph, vertex->right) : NAN;
 }
@@ -51,7 +51,7 @@ static int insert_factor(struct Factor factors[FACTOR_LIMIT], int count, Node ba
   return count + 1;
 }
 
-/* Products looked into for their factors, so that long ones are neither searched as a whole nor exhaust the stack. */
+/* Most MULTIPLY nodes visited in a search for factors. Bounds its time and its recursion. */
 enum { PRODUCT_LIMIT = 4 * FACTOR_LIMIT };
 
 static int collect_factors(const struct Graph *graph, Node node, double exponent, struct Factor *factors, int count,
@@ -91,7 +91,7 @@ Node product_of(struct Graph *graph, const struct Factor *factors, int count) {
   return product;
 }
 
-/* Whether a product holds a factor that the other one divides by, so that something cancels. */
+/* True if the products have a common base with exponents of opposite sign. */
 static bool cancels(const struct Factor *left, int left_count, const struct Factor *right, int right_count) {
   for (int i = 0, j = 0; i < left_count && j < right_count;) {
     if (left[i].base == right[j].base && left[i].exponent * right[j].exponent < 0) return true;
@@ -135,7 +135,7 @@ Node power_number(struct Graph *graph, Node base, double exponent) {
   return power(graph, base, graph_constant(graph, exponent));
 }
 
-/* Whether a node that is real is never negative. */
+/* True if a real value of the node is never negative. */
 static bool is_never_negative(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = vertex_of(graph, node);
   double n = vertex->operation == POWER ? numeric_exponent(graph, vertex) : NAN;
@@ -143,8 +143,8 @@ static bool is_never_negative(const struct Graph *graph, Node node) {
 }
 
 /*
- * (u^2 w)^n = |u|^(2 n) w^n for an n that is not whole: it has a kink where u changes its sign, unless 2 n is even. False
- * where the base holds no even power.
+ * Rewrites a root of a product with even powers: (u^2 w)^n = |u|^(2 n) w^n for an n that is not whole; |u| is u if 2 n
+ * is even. False if the base has no even power.
  */
 static bool root_of_even_powers(struct Graph *graph, Node base, double n, Node *result) {
   Node bare;
@@ -221,7 +221,7 @@ static struct Term term_of(const struct Graph *graph, Node node) {
   return term;
 }
 
-/* Takes the factors that both terms have out of both; returns how many are in common. */
+/* Removes the factors that both terms have from both. Returns their number. */
 static int common_factors(struct Term *a, struct Term *b, struct Factor *common) {
   int count = 0, a_count = 0, b_count = 0, i = 0, j = 0;
   while (i < a->factor_count || j < b->factor_count) {
@@ -242,7 +242,7 @@ static int common_factors(struct Term *a, struct Term *b, struct Factor *common)
   return count;
 }
 
-/* Whether the term has been reduced to sin(u)^2 or cos(u)^2; says which, and gives u. */
+/* True if the term is sin(u)^2 or cos(u)^2; returns which one, and u. */
 static bool is_square_of(const struct Graph *graph, const struct Term *term, enum Operation *operation, Node *angle) {
   if (term->factor_count != 1 || term->factors[0].exponent != 2.0) return false;
   const struct Vertex *vertex = vertex_of(graph, term->factors[0].base);
@@ -251,7 +251,7 @@ static bool is_square_of(const struct Graph *graph, const struct Term *term, enu
   return *operation == SINE || *operation == COSINE;
 }
 
-/* a + b as one term, where like terms or a trigonometric identity allow it. */
+/* Combines a + b into one term, by equal factors, sin^2 + cos^2 = 1 or 1 - sin^2 = cos^2. False if none applies. */
 static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *result) {
   if (a.factor_count < 0 || b.factor_count < 0) return false;
   struct Factor common[2 * FACTOR_LIMIT];
@@ -315,7 +315,7 @@ Node subtract(struct Graph *graph, Node left, Node right) {
   return add(graph, left, negate(graph, right));
 }
 
-/* What is open, or closed, for good, or opened by a gate of 1 alone, needs none of its own. */
+/* Simplifies guards: a constant condition removes one, and the guard of a guarded 1 uses its condition. */
 static Node gate(struct Graph *graph, Node opener, Node node) {
   const struct Vertex *vertex = &graph->vertices[opener];
   if (graph_is_constant(graph, opener)) return graph_value(graph, opener) > 0.0 ? node : ZERO;

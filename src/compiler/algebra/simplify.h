@@ -1,6 +1,13 @@
 /*
- * The algebra of the expression graph. These constructors fold constants, gather like terms, cancel common factors
- * and apply sin^2 + cos^2 = 1, looking only at a bounded number of neighbours, so that building stays linear.
+ * Constructors of simplified expressions. They fold constants, gather like terms, cancel common factors and apply
+ * sin^2 + cos^2 = 1.
+ *
+ * Each result is in a local normal form: a node is coefficient * base with at most one numeric factor, which is the
+ * left operand; operands of sums and products are ordered by number; a numeric whole power of a power is one power; a
+ * product is regrouped by base if a factor cancels. The form is not canonical: equal expressions may be different
+ * nodes, and rational.h decides more cases at a higher cost. A sum compares at most TERM_LIMIT terms of each operand, a
+ * product at most FACTOR_LIMIT factors, so the cost of a node is bounded. Each combination of two terms leaves one, so
+ * the recursion ends.
  */
 #pragma once
 
@@ -8,7 +15,10 @@
 
 Node add(struct Graph *graph, Node left, Node right);
 
-/* left + right in one operation: sums stay as they are, and as others need them, where gathering like terms takes them apart. */
+/*
+ * Returns left + right as one operation, without gathering like terms, so that both sums stay shared with their other
+ * users.
+ */
 Node add_whole(struct Graph *graph, Node left, Node right);
 
 Node subtract(struct Graph *graph, Node left, Node right);
@@ -18,16 +28,16 @@ Node negate(struct Graph *graph, Node node);
 Node scale(struct Graph *graph, double factor, Node node);
 Node power(struct Graph *graph, Node base, Node exponent);
 
-/* base to a number */
+/* Returns base^exponent. */
 Node power_number(struct Graph *graph, Node base, double exponent);
 
-/* A function of one or two operands; right is ignored for one. */
+/* Returns a function of one or two operands; right is ignored for one. */
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right);
 
-/* The first node where the condition is positive, else the other. */
+/* Returns an expression for positive if condition > 0, else for other. */
 Node choose_node(struct Graph *graph, Node condition, Node positive, Node other);
 
-/* node = coefficient * base with base free of a numeric factor; a number has the base ONE. */
+/* Splits a node into coefficient * base; base has no numeric factor. A number has the base ONE. */
 double coefficient_of(const struct Graph *graph, Node node, Node *base);
 
 /* A factor base^exponent of a product. */
@@ -36,16 +46,17 @@ struct Factor {
   double exponent;
 };
 
+/* Most factors of a product, and terms of a sum, that are compared with others. */
 enum { FACTOR_LIMIT = 12, TERM_LIMIT = 6 };
 
 /*
- * The factors of a node without its coefficient, ascending by base, at most FACTOR_LIMIT of them.
- * Returns their number, or -1 where there are more.
+ * Finds the factors of a node without its coefficient, ascending by base. Returns their number, or -1 if there are more
+ * than FACTOR_LIMIT.
  */
 int factors_of(const struct Graph *graph, Node node, struct Factor factors[FACTOR_LIMIT]);
 
-/* The product of factors, denominators last. */
+/* Returns the product of factors, denominators last. */
 Node product_of(struct Graph *graph, const struct Factor *factors, int count);
 
-/* Splits a sum into at most limit terms, which may be sums themselves. Returns their number. */
+/* Splits a sum into at most limit terms; the last ones may be sums. Returns their number. */
 int terms_of(const struct Graph *graph, Node node, Node *terms, int limit);

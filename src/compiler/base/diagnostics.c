@@ -7,10 +7,10 @@
 
 #include "base/memory.h"
 
-/* What a message says of a very long text has room before and behind what it leaves out. */
+/* Bytes of a longer text that a message shows: its beginning and its end. */
 enum { HEAD_LENGTH = 600, TAIL_LENGTH = 400 };
 
-/* As many of the last lines are compared with a new one. */
+/* Number of latest lines that note_line() searches for a repeated one; enough for the messages of one element. */
 enum { RECENT_LINES = 64 };
 
 static bool continues_letter(char byte) {
@@ -63,7 +63,7 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
   va_end(arguments);
 }
 
-/* Notes an error, where there is room; false for one that was noted before. */
+/* Adds an error to those reported, if there is room; false if it is already there. */
 static bool note_told(struct Diagnostics *diagnostics, char *error) {
   int i = 0;
   while (i < ERROR_LIMIT && diagnostics->told[i] != NULL && strcmp(diagnostics->told[i], error) != 0) i++;
@@ -73,7 +73,7 @@ static bool note_told(struct Diagnostics *diagnostics, char *error) {
   return is_new;
 }
 
-/* What is read in several places, as the stiffness of a spring, is wrong in each. */
+/* One text may be read in several contexts, such as the stiffness of a spring; its error is reported once. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
   struct FileLine place = file_line(diagnostics, line);
   char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", place.file, place.line, text);

@@ -1,19 +1,19 @@
-/* Messages for the person who wrote the file: "file:line: what is wrong, and what was expected". */
+/* Messages to the author of a file: "file:line: what is wrong, and what was expected". */
 #pragma once
 
 #include <stdarg.h>
 #include <stddef.h>
 
-/* As many errors of one file are shown: a mistake in a loop would be told ten thousand times. */
+/* Most errors shown for a file: an error inside a loop may repeat ten thousand times. */
 enum { ERROR_LIMIT = 100 };
 
-/* A line of a file, for messages that come when another file is read, or all have been. */
+/* A line of a file, for messages that are printed while another file is read, or later. */
 struct FileLine {
   const char *file, *origin; /* as in struct Diagnostics */
   long line;
 };
 
-/* Lines of other files than the user's own, that of the system. */
+/* Lines of files other than the user's own file, the system itself. */
 struct FileLines {
   const char *own;
   struct FileLine *items;
@@ -22,30 +22,30 @@ struct FileLines {
 
 struct Diagnostics {
   const char *file;        /* the file being read, as named by the user */
-  const char *origin;      /* how it comes to be read, for the end of messages; NULL for the user's own */
-  struct FileLines *noted; /* shared by all that read files of a system; NULL where none is read */
+  const char *origin;      /* says how the file is included, for the end of messages; NULL for the user's own */
+  struct FileLines *noted; /* shared by all readers of a system's files; NULL if no file is read */
   int errors;
-  char *told[ERROR_LIMIT]; /* errors, none of which is told twice */
+  char *told[ERROR_LIMIT]; /* errors reported so far, each once; NULL at the end */
 };
 
 /*
- * Returns a number for a line of the file being read, for later messages: the line itself in the user's own file, else a
- * negative number. All functions below take both.
+ * Returns a number for a line of the current file, for later messages: the line itself in the user's own file, else a
+ * negative number. All functions below accept both.
  */
 long note_line(const struct Diagnostics *diagnostics, long line);
 
-/* The file and the line that such a number stands for. */
+/* Returns the file and the line of such a number. */
 struct FileLine noted_line(const struct FileLines *noted, long line);
 
-/* Prints an error to stderr, unless there have been many, and counts it; line 0 where no line can be named. */
+/* Prints an error to stderr, up to ERROR_LIMIT different ones, and counts it. line is 0 if unknown. */
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The same with the arguments that a caller was given. */
+/* Does the same with a list of arguments. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments)
     __attribute__((format(printf, 3, 0)));
 
-/* Prints to stderr what is right, but good to know. */
+/* Prints to stderr a note: nothing is wrong. */
 void report_note(const struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

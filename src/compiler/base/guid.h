@@ -1,9 +1,9 @@
-/* A GUID made from content: the same model gives the same GUID on every machine. */
+/* A GUID computed from content: the same model has the same GUID on every machine. */
 #pragma once
 
 #include <stddef.h>
 
 enum { GUID_LENGTH = 39 };
 
-/* Writes "{xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx}" for the concatenated texts. */
+/* Writes "{xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx}" for the concatenated texts; count is their number. */
 void guid_of(const char *const *texts, size_t count, char guid[GUID_LENGTH]);

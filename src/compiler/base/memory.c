@@ -9,7 +9,7 @@
 
 #include "base/platform.h"
 
-/* All blocks, in a ring that begins and ends here. */
+/* A block of memory. All blocks form a ring, which starts and ends at `ring`. */
 struct Block {
   struct Block *previous, *next;
   max_align_t content[];

@@ -1,11 +1,11 @@
 /* Paths of files that name each other. */
 #pragma once
 
-/* The one absolute path of a file; NULL where there is no such file, and errno tells why. */
+/* Returns the canonical absolute path of a file; NULL with errno set if there is no such file. */
 char *canonical_path(const char *path);
 
-/* The name of a file without its folder; a part of the path. */
+/* Returns the name of a file without its folder, as a part of path. */
 const char *file_name(const char *path);
 
-/* A path that a file names, relative to that file. */
+/* Returns the path of a file that another file, present, names relative to itself. */
 char *path_beside_file(const char *present, const char *named);

@@ -12,7 +12,10 @@
 #include <fcntl.h>
 #include <io.h>
 
-/* There are no streams into memory: a file, which Windows keeps in memory where it can, and removes when it is closed. */
+/*
+ * Windows has no memory streams. A temporary file stands in, which Windows keeps in memory if possible, and deletes
+ * when it is closed.
+ */
 FILE *open_text_stream(char **text, size_t *length) {
   *text = NULL;
   *length = 0;
@@ -107,7 +110,7 @@ bool is_absolute(const char *path) {
 }
 
 #ifdef __wasi__
-/* Its module has a limit of its own. */
+/* A WebAssembly module has its own limit. */
 void limit_memory(size_t bytes) {
   (void)bytes;
 }

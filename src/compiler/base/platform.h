@@ -1,31 +1,37 @@
-/* What C leaves to the operating system. */
+/* Functions that depend on the operating system. */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
-/* A stream into memory, NULL where there is no memory; what was written becomes a string with close_text_stream(). */
+/* Returns a stream into memory, or NULL without memory. close_text_stream() completes the string *text. */
 FILE *open_text_stream(char **text, size_t *length);
 
-/* False where there is no memory; else the text is to be freed with free(). Both pointers are those of open_text_stream(). */
+/*
+ * Closes the stream; takes the pointers of open_text_stream(). The caller frees *text with free(). False without
+ * memory.
+ */
 bool close_text_stream(FILE *file, char **text, size_t *length);
 
-/* Creates a directory in one that is there; whether it is there afterwards. Else errno tells why. */
+/* Creates a directory in an existing one. True if it exists afterwards; else errno is set. */
 bool make_directory(const char *path);
 
-/* The one absolute path of a file, to be freed with free(); NULL where there is no such file, and errno tells why. */
+/*
+ * Returns the canonical absolute path of a file, which the caller frees with free(); NULL with errno set if there is no
+ * such file.
+ */
 char *resolve_path(const char *path);
 
-/* The first and the last / of a path, or on Windows \; NULL without one. */
+/* Return the first and the last separator of a path, / or on Windows also \; NULL if there is none. */
 char *first_separator(char *path);
 const char *last_separator(const char *path);
 
-/* Whether the path does not begin in the present directory. */
+/* True if the path is absolute. */
 bool is_absolute(const char *path);
 
-/* From so many bytes on allocations fail, where the system can do that and no sanitizer needs more. */
+/* Limits the address space of the process to so many bytes, if the system can do so and no sanitizer is in use. */
 void limit_memory(size_t bytes);
 
-/* Makes \n the end of a line on the standard output too. */
+/* Makes standard output end lines by \n on every system. */
 void write_plain_lines(void);

@@ -1,14 +1,14 @@
-/* Numbers in ascending order. */
+/* Sorting and comparing of sizes. */
 #pragma once
 
 #include <stddef.h>
 
 void sort_sizes(size_t *sizes, size_t count);
 
-/* For qsort(). */
+/* Compares two sizes, for qsort(). */
 int compare_sizes(const void *first, const void *second);
 
-/* The larger and the smaller of two. */
+/* Return the larger and the smaller of two sizes. */
 static inline size_t larger(size_t a, size_t b) {
   return a > b ? a : b;
 }

@@ -6,14 +6,14 @@
 
 #include "base/memory.h"
 
-/* Below this share of its summands a coefficient is a rounding error of 0. */
+/* A sum below this share of its summands is a rounding error of 0: some hundred roundings. */
 static const double cancellation = 1e-13;
 
 static struct Polynomial with_capacity(size_t count) {
   return (struct Polynomial){.terms = allocate(count, sizeof(struct Monomial))};
 }
 
-/* A coefficient that overflows or loses digits at the lower end of the numbers would give another value. */
+/* Marks an overflow if the coefficient is not a normal number: digits would be lost. */
 static void set_coefficient(struct Polynomial *p, size_t term, double coefficient) {
   p->terms[term].coefficient = coefficient;
   p->overflow = p->overflow || !isnormal(coefficient);
@@ -99,7 +99,7 @@ struct Polynomial polynomial_multiply(const struct Polynomial *a, const struct P
   return product;
 }
 
-/* Whether the monomial b divides a; the quotient in *quotient. */
+/* True if the monomial b divides a; returns the quotient. */
 static bool divide_monomial(const struct Monomial *a, const struct Monomial *b, struct Monomial *quotient) {
   for (int atom = 0; atom < ATOM_LIMIT; atom++) {
     if (a->exponent[atom] < b->exponent[atom]) return false;
@@ -116,7 +116,7 @@ bool polynomial_divide(const struct Polynomial *a, const struct Polynomial *b, s
     struct Monomial lead;
     if (!divide_monomial(&rest.terms[0], &b->terms[0], &lead)) break;
     struct Polynomial part = polynomial_copy(b), one = {.terms = &lead, .count = 1};
-    polynomial_scale(&part, lead.coefficient, lead.exponent); /* overflows where lead is no normal number */
+    polynomial_scale(&part, lead.coefficient, lead.exponent); /* overflows if lead is not normal */
     struct Polynomial smaller = polynomial_add(&rest, &part, -1.0), sum = polynomial_add(quotient, &one, 1.0);
     polynomial_free(&part);
     polynomial_free(&rest);

@@ -29,7 +29,7 @@ static struct Fraction fraction_copy(const struct Fraction *fraction) {
   return (struct Fraction){polynomial_copy(&fraction->above), polynomial_copy(&fraction->below)};
 }
 
-/* Replaces a and b by their quotient and 1 where one divides the other. Single monomials have no factor left. */
+/* Cancels b from a, or a from b, if one divides the other. Single monomials have no common factor here. */
 static void cancel_polynomials(struct Polynomial *a, struct Polynomial *b) {
   struct Polynomial quotient;
   if (a->count == 1 || b->count == 1) return;
@@ -41,7 +41,7 @@ static void cancel_polynomials(struct Polynomial *a, struct Polynomial *b) {
   *b = below ? polynomial_constant(1.0) : quotient;
 }
 
-/* Euclid's algorithm for whole numbers. */
+/* Returns the greatest common divisor of whole numbers, by Euclid's algorithm. */
 static double greatest_common_divisor(double a, double b) {
   while (b != 0.0) {
     double rest = fmod(a, b);
@@ -52,8 +52,9 @@ static double greatest_common_divisor(double a, double b) {
 }
 
 /*
- * What to divide all coefficients by: it leaves whole numbers without a common divisor where the coefficients are
- * binary fractions, so that rational coefficients stay exact, and a leading 1 below otherwise.
+ * Returns the number by which all coefficients are divided. If they are multiples of 1/1024, the results are whole
+ * numbers without a common divisor, so that rational coefficients stay exact. Else the denominator gets the leading
+ * coefficient 1.
  */
 static double common_divisor(const struct Polynomial *above, const struct Polynomial *below) {
   const struct Polynomial *const parts[] = {above, below};
@@ -130,7 +131,7 @@ static struct Fraction fraction_power(const struct Fraction *x, int exponent) {
   return result;
 }
 
-/* known: the fractions of all nodes below, by their places in the cone. */
+/* Returns the fraction of a node; known holds those of the nodes below, by their places in the cone. */
 static struct Fraction convert(struct Converter *converter, Node node, const struct Fraction *known) {
   const struct Cone *cone = converter->graph->cone;
   const struct Vertex *vertex = &converter->graph->vertices[node];
@@ -191,8 +192,8 @@ static void note_large(struct Graph *graph, Node node) {
 }
 
 /*
- * Ends the collection of what is too large, for what can be told without expanding it: a node was before, or symbols and
- * functions alone, which are counted, are more atoms than there may be.
+ * Ends the collection of an expression that is too large, before it is expanded: it has more than ATOM_LIMIT symbols
+ * and functions, or contains a node that was found too large.
  */
 static enum Visit visit_while_small(void *atoms, const struct Graph *graph, Node node) {
   enum Operation operation = graph->vertices[node].operation;
@@ -201,7 +202,7 @@ static enum Visit visit_while_small(void *atoms, const struct Graph *graph, Node
   return is_large ? VISIT_NO_MORE : VISIT_OPERANDS;
 }
 
-/* Steps that it takes to convert the node of this place: products and quotients look at all pairs of terms. */
+/* Returns the steps of graph_work() for a node: products and quotients combine all pairs of terms. */
 static size_t work_of(const struct Graph *graph, const struct Fraction *known, size_t place) {
   const struct Cone *cone = graph->cone;
   const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
@@ -214,7 +215,7 @@ static size_t work_of(const struct Graph *graph, const struct Fraction *known, s
   return terms + left->above.count * right->above.count;
 }
 
-/* The fractions of count nodes, by way of those of all nodes that they need. False where they are too large. */
+/* Converts nodes, and all nodes below them, to fractions. False if they are too large. */
 static bool convert_all(struct Converter *converter, const Node *nodes, size_t count, struct Fraction *fractions) {
   struct Cone *cone = converter->graph->cone;
   int atoms = 0;
@@ -249,7 +250,7 @@ Node simplify_fraction(struct Graph *graph, Node node) {
   return result;
 }
 
-/* x - factor * y in place of x */
+/* Replaces x by x - factor * y. */
 static void fraction_subtract(struct Fraction *x, const struct Fraction *factor, const struct Fraction *y) {
   struct Fraction product = fraction_multiply(factor, y);
   for (size_t i = 0; i < product.above.count; i++) product.above.terms[i].coefficient *= -1.0;
@@ -259,7 +260,10 @@ static void fraction_subtract(struct Fraction *x, const struct Fraction *factor,
   *x = difference;
 }
 
-/* Gauss and Jordan's elimination of n rows of the matrix and its right sides, width fractions each. */
+/*
+ * Gauss-Jordan elimination of n rows of width fractions: the matrix and its right sides. Pivots are the diagonal
+ * elements. False if one is 0.
+ */
 static bool eliminate(size_t n, size_t width, struct Fraction *rows) {
   for (size_t k = 0; k < n; k++) {
     struct Fraction *pivot_row = rows + k * width;

@@ -1,6 +1,8 @@
 /*
- * The pair of factors that most products hold becomes a factor of its own, again and again, until no two products share a
- * pair (M. A. Breuer: Generation of optimal code for expressions via factorization, 1969).
+ * Finds common factors of products by Breuer's greedy method: the most frequent pair of factors becomes a new factor,
+ * until no pair occurs twice (M. A. Breuer: Generation of optimal code for expressions via factorization,
+ * Communications of the ACM 12, 1969). Each round lowers the number of factors, so it ends. A round sorts all p pairs,
+ * in O(p log p) steps; DECIDING_LIMIT bounds p.
  */
 #include "algebra/polynomials/shared_products.h"
 
@@ -10,30 +12,36 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-enum { DECIDING_LIMIT = 800 }; /* more factors would take long to compare */
+/*
+ * Most factors in products that decide on pairs. The number of pairs grows with the square of a product's length, that
+ * of rounds with the number of products.
+ */
+enum { DECIDING_LIMIT = 800 };
 
 struct Product {
   Node node;
   struct Factor factors[FACTOR_LIMIT]; /* ascending by base */
   int count;
-  bool decides; /* which pairs there are */
+  bool decides; /* its pairs are counted; those of others are only replaced */
 };
 
 struct Pair {
   Node left, right;
 };
 
-/* Bases below first_pair are nodes, the others pairs in the order in which they were found. */
+/*
+ * State of the method. Bases below first_pair are nodes; the others are pairs, in the order in which they were found.
+ */
 struct Sharing {
   struct Graph *graph;
-  Node *members; /* all that the nodes need, ascending */
+  Node *members; /* all nodes below the given ones, ascending */
   size_t member_count;
   Node first_pair;
-  Node *value; /* by which each node or pair is replaced; ZERO where it is not known */
+  Node *value; /* [node or pair]: its replacement; ZERO while unknown */
   struct Pair *pairs;
   size_t pair_count;
   struct Product *products;
-  size_t product_count, deciding_count; /* products; factors of those that decide */
+  size_t product_count, deciding_count; /* of products; of factors in those that decide */
 };
 
 static bool is_sum(const struct Graph *graph, Node node) {
@@ -46,7 +54,7 @@ static bool is_product(const struct Graph *graph, Node node) {
   return (operation == MULTIPLY || operation == POWER) && coefficient_of(graph, node, &base) == 1.0;
 }
 
-/* Marks the terms of sums that are marked, and the factors of products. */
+/* Marks the terms of marked sums, and the factors of marked products. */
 static void mark_terms(const struct Graph *graph, const struct Cone *cone, bool *is_term) {
   for (size_t i = cone->count; i-- > 0;) {
     Node node = cone->nodes[i], base;
@@ -73,7 +81,10 @@ static void append_products(struct Sharing *sharing, const bool *is_term, const 
   }
 }
 
-/* How often a product holds a pair; powers but squares stay whole, as their own limits and recurrences serve them. */
+/*
+ * Returns how often a product contains a pair. Only factors with the exponents 1 and 2 form pairs: other powers have
+ * their own recurrences and step bounds.
+ */
 static int times_of(const struct Factor *left, const struct Factor *right) {
   bool are_usable =
       (left->exponent == 1.0 || left->exponent == 2.0) && (right->exponent == 1.0 || right->exponent == 2.0);
@@ -88,7 +99,7 @@ static int compare_pairs(const void *a, const void *b) {
   return (one->right > other->right) - (one->right < other->right);
 }
 
-/* All pairs in ascending order, each as often as products hold it. */
+/* Returns all pairs of deciding products, sorted, each as often as it occurs. */
 static struct Pair *pairs_of(const struct Sharing *sharing, size_t *count) {
   struct Pair *pairs = NULL;
   *count = 0;
@@ -112,7 +123,7 @@ static bool is_constant(const struct Sharing *sharing, Node base) {
   return is_constant(sharing, pair->left) && is_constant(sharing, pair->right);
 }
 
-/* The pair that is there most often, rather one of two factors that change in time; false where none is there twice. */
+/* Finds the most frequent pair; among equals, one of two factors that vary in time. False if none occurs twice. */
 static bool find_most_frequent(const struct Sharing *sharing, struct Pair *best) {
   size_t count, most = 1;
   bool best_moves = false;

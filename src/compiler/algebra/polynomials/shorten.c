@@ -6,12 +6,12 @@
 #include "algebra/polynomials/rational.h"
 #include "base/memory.h"
 
-/* How many operations are computed again and again, and how many once, being of parameters alone. */
+/* Numbers of operations: evaluated at each time, and once for given parameters. */
 struct Length {
   size_t in_motion, once;
 };
 
-/* The operations that the nodes take together. */
+/* Counts the operations of all nodes together. */
 static struct Length length_of(const struct Graph *graph, const Node *nodes, size_t count) {
   const struct Cone *cone = graph->cone;
   struct Length length = {0};

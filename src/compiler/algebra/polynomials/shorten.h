@@ -1,16 +1,16 @@
 /*
- * Takes the shorter one of two forms of expressions, by the operations that they need together: those that change in
- * motion count first, those of parameters alone are computed once for all.
+ * Choice of the shorter of two forms of expressions. Counts the operations of all nodes together: first those that vary
+ * in time, then those of parameters alone, which are evaluated once.
  */
 #pragma once
 
 #include "algebra/graph.h"
 
-/* Whether the nodes need fewer operations than the others. */
+/* True if the nodes need fewer operations than the others. */
 bool are_shorter(const struct Graph *graph, size_t count, const Node *nodes, const Node *others);
 
-/* Replaces the nodes by the others where these need fewer operations. */
+/* Replaces the nodes by the others if these need fewer operations. */
 void take_shorter(const struct Graph *graph, size_t count, Node *nodes, const Node *others);
 
-/* Takes the nodes multiplied out, as fractions in lowest terms, where that makes them shorter. */
+/* Replaces the nodes by reduced fractions (rational.h) if these need fewer operations. */
 void shorten(struct Graph *graph, size_t count, Node *nodes);

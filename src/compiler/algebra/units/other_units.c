@@ -9,7 +9,7 @@
 
 #include "base/memory.h"
 
-/* One of the unit is factor * pi^pi_power of the SI unit. */
+/* 1 of the unit is factor * pi^pi_power of the SI unit. */
 struct OtherUnit {
   const char *name, *si;
   double factor;
@@ -69,7 +69,7 @@ static const struct OtherUnit others[] = {
     {"ohm", "Ohm", 1, 0},
 };
 
-/* The length of the name at the beginning: letters, or a sign. */
+/* Returns the length of the unit name at the start of a text: letters, "%" or the degree sign. */
 static size_t length_of_name(const char *text) {
   if (*text == '%') return 1;
   size_t length = strncmp(text, "\xc2\xb0", 2) == 0 ? 2 : 0;
@@ -89,10 +89,10 @@ struct Translation {
   int pi_power;
 };
 
-/* Writes the unit with the SI names; exponents and signs between factors stay as they are. */
+/* Writes a unit with SI names; exponents, points and slashes are copied. */
 static struct Translation translate(const char *text, FILE *file) {
   struct Translation result = {.factor = 1};
-  double side = 1; /* -1 below the slash */
+  double side = 1; /* -1 after the slash */
   while (*text != '\0') {
     size_t length = length_of_name(text);
     if (length == 0) {
@@ -116,7 +116,7 @@ static struct Translation translate(const char *text, FILE *file) {
   return result;
 }
 
-/* The number in a few digits, with e for a power of ten; false where that is not the number. */
+/* Writes a number with up to so many digits, or as a power of ten; false if that is not the number to 1e-12. */
 static bool write_number(char text[32], double number, int digits) {
   double exponent = round(log10(number));
   bool is_power = exponent != 0 && fabs(number * pow(10, -exponent) - 1) < 1e-12;
@@ -125,7 +125,7 @@ static bool write_number(char text[32], double number, int digits) {
   return fabs(strtod(text, NULL) / number - 1) < 1e-12;
 }
 
-/* "1e-2", "1/3.6", "pi/180", "180/pi"; NULL where the factor has no such form. */
+/* Returns a text such as "1e-2", "1/3.6", "pi/180" or "180/pi"; NULL if the factor is not a normal number. */
 static char *factor_text(double factor, int pi_power) {
   char number[32], pi[32] = "pi";
   if (!isnormal(factor)) return NULL;
@@ -137,7 +137,7 @@ static char *factor_text(double factor, int pi_power) {
   return is_above ? format_text("%s/%s", number, pi) : format_text("1/(%s*%s)", number, pi);
 }
 
-/* The unit with SI names, and how it was translated. */
+/* Returns the unit with SI names; *translation has its factor. */
 static char *translation_of(const char *text, struct Translation *translation) {
   struct TextStream stream;
   *translation = translate(text, open_text(&stream));

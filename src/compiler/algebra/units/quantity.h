@@ -5,8 +5,8 @@
 #include "algebra/units/units.h"
 
 /*
- * A number in the file by which the whole quantity is multiplied, raised to a power: with a unit of its own, which the file
- * cannot give it, it would change the quantity's. NULL as text where there is none.
+ * A number in system.xml that multiplies the whole quantity, raised to a power. It may stand for a value with a unit
+ * that the file does not give; messages name it. text is NULL if there is none.
  */
 struct NumberFactor {
   const char *text; /* as written; the name of a <constant> without a unit */
@@ -17,5 +17,5 @@ struct Quantity {
   Node node;
   struct Dimension dimension;
   struct NumberFactor factor;
-  bool literal; /* made of numbers alone: takes the unit of what it is added to or compared with */
+  bool literal; /* made of numbers alone: takes the unit of the quantity that it is added to or compared with */
 };

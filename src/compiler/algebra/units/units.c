@@ -74,7 +74,7 @@ double unit_exponent(const char **text) {
   while (isdigit((unsigned char)*next)) next++;
   if (*next == '.' && isdigit((unsigned char)next[1]))
     for (next++; isdigit((unsigned char)*next);) next++;
-  double exponent = strtod(*text, NULL); /* which reads no further: a unit begins with no digit, x or e behind it */
+  double exponent = strtod(*text, NULL); /* reads no further: no unit begins with a digit, x or e */
   *text = next;
   return exponent;
 }
@@ -84,7 +84,7 @@ struct UnitReader {
   const char *problem;
 };
 
-/* What stands where a name of a unit should be. */
+/* Returns the remedy for a text without a unit name at its start. */
 static const char *problem_of_name(const char *text) {
   if (*text == '\0' || strcmp(text, "-") == 0) return "expected 1 for a pure number, or no unit=\"...\"";
   if (*text == '[') return "expected it without brackets";
@@ -92,7 +92,7 @@ static const char *problem_of_name(const char *text) {
          "for example kg.m2/s2 or N/(m.s)";
 }
 
-/* What stands where a unit should be at its end. */
+/* Returns the remedy for a text after a complete unit. */
 static const char *problem_of_rest(const char *text) {
   if (*text == '^' || strncmp(text, "**", 2) == 0 || strncmp(text, "\xc2\xb2", 2) == 0 ||
       strncmp(text, "\xc2\xb3", 2) == 0)

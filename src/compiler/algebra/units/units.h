@@ -1,6 +1,6 @@
 /*
- * Units of measurement as products of powers of the SI base units and the radian (FMI 2.0.4, section 2.2.2).
- * Only coherent units are known: a quantity in one of them needs no conversion factor.
+ * Units of measurement as products of powers of the SI base units and the radian (FMI 2.0.4, section 2.2.2). Only
+ * coherent units are accepted: they need no conversion factor.
  */
 #pragma once
 
@@ -18,28 +18,31 @@ extern const char *const base_unit_names[BASE_UNIT_COUNT];
 extern const struct Dimension dimension_unknown, dimension_one;
 
 /*
- * Reads a unit such as "kg.m2/s2", "N.m/rad" or "N/(m.s)". Returns false and leaves an explanation in *problem
- * (a static string) where the text is no coherent unit.
+ * Reads a unit such as "kg.m2/s2", "N.m/rad" or "N/(m.s)". If the text is no coherent unit, returns false and sets
+ * *problem to a static explanation.
  */
 bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
 
-/* The exponent behind a unit's name, as in s-1 or Pa0.5, behind which the text then is; 1 where there is none. */
+/* Returns the exponent after a unit's name, as in s-1 or Pa0.5, and moves *text behind it; 1 if there is none. */
 double unit_exponent(const char **text);
 
-/* The dimension of a unit that is right. */
+/* Returns the dimension of a valid unit. */
 struct Dimension unit_of(const char *text);
 
-/* The unit in base units, for example "kg.m2/s2"; "1" without any. */
+/* Returns the dimension in base units, such as "kg.m2/s2"; "1" without any. */
 char *unit_text(struct Dimension dimension);
 
-/* first * second^power; unknown where either is. */
+/* Returns first * second^power; unknown if either is. */
 struct Dimension dimension_multiply(struct Dimension first, struct Dimension second, double power);
 
-/* Whether all exponents are whole numbers, as FMI asks for; false where unknown. */
+/* True if all exponents are whole, as FMI requires; false if unknown. */
 bool dimension_is_whole(struct Dimension dimension);
 
-/* How a message goes on about a quantity of the unit 1 where another is expected, such as cos(a) for a length; else "". */
+/*
+ * Returns the end of a message about a quantity of unit 1 where another unit is expected, such as cos(a) for a length;
+ * else "".
+ */
 const char *unit_hint(struct Dimension dimension);
 
-/* Whether both are the same quantity; the radian counts as 1, unknown agrees with all. */
+/* True if both are the same quantity. The radian counts as 1; an unknown dimension agrees with any. */
 bool dimension_agrees(struct Dimension first, struct Dimension second);
