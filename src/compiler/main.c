@@ -1,4 +1,4 @@
-/* lagc, the Lagrangian compiler: a mechanical system in XML becomes C and modelDescription.xml. */
+/* lagc, the Lagrangian compiler: translates a mechanical system in XML into C and modelDescription.xml. */
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +59,7 @@ struct Arguments {
   struct Extras extras;
 };
 
-/* Up to the next comma that does not stand between the arguments of a function. */
+/* Returns the length up to the next comma outside parentheses. */
 static size_t length_of_part(const char *text) {
   size_t length = 0;
   for (int depth = 0; text[length] != '\0' && (text[length] != ',' || depth > 0); length++)
@@ -76,7 +76,7 @@ static void append_point(struct Arguments *arguments, const char *text) {
   }
 }
 
-/* False where the words do not fit together. */
+/* Returns false if the arguments are not consistent. */
 static bool parse_arguments(int count, char **words, struct Arguments *arguments) {
   for (int i = 1; i < count; i++) {
     const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
@@ -123,14 +123,14 @@ static void print_linearization(const struct Model *model, const struct Equation
   if (system != NULL) linear_system_print(model, system);
 }
 
-/* The equations of motion, with the variational ones where these are asked for. */
+/* Derives the equations of motion, with variational equations if requested. */
 static struct Equations *motion_with_variations(struct Model *model, const struct Arguments *arguments,
                                                 struct Diagnostics *diagnostics) {
   model->unrolled = arguments->along_count > 0;
   struct Equations *equations = motion_of(model, diagnostics);
   if (equations == NULL || arguments->along_count == 0) return equations;
   add_variations(model, equations, arguments->along, arguments->along_count, diagnostics);
-  model->unrolled = model->constraints.count == 0; /* where these are redundant, it is seen at run time alone */
+  model->unrolled = model->constraints.count == 0; /* redundant constraints are detected at run time only */
   return diagnostics->errors == 0 ? motion_of(model, diagnostics) : NULL;
 }
 
@@ -151,14 +151,14 @@ static int run(const struct Arguments *arguments) {
   return diagnostics.errors > 0 ? 1 : 0;
 }
 
-/* False where they cannot be written. */
+/* Returns false on a write error. */
 static bool print_words(void) {
   words_print(stdout);
   schema_print_elements(stdout);
   return fflush(stdout) == 0 && ferror(stdout) == 0;
 }
 
-/* Bytes that systems within the other limits hardly need. */
+/* Memory limit in bytes; systems within the other limits hardly reach it. */
 enum { MEMORY_LIMIT = 640 << 20 };
 
 static _Noreturn void end_without_memory(void) {
@@ -173,7 +173,7 @@ int main(int count, char **words) {
   limit_memory(MEMORY_LIMIT);
   write_plain_lines();
 #ifdef SIGXFSZ
-  signal(SIGXFSZ, SIG_IGN); /* a file that grows beyond the user's limit is told of like a full disk */
+  signal(SIGXFSZ, SIG_IGN); /* exceeding the user's file size limit is then reported like a full disk */
 #endif
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *)),
                                 .along = allocate((size_t)count, sizeof(char *))};

@@ -32,13 +32,13 @@ enum File {
   FILE_COUNT
 };
 
-/* What a file holds; NULL for no file. */
+/* The bytes of a file; NULL if it is not written. */
 struct Content {
   const char *bytes;
   size_t length;
 };
 
-/* What names the files of a run that has not come to its end. */
+/* Suffix of the files of an unfinished run. */
 static const char unfinished[] = ".unfinished";
 
 static char *text_of(const struct Program *program, void (*write)(FILE *, const struct Program *)) {
@@ -47,7 +47,7 @@ static char *text_of(const struct Program *program, void (*write)(FILE *, const 
   return close_text(&text);
 }
 
-/* Creates the directory and those above it. */
+/* Creates the directory and its parents. */
 static bool create_directory(const char *path) {
   char *partial = copy_text(path);
   for (char *end = first_separator(partial + 1); end != NULL; end = first_separator(end + 1)) {
@@ -66,7 +66,7 @@ static bool write_file(const char *path, const struct Content *content) {
   return fclose(file) == 0 && written;
 }
 
-/* The last one is what the build looks for: while it is there, all are of one run. */
+/* CODE comes last: the build waits for it, and while it exists all files are of one run. */
 static const char *const names[FILE_COUNT] = {
     [DESCRIPTION] = "modelDescription.xml",
     [DESCRIPTION_OF_FMI3] = "fmi3/modelDescription.xml",
@@ -102,14 +102,14 @@ static bool write_beside(const char *directory, const struct Content *contents) 
   return written;
 }
 
-/* Puts what was written beside in the place of an earlier run's files. */
+/* Renames the unfinished files to replace those of an earlier run. */
 static bool move_in(const char *directory, const struct Content *contents) {
   bool moved = true;
   char *mark = path_of(directory, FILE_COUNT - 1, "");
   remove(mark);
   for (int i = 0; i < FILE_COUNT && moved; i++) {
     char *from = path_of(directory, i, unfinished), *to = path_of(directory, i, "");
-    remove(to); /* not everywhere does rename do that */
+    remove(to); /* rename() does not replace files on all platforms */
     if (contents[i].bytes != NULL) moved = rename(from, to) == 0;
   }
   return moved;
@@ -119,7 +119,7 @@ void output_remove(const char *directory) {
   remove_all(directory, "");
 }
 
-/* Creates the directory and those in it. */
+/* Creates the directory and its subdirectories. */
 static bool create_directories(const char *directory) {
   static const char *const inner[] = {"documentation/licenses", "fmi3"};
   bool created = create_directory(directory);
@@ -150,7 +150,7 @@ static bool write_buffers(const struct Program *program, const struct Summary *s
          documentation_write(buffers[DOCUMENTATION], program, summary, drawing);
 }
 
-/* Its pictures are there where something is drawn by them. */
+/* Adds the pictures of a flange if terminals use them. */
 static void add_flange(const struct Program *program, struct Content *contents) {
   struct Drawing flange = flange_drawing();
   contents[FLANGE_PICTURE].bytes = (const char *)png_of(&flange, &contents[FLANGE_PICTURE].length);

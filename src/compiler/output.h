@@ -1,6 +1,6 @@
 /*
- * The files that lagc leaves: all of them, or none. They are written beside those of an earlier run and then renamed;
- * wherever lagc is stopped, system.c is there only with the others of its run.
+ * The output files of lagc: all of them, or none. They are written beside those of an earlier run and then renamed.
+ * Wherever lagc is stopped, system.c exists only together with the other files of its run.
  */
 #pragma once
 
@@ -8,12 +8,9 @@
 #include "interface/summary.h"
 #include "program/program.h"
 
-/*
- * Writes system.c, modelDescription.xml and documentation/index.html into the directory, which is created where it
- * is missing, or reports why that fails.
- */
+/* Writes all files into the directory, which is created if missing. Reports an error if that fails. */
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
                   struct Diagnostics *diagnostics);
 
-/* Removes these files, also those of an earlier run: after an error none is left. */
+/* Removes these files, including those of an earlier run, so that an error leaves none. */
 void output_remove(const char *directory);

@@ -1,9 +1,9 @@
-/* Writes the C file of a system: its program as functions, and the description that names them. */
+/* Writes the C file of a system: its functions, and struct Lagrangian, which refers to them. */
 #pragma once
 
 #include <stdio.h>
 
 #include "program/program.h"
 
-/* The file refers to GUID, which the caller defines before it. */
+/* The file uses the macro GUID, which the caller must define before it. */
 void code_write(FILE *file, const struct Program *program);

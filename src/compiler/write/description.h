@@ -1,12 +1,12 @@
-/* The tables of variables and the struct Lagrangian at the end of a generated file. */
+/* Writes the tables of variables and struct Lagrangian, which end a generated file. */
 #pragma once
 
 #include <stdio.h>
 
 #include "program/program.h"
 
-/* The fields of the program's functions that stand in these groups. */
+/* Writes initializers of the function pointers in these groups. */
 void write_fields(FILE *file, const struct Program *program, enum FunctionGroup first, enum FunctionGroup last);
 
-/* work_count: as in struct Lagrangian. */
+/* work_count: length of Point.work that the functions need. */
 void description_write(FILE *file, const struct Program *program, size_t work_count);

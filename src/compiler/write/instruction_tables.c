@@ -47,7 +47,6 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding) {
           encoding->local_count, program->blocks.mass_count, program->blocks.side_count);
 }
 
-/* Numbers in lines. */
 static void write_words(FILE *file, const char *name, const struct Words *words) {
   fprintf(file, "static const uint32_t %s_code[] = {\n", name);
   for (size_t i = 0; i < words->count; i++) fprintf(file, i % 16 == 15 ? "%u,\n" : "%u,", words->items[i]);

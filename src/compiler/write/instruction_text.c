@@ -5,7 +5,7 @@
 #include "write/c_text.h"
 #include "write/parts.h"
 
-/* The names of arrays; the other spaces are no arrays, or two. */
+/* Names of the arrays; other spaces are scalars or have two arrays. */
 static const char *const arrays[SPACE_COUNT] = {
     [SPACE_PARAMETER] = "p",    [SPACE_PREPARED] = "c",           [SPACE_INPUT] = "u",
     [SPACE_ACCELERATION] = "a", [SPACE_SEED_PARAMETER] = "dp",    [SPACE_SEED_INPUT] = "du",
@@ -44,7 +44,7 @@ void write_place(FILE *file, const struct Program *program, Place place, enum Ro
   if (space >= SPACE_ROW) fputs(elements[role], file);
 }
 
-/* Whether the result follows from constants alone, of which lanes make a vector. */
+/* True if all operands are constants; REAL() then makes the result a vector for ensembles. */
 static bool has_only_numbers(const struct Instruction *instruction) {
   int arity = opcode_has_result(instruction->opcode) ? opcode_arity(instruction->opcode) : 0;
   for (int i = 0; i < arity; i++)
@@ -52,7 +52,7 @@ static bool has_only_numbers(const struct Instruction *instruction) {
   return arity > 0;
 }
 
-/* A text of opcode_facts() with the operands of an instruction. */
+/* Writes a text of opcode_facts() with the operands of an instruction. */
 static void write_text(FILE *file, const struct Program *program, const struct Instruction *instruction,
                        const char *text, const char *target, const char *opening) {
   const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
@@ -78,7 +78,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
   if (is_number) fputs(")", file);
 }
 
-/* function(size, pattern of the block, its elements; with what the rows are, where the function takes it */
+/* Writes the begin of a call: size and pattern of the block, its row numbers if takes_rows, and its elements. */
 static void write_block_call(FILE *file, const struct Program *program, const char *function, bool takes_rows,
                              size_t number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
@@ -89,7 +89,7 @@ static void write_block_call(FILE *file, const struct Program *program, const ch
   fprintf(file, ", mass + %zu", looped->first_mass);
 }
 
-/* The same of a small block, whose elements are handed over one by one. */
+/* Writes the begin of a call for a small block, with its elements one by one. */
 static void write_small_factor_call(FILE *file, const struct Program *program, unsigned number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   fprintf(file, "factor%u(mass + %zu", number, looped->first_mass);

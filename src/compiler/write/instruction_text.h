@@ -1,19 +1,22 @@
-/* One instruction as one C statement, with the names that the functions around it declare. */
+/* Writes instructions as C statements. The enclosing function declares the names that they use. */
 #pragma once
 
 #include <stdio.h>
 
 #include "program/program.h"
 
-/* An operand, or a result, in its role; target is the name of what SPACE_TARGET is. */
+/* Writes an operand or result in its role; target is the name of the array SPACE_TARGET. */
 void write_place(FILE *file, const struct Program *program, Place place, enum Role role, const char *target);
 
-/* The statements of a routine; without a target, values for it are returned. */
+/* Writes the statements of a routine; without a target, a value for it is returned. */
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target);
 
-/* The statements of an order of series, whose products have their middle terms in m (SERIES_MIDDLES of include/series.h). */
+/*
+ * Writes the statements of an order of series; the middle terms of products are in m (SERIES_MIDDLES of
+ * include/series.h).
+ */
 void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine);
 
-/* The macro that lists these products, or the array of their factors; both return how many there are. */
+/* Write the macro that lists these products, or the array of their factors. Return their number. */
 size_t write_products(FILE *file, const struct Program *program, const struct Routine *routine);
 size_t write_factors(FILE *file, const struct Program *program, const struct Routine *routine);

@@ -2,12 +2,13 @@
 
 #include "base/memory.h"
 
-/* Instructions of a part. */
+/* Instructions of a part; compilation of all parts then takes linear time. */
 enum { PART_LENGTH = 1500 };
 
-/* Of each local variable: the part that gives it a value, and whether others read it. */
+/* Where a local variable is used. */
 struct Local {
-  size_t part, shared; /* shared: 1 + its place; 0 where it is of one part alone */
+  /* part: the part that computes it; shared: 1 + its index in the shared space, 0 if one part alone uses it */
+  size_t part, shared;
 };
 
 static void note_use(struct Local *locals, Place place, size_t part, size_t *shared_count) {
@@ -16,7 +17,7 @@ static void note_use(struct Local *locals, Place place, size_t part, size_t *sha
   if (local->part != part && local->shared == 0) local->shared = ++*shared_count;
 }
 
-/* A part holds steady instructions alone, or none of them. */
+/* Returns the end of the part. It has only instructions that do not depend on the direction, or none of them. */
 static size_t end_of_part(const struct Routine *routine, size_t steady_count, size_t first) {
   size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
   return first < steady_count && end > steady_count ? steady_count : end;
@@ -38,7 +39,7 @@ static struct Local *find_shared(const struct Routine *routine, size_t steady_co
   return locals;
 }
 
-/* keeps_accelerations: they are the first of what parts share. */
+/* Returns the place in a part. keeps_accelerations: they come first in the shared space. */
 static Place placed(const struct Local *locals, bool keeps_accelerations, Place place) {
   if (space_of(place) == SPACE_ACCELERATION && keeps_accelerations)
     return place_in((enum Space)SPACE_SHARED, index_in(place));
@@ -62,7 +63,7 @@ static struct Routine *part_of(const struct Routine *routine, const struct Local
   return part;
 }
 
-/* Whether an instruction computes with a seed, or fills what the caller has; is_along: the local variables that do. */
+/* True if an instruction depends on the direction or writes a target. Updates is_along for its local variable. */
 static bool note_along(const struct Instruction *instruction, bool *is_along) {
   bool along = false;
   for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
@@ -75,7 +76,7 @@ static bool note_along(const struct Instruction *instruction, bool *is_along) {
   return along || space_of(instruction->result) == SPACE_TARGET;
 }
 
-/* The instructions with those first that are steady, which are the same along all directions. */
+/* Returns the instructions reordered: first those that do not depend on the direction, steady_count of them. */
 static struct Routine *with_steady_first(const struct Routine *routine, size_t *steady_count) {
   struct Routine *sorted = routine_create();
   bool *is_along = allocate(routine->local_count, sizeof *is_along);

@@ -1,22 +1,23 @@
 /*
- * A long routine in parts, each of which becomes a function: what a compiler takes for a function grows faster than its length.
+ * Splits a long routine into parts, each a function, since compile time grows faster than linearly with the length of
+ * a function.
  */
 #pragma once
 
 #include "program/values/routine.h"
 
-/* What several parts know, in a routine that was divided: elements of an array. */
+/* The space of values that several parts use: elements of the array s in point->work. */
 enum { SPACE_SHARED = SPACE_COUNT };
 
 struct Parts {
   struct Routine **items;
   size_t count;
-  size_t steady_count; /* of the first, which another direction at the same point leaves as they are */
+  size_t steady_count; /* number of first parts, which do not depend on the direction */
   size_t shared_count;
 };
 
 /*
- * One part for a routine that is short, or that works on blocks, which stays as it is. accelerations: how many of them the routine
- * has for itself, which its parts share; 0 where they are in what it fills.
+ * Returns the parts; a single one if the routine is short or works on blocks. accelerations: number of those in the
+ * routine's own workspace, which the parts share; 0 if they are in its target.
  */
 struct Parts parts_of(struct Routine *routine, size_t accelerations);

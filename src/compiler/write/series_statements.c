@@ -9,7 +9,7 @@ static void declare_time(FILE *file, bool is_used) {
   if (is_used) fputs("  const Series time = {point->time, REAL(1.0)};\n", file);
 }
 
-/* The head of the loop over orders, and what begins all products of one; products: as SERIES_MIDDLES takes them. */
+/* Writes the head of the loop over orders, and the middle terms of products. */
 static void begin_orders(FILE *file, const struct Program *program, size_t products) {
   size_t listed = program->products == PRODUCTS_LISTED ? write_factors(file, program, program->series->order) : 0;
   fputs("  for (int k = 1; k < order && k + 1 < SERIES_LENGTH; k++) {\n", file);
@@ -60,7 +60,7 @@ static void write_check(FILE *file, const struct Program *program, const struct 
   fputs(check->is_gated ? "));\n" : ");\n", file);
 }
 
-/* The spaces that checks read. */
+/* Returns the set of spaces that the checks read. */
 static uint32_t spaces_of(const struct LimitChecks *checks) {
   uint32_t spaces = 0;
   for (size_t i = 0; i < checks->count; i++) {
@@ -74,7 +74,7 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
 
 static void write_limit(FILE *file, const struct Program *program) {
   const struct LimitChecks *checks = &program->series->limit;
-  const struct Routine spaces = {.spaces = spaces_of(checks)}; /* none but for its spaces */
+  const struct Routine spaces = {.spaces = spaces_of(checks)}; /* for its spaces only */
   write_head(file, FUNCTION_LIMIT, "", checks->count);
   declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));
   statements_declare_point(file, program, &spaces);

@@ -4,7 +4,7 @@
 #include "write/instruction_text.h"
 #include "write/parts.h"
 
-/* Whether the routine reads elements from .. to - 1 of the space. */
+/* True if the routine reads elements from .. to - 1 of the space. */
 static bool reads(const struct Routine *routine, enum Space space, size_t from, size_t to) {
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
@@ -36,7 +36,7 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
   declare(file, routine_uses(routine, SPACE_SEED_RESULT), "dy", "seed->result");
 }
 
-/* Where series follow, the factors of large blocks are kept for them. */
+/* Declares the arrays of the blocks; functions of series keep the factors in w. */
 static void declare_block_spaces(FILE *file, const struct Program *program, const struct Routine *routine) {
   if (routine_uses(routine, SPACE_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.side_count);
   if (!routine_uses(routine, SPACE_MASS)) return;
@@ -71,7 +71,7 @@ size_t statements_in_parts(FILE *file, const struct Program *program, enum Funct
   for (size_t i = 0; i < parts.count; i++)
     statements_function(file, program, name, format_text("_%zu", i + 1), parts.items[i]);
   write_head(file, name, "", program->routines[name]->operation_count);
-  /* By their addresses, since compilers make functions that are called once a part of what calls them. */
+  /* called by address, as compilers inline functions with a single call */
   fprintf(file, "  static int (*const parts[])(%s) = {", text->arguments);
   for (size_t i = 0; i < parts.count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);
   const char *first = parts.steady_count > 0 ? format_text("seed->repeats ? %zu : 0", parts.steady_count) : "0";
@@ -83,7 +83,7 @@ size_t statements_in_parts(FILE *file, const struct Program *program, enum Funct
   return parts.shared_count;
 }
 
-/* How many results are computed together with this one. */
+/* Returns the number of results in a group. */
 static size_t size_of_group(const struct Program *program, size_t leader) {
   const struct ResultGroups *groups = &program->groups;
   size_t size = 0;
@@ -91,7 +91,7 @@ static size_t size_of_group(const struct Program *program, size_t leader) {
   return size;
 }
 
-/* The same in one function, which tells one of them. */
+/* Writes the function of a group, and one that returns one of its results. */
 static void write_group(FILE *file, const struct Program *program, size_t first, size_t size, const char *suffix) {
   statements_function(file, program, FUNCTION_RESULTS, suffix, program->result[first]);
   fprintf(file,
@@ -116,7 +116,6 @@ static void end_choice(FILE *file) {
   fputs("  default: return REAL(NAN);\n  }\n}\n\n", file);
 }
 
-/* A function for each, and one that chooses among them. */
 void statements_results(FILE *file, const struct Program *program) {
   size_t count = program->interface->result_count;
   if (count == 0) return;

@@ -9,7 +9,7 @@ static const char *name_of(bool truth) {
   return truth ? "true" : "false";
 }
 
-/* A string at the end of an element of an array. */
+/* Writes a string that ends an element of an array. */
 static void write_name(FILE *file, const char *name) {
   write_c_string(file, name);
   fputs("}, ", file);

@@ -1,9 +1,9 @@
-/* What the runtime must know of what switches: struct SwitchTable of the generated code. */
+/* Writes struct SwitchTable of the generated code: modes, events, contacts and frictions. */
 #pragma once
 
 #include <stdio.h>
 
 #include "program/program.h"
 
-/* Nothing where nothing switches. */
+/* Writes nothing if the system has no modes. */
 void switching_write(FILE *file, const struct Program *program);
