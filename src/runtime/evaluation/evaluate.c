@@ -71,7 +71,7 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   return are_finite(derivative, lagrangian.state_count);
 }
 
-/* For a point without a value: the end of the piece beyond which an importer tries it. False for none. */
+/* Moves a point without a value to the end of the piece past which an importer tries it. False if there is none. */
 static bool come_back(struct Instance *instance, struct Point *point) {
   bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
   return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->come_back(instance, point);
@@ -100,7 +100,7 @@ const double *evaluate_accelerations_along(struct Instance *instance, const stru
   return instance->singular == 0 ? along : NULL;
 }
 
-/* The result at a point whose prepared values are up to date; false where there are no accelerations that it needs. */
+/* Evaluates a result at a point with current prepared values. False if accelerations that it needs do not exist. */
 static bool evaluate_result_at(struct Instance *instance, const struct Point *point, size_t result, double *value) {
   const double *acceleration = NULL;
   if (lagrangian.results.uses_acceleration[result]) {
@@ -122,7 +122,7 @@ static enum Status evaluate_result(struct Instance *instance, const struct Scala
   return has_value ? STATUS_DONE : discard_for_singularity(instance);
 }
 
-/* Those of the coordinates are the velocities, also where there are no accelerations. */
+/* Derivatives of coordinates are the velocities, even if accelerations do not exist. */
 static enum Status evaluate_state_derivative(struct Instance *instance, size_t state, double *value) {
   if (state < lagrangian.coordinate_count) {
     *value = instance->state[lagrangian.coordinate_count + state];
@@ -153,7 +153,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_DERIVATIVE: status = evaluate_state_derivative(instance, variable->index, &result); break;
   case VARIABLE_RESULT: status = evaluate_result(instance, variable, &result); break;
   case VARIABLE_INDICATOR: status = evaluate_indicator(instance, variable->index, &result); break;
-  case VARIABLE_STATISTIC: return STATUS_ERROR; /* no Real */
+  case VARIABLE_STATISTIC: return STATUS_ERROR; /* not a Real */
   }
   if (status == STATUS_DONE && !isfinite(result)) {
     log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value here; try other parameters or states",

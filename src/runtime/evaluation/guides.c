@@ -1,6 +1,6 @@
 #include "evaluation/guides.h"
 
-/* The derivative of an input's polynomial; order 0 is its value. */
+/* Returns the derivative of an input's polynomial; order 0 is its value. */
 static double *derivative_of(struct Instance *instance, size_t input, size_t order) {
   return order == 0 ? &instance->input[input]
                     : &instance->input_derivatives[(order - 1) * lagrangian.input_count + input];

@@ -1,12 +1,13 @@
-/* Inputs that stand in constraints, which move coordinates from outside. */
+/* Inputs in constraints: prescribed motion. */
 #ifndef GUIDES_H
 #define GUIDES_H
 
 #include "instance/instance.h"
 
 /*
- * Over the step to come, each of them and its time derivatives become one polynomial and its derivatives, since a
- * constraint holds on all levels: the polynomial that was set for the input, or else the one that its derivatives tell.
+ * Makes each such input and its time derivatives, which are inputs too, one polynomial and its derivatives for the next
+ * step: a constraint holds for positions, velocities and accelerations. The polynomial is the one set for the input, or
+ * else follows from the derivatives.
  */
 void guides_begin_step(struct Instance *instance);
 

@@ -4,13 +4,13 @@
 
 #include "instance/instance.h"
 
-/* The Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
+/* Computes the Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
 
-/* The inputs at time; input[input_count]. */
+/* Computes input[input_count] at time. */
 void evaluate_inputs(const struct Instance *instance, double time, double *input);
 
-/* Continues the inputs and their polynomials from a later time in the communication step. */
+/* Moves the start of the inputs' polynomials to a later time in the communication step. */
 void evaluate_advance_inputs(struct Instance *instance, double time);
 
 #endif

@@ -41,7 +41,10 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
   return evaluate_derivatives(instance, &point, derivative);
 }
 
-/* Column by column, by what differentiates along directions; behind the inputs of the point in the workspace. */
+/*
+ * Computes the Jacobian column by column from directional derivatives. Its workspace follows the inputs in
+ * instance->work.
+ */
 static int jacobian_by_directions(struct Instance *instance, const struct Point *point, double *values) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   const size_t states = lagrangian.state_count;
@@ -89,7 +92,7 @@ bool solver_is_held(const struct Instance *instance) {
   return false;
 }
 
-/* Errors of a step are of the size of the tolerance; where more is lacking, the step has left the mechanism. */
+/* The error of a step has the size of the tolerance; a move of 1000 times that has left the mechanism. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
   static const char problem[] = "a constraint cannot be kept there";
   if (!solver_is_held(instance)) return NULL;

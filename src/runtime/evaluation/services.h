@@ -1,53 +1,50 @@
-/* What solvers and events ask of the system at times and states of their own. */
+/* Evaluations for solvers and events at times and states of their own. */
 #ifndef SERVICES_H
 #define SERVICES_H
 
 #include "instance/solver.h"
 
 /*
- * d state / dt at a time and state that the solver chose, with the inputs of that time; counts the evaluation.
- * False where it does not exist.
+ * Computes d state / dt at a time and state, with the inputs of that time; counts the evaluation. False if it does not
+ * exist.
  */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
-/* The Jacobian there, in the order of lagrangian.implicit.pattern; counts it. False where M is singular. */
+/* Computes the Jacobian, in the order of lagrangian.implicit.pattern; counts it. False if M is singular. */
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values);
 
-/* The point for generated functions at a time and state that the solver chose. */
+/* Returns the evaluation point at a time and state. */
 struct Point solver_point(struct Instance *instance, double time, const double *state);
 
-/* The same at another one, for inputs that may follow the time. */
+/* Moves the point to another time and state, with the inputs of that time. */
 void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state);
 
-/* The states at several times in the last step of a solver, a row each. False where one is not known. */
+/* Computes the states at several times in the solver's last step, one row each. False if one is not available. */
 bool solver_interpolate(const struct Solver *solver, struct Instance *instance, const double *times, size_t count,
                         double *states);
 
-/* The instance's state becomes that of a time in the last step. False where that is not known or not finite. */
+/* Sets the instance's state to that of a time in the last step. False if it is not available or not finite. */
 bool solver_take_state(struct Instance *instance, double time);
 
-/* False where there are no constraints but those of contacts that are open and of frictions that slide. */
+/* True if a constraint is active: those of open contacts and of sliding frictions are not. */
 bool solver_is_held(const struct Instance *instance);
 
-/*
- * Brings the state at the end of a step back to the constraints, where there are some. NULL, or the reason why the
- * motion cannot go on.
- */
+/* Projects a state at the end of a step onto the active constraints. Returns NULL, or the reason why that fails. */
 const char *solver_project(struct Instance *instance, double time, double *state);
 
-/* Solver.destroy of one whose memory is one block. */
+/* Implements Solver.destroy for memory of one block. */
 void solver_free_memory(struct Instance *instance);
 
-/* Logs that the solver has no memory; returns false. */
+/* Logs that memory for the solver is missing; returns false. */
 bool solver_lacks_memory(const struct Instance *instance);
 
-/* Whether a step is only a few units in the last place of the time. */
+/* True if a step is only a few units in the last place of the time. */
 bool solver_rests(double time, double step);
 
-/* What the method may make of a coordinate; 0 for one that errs by rounding alone. */
+/* Returns the error that the method may make in a coordinate inside a step; 0 if rounding is the only error. */
 double solver_error(const struct Instance *instance);
 
-/* What a user reads where a solver rests. */
+/* The reason that is logged if solver_rests(). */
 extern const char solver_resting[];
 
 #endif

@@ -1,85 +1,91 @@
 /*
- * Switches a system: finds where a mode may change, and the modes, velocities and states behind an event. FMUs that do not
- * switch do not hold it.
+ * Event handling of a system: locates events, and finds the modes, velocities and states after them. FMUs without
+ * events do not link it.
  */
 #ifndef EVENT_LAWS_H
 #define EVENT_LAWS_H
 
 #include "instance/instance.h"
 
-/* Why the modes are looked at. */
+/* Reasons for finding modes. */
 enum Occasion {
-  AT_START,   /* of the simulation: no mode is known yet */
+  AT_START,   /* start of the simulation: no mode is known */
   AT_CHANGE,  /* a parameter, an input or a state may have been set */
-  AT_EVENT,   /* an indicator has just changed its sign */
-  IN_EXCHANGE /* the importer asks, who may have gone past the zero of an indicator */
+  AT_EVENT,   /* an indicator has changed its sign */
+  IN_EXCHANGE /* an importer that integrates asks; it may be past the zero of an indicator */
 };
 
 struct CommunicationStep;
 
-/* How far a communication step has come with its events. */
+/* Progress of a communication step through its events. */
 struct EventProgress {
-  double searched;  /* no event before this time is left */
-  bool is_lost;     /* behind what was searched there is an event that cannot be told */
-  int gathered;     /* how many have come within the rounding of time, or of what they wait for */
-  int crowded;      /* how many of one indicator have come close together, without leaving 0 by more than rounding */
-  double last;      /* event, from the start of the step on; 0 for none */
-  double distance;  /* between the last two; 0 for none */
-  long count;       /* of all in the step */
-  int unsure;       /* windows in the step in which something may hide */
-  double reach;     /* in s: how far the solver may go at once, since events lie too close for more; 0 for any */
-  int nearer;       /* how often that was shortened since a step without events */
-  size_t indicator; /* whose zero the last one was */
-  bool has_lifted;  /* it was a contact that opened as its force went */
+  double searched;  /* time up to which all events have been handled, in s */
+  bool is_lost;     /* an event after it cannot be resolved */
+  int gathered;     /* Zeno counter: consecutive events that time or the indicator's rounding does not separate */
+  int crowded;      /* Zeno counter: consecutive close events of one indicator at rest */
+  double last;      /* last event, in s from the start of the step; 0 for none */
+  double distance;  /* between the last two events, in s; 0 for none */
+  long count;       /* events in the step */
+  int unsure;       /* windows in the step in which a zero may hide */
+  double reach;     /* limit of the solver's step in s if events lie too close for longer ones; 0 for none */
+  int nearer;       /* times that this was shortened since a solver step without events */
+  size_t indicator; /* of the last event */
+  bool has_lifted;  /* the last event opened a contact as its force vanished */
 };
 
 struct EventLaws {
-  /* Numbers of workspace that an instance needs. */
+  /* Returns the numbers of workspace that an instance needs. */
   size_t (*work_count)(void);
   /*
-   * Brings the modes into agreement with the state that an importer has integrated to, with impacts and events, which change
-   * the state. changed tells whether anything did. NULL, or the reason why the motion cannot go on, after logging what is to
-   * blame.
+   * Brings the modes into agreement with the state to which an importer has integrated. Impacts and events may change
+   * the state. Sets *changed if modes or state changed. Returns NULL, or the reason why the motion cannot go on, after
+   * logging the cause.
    */
   const char *(*settle)(struct Instance *instance, bool *changed);
-  /* Sets the modes to what start values say, as long as these may be set: no contact is closed, and all friction slides. */
+  /* Sets the modes from start values, while these may be set: all contacts are open, all frictions slide. */
   void (*guess)(struct Instance *instance);
-  /* The modes of the start values, after impacts and events at the start itself; false after logging an error. */
+  /* Finds the modes at the start, after impacts and events there. False after logging an error. */
   bool (*start)(struct Instance *instance);
   /*
-   * Opens contacts that a parameter, an input or a state has moved apart, and lets frictions slide that it has set in motion;
-   * false after logging why the step is discarded, as bodies that stand in one another.
+   * Opens contacts and releases frictions that a new parameter, input or state has set in motion. False after logging
+   * why the step is discarded, such as bodies that penetrate each other.
    */
   bool (*part)(struct Instance *instance, double time);
-  /* The modes after a parameter, an input or a state was set; false after logging why the step is discarded. */
+  /* Finds the modes after a parameter, input or state was set. False after logging why the step is discarded. */
   bool (*settle_change)(struct Instance *instance, double time);
   /*
-   * The modes and the state behind the event that ended a step, or after a parameter, an input or a state was set; changed
-   * tells whether anything was. NULL, or the reason why the motion cannot go on.
+   * Finds modes and state after the event that ended a step, or after a parameter, input or state was set. Sets
+   * *changed if any changed. Returns NULL, or the reason why the motion cannot go on.
    */
   const char *(*update)(struct Instance *instance, bool *changed);
-  /* Goes through the next event of the solver's last step. NULL, or the reason why the motion ends there. */
+  /* Handles the next event in the solver's last step. Returns NULL, or the reason why the motion ends there. */
   const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
-  /* What must hold where a communication step ends. NULL, or the reason why it does not, after logging what is to blame. */
+  /*
+   * Checks the conditions at the end of a communication step. Returns NULL, or the violated one, after logging the
+   * cause.
+   */
   const char *(*check)(struct Instance *instance, double time);
-  /* Where the solver cannot go on: a zero that it cannot reach may be next to it. The problem, or NULL. */
+  /*
+   * Handles a solver that cannot go on: the zero of an indicator that it cannot reach may be near. Returns NULL after
+   * passing one, problem if there is none, or the reason why the motion ends there.
+   */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);
-  /* Logs what switched in a step that has too many solver's steps, where most of them ended at events. */
+  /* Logs the events of a step with too many solver steps, if most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);
-  /* Logs why the solver stopped at the instance's state, where a contact has jammed; false where none has. */
+  /* Logs why the solver stopped, if a contact has jammed at the instance's state; false if none has. */
   bool (*explain_stop)(struct Instance *instance, double time);
-  /* Whether the constraint is that of a contact or a friction, whose events tell by themselves where they end. */
+  /* True if the constraint belongs to a contact or friction, which closes and opens at events. */
   bool (*holds_at_times)(const char *constraint);
   /*
-   * Moves a point at which an importer tries a piece beyond its end to that end, by the velocities there; its state is then in
-   * workspace. False where there is none, or where it does not help.
+   * Moves a point outside a function's domain back to the end of its piece, along the velocities. An importer may try
+   * such points. The state of the point is then in workspace. False if there is no such piece, or it does not help.
    */
   bool (*come_back)(struct Instance *instance, struct Point *point);
-  /* The indicators at the situation as an importer is told them; false where there are no accelerations. */
+  /* Evaluates the indicators as reported to an importer. False if the accelerations do not exist. */
   bool (*indicators)(struct Instance *instance, double *value);
-  /* Whether an indicator has a sign at the situation that its mode does not allow. */
+  /* True if an indicator has a sign that its mode does not allow. */
   bool (*is_due)(struct Instance *instance);
 };
 

@@ -1,4 +1,4 @@
-/* Which constraints of contacts and frictions hold at present. */
+/* Predicates: the constraint of a closed contact or a sticking friction is active. */
 #ifndef HELD_H
 #define HELD_H
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Whether the state has the value that follows from the parameters. */
+/* True if the value of the state follows from the parameters. */
 static bool follows(const struct Instance *instance, const struct ScalarVariable *variable) {
   return has_following_start(variable) && instance->state_was_set[variable->index] == 0.0;
 }

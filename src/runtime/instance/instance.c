@@ -20,7 +20,7 @@ size_t situation_size(void) {
   return sizeof(struct Situation) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
-/* FNV-1a */
+/* FNV-1a, 64 bits. */
 uint64_t situation_checksum(const void *situation) {
   const unsigned char *bytes = situation;
   uint64_t hash = 0xcbf29ce484222325u;
@@ -47,7 +47,7 @@ void instance_reset(struct Instance *instance) {
   instance->told_singularity = 0;
 }
 
-/* Systems without constraints find them among the derivatives of the state. */
+/* Accelerations and constraint forces for result(); systems without constraints use the derivatives of the state. */
 static size_t acceleration_count(void) {
   return lagrangian.constraints.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraints.count;
 }

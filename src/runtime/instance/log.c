@@ -5,7 +5,7 @@
 
 #include "instance/instance.h"
 
-/* function: what comes before the message; NULL for nothing. */
+/* Formats and writes a message. function: printed before it; NULL for none. */
 static void write_arguments(const struct Log *log, enum Status status, const char *function, const char *format,
                             va_list arguments) {
   char text[MESSAGE_LENGTH];

@@ -1,4 +1,4 @@
-/* Brings states back to the constraints. FMUs without constraints do not hold it. */
+/* Projection of states onto the constraints (methods/projection.c). FMUs without constraints do not link it. */
 #ifndef PROJECTION_H
 #define PROJECTION_H
 
@@ -6,32 +6,38 @@
 
 struct Projection {
   /*
-   * Moves a state that is near the constraints onto them, the least in the metric of M: first the coordinates, then the
-   * velocities. Returns the largest change in units of the variables' scales; INFINITY where they cannot be fulfilled,
-   * and the state is then undefined.
+   * Projects a state near the constraints onto them by the least move in the metric of M: first the coordinates, then
+   * the velocities. Returns the largest change in units of the scales. Returns INFINITY if that fails; the state is
+   * then undefined.
    */
   double (*project)(struct Instance *instance, double time, double *state);
-  /* How far project() would move the state of the instance at its time, which stays as it is. */
+  /* Returns the change by project() at the instance's state, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
   /*
-   * The same with the start values of the instance, however far they are; fixed coordinates and their velocities stay. Logs
-   * what was moved. False after logging why the constraints cannot be fulfilled.
+   * Projects the start values, from any distance; fixed coordinates and their velocities stay. Logs the moves. False
+   * after logging an error.
    */
   bool (*make_consistent)(struct Instance *instance);
   /*
-   * The same with the state at the beginning of a step, after parameters or inputs were set. False after logging as what
-   * discards the step why the constraints cannot be fulfilled; the state is then as it was.
+   * Projects the state at the start of a step, after parameters or inputs were set. False after logging why the step is
+   * discarded; the state is then as before.
    */
   bool (*follow_change)(struct Instance *instance);
-  /* The constraint that lacks most of those that the last project() or drift() at this time could not keep, or not by a small move. */
+  /*
+   * Returns the constraint of largest residual among those that the last project() or drift() at this time could not
+   * fulfil.
+   */
   size_t (*unkept)(struct Instance *instance, double time);
-  /* The name of the constraint that has least hold on a state, as at the limit of a mechanism; NULL where unknown. */
+  /*
+   * Returns the name of the constraint whose row of the Jacobian is closest to singular at a state, as at the limit of
+   * a mechanism; NULL if unknown.
+   */
   const char *(*weakest)(struct Instance *instance, double time, const double *state);
 };
 
 extern const struct Projection projection;
 
-/* Numbers of workspace that an instance needs for it. */
+/* Returns the numbers of workspace that an instance needs for it. */
 static inline size_t projection_work_count(void) {
   if (lagrangian.constraints.projection == NULL) return 0;
   return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count +

@@ -1,11 +1,14 @@
-/* Blocks that events work in. They stay with the instance, so that steps allocate no memory once the largest was asked for. */
+/*
+ * Workspace of event handling. A block stays with the instance, so steps allocate no memory once the largest was
+ * needed.
+ */
 #ifndef SCRATCH_H
 #define SCRATCH_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What works in a block of its own, one at a time. */
+/* The users; each has a block of its own. */
 enum ScratchUse {
   SCRATCH_PUSHES,
   SCRATCH_IMPACT,
@@ -25,7 +28,7 @@ struct Scratch {
 
 struct Instance;
 
-/* Zeros; NULL where there is no memory. */
+/* Returns size bytes of zeros; NULL without memory, or if the block is in use. */
 void *scratch_take(struct Instance *instance, enum ScratchUse use, size_t size);
 void scratch_return(struct Instance *instance, enum ScratchUse use);
 void scratch_free(struct Instance *instance);

@@ -1,3 +1,11 @@
+/*
+ * Serialized state of an instance: a header, and then its snapshot (struct Situation), a block of bytes without
+ * pointers. The bytes are those of the machine; another process on a machine of the same kind may restore them.
+ *
+ * snapshot_fault() checks bytes before they are restored. The header must show the same FMU and version, and the
+ * checksum of the snapshot. Then each field must be in the range in which an instance can leave it. Anyone can compute
+ * the checksum of a forged block, which could otherwise make the instance index out of bounds. A check costs O(size).
+ */
 #include "instance/snapshot.h"
 
 #include <math.h>
@@ -5,13 +13,13 @@
 
 #include "instance/solver.h"
 
-/* Comes before the situation in the block. */
+/* Header of a block. */
 struct Header {
   char magic[8];
   uint32_t version;
-  uint32_t size; /* of the situation */
+  uint32_t size; /* bytes of the snapshot */
   char guid[40];
-  uint64_t checksum; /* of the situation */
+  uint64_t checksum; /* of the snapshot */
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
@@ -35,7 +43,7 @@ bool snapshot_are_counts(const int64_t *counts, size_t count) {
   return true;
 }
 
-/* The element of numbers that stand at any address. */
+/* Returns element index of an array of doubles at any alignment. */
 static double number_in(const char *bytes, size_t index) {
   double number;
   memcpy(&number, bytes + index * sizeof number, sizeof number);
@@ -48,7 +56,7 @@ bool snapshot_is_finite(const void *numbers, size_t count) {
   return true;
 }
 
-/* Whether such an instance can come to the phase. */
+/* True if an instance of this kind can be in the phase. */
 static bool has_phase(const struct Instance *instance, int32_t phase) {
   bool of_exchange = phase == PHASE_EVENT || phase == PHASE_CONTINUOUS_TIME;
   bool of_steps = phase == PHASE_STEP_COMPLETE || phase == PHASE_STEP_FAILED;
@@ -64,13 +72,13 @@ static bool can_wait(const struct Instance *instance, const struct Situation *fi
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
-/* Whether states may lack a finite value: before the simulation, where start values follow from parameters. */
+/* True if states may be without finite values: before the simulation, if their start values follow from parameters. */
 static bool may_lack_state(int32_t phase) {
   return lagrangian.initial_state != NULL &&
          (phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR);
 }
 
-/* Whether the integers are what each of them can be. */
+/* True if the flags and enums are in their ranges. */
 static bool are_choices(const struct Situation *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
@@ -78,13 +86,13 @@ static bool are_choices(const struct Situation *fixed) {
   return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE;
 }
 
-/* Whether the element is a whole number in this range. */
+/* True if the element is an integer from lowest to highest. */
 static bool is_whole(const char *numbers, size_t index, double lowest, double highest) {
   double number = number_in(numbers, index);
   return number == floor(number) && number >= lowest && number <= highest;
 }
 
-/* Whether each of the numbers is 0 or 1. */
+/* True if each of the numbers is 0 or 1. */
 static bool are_flags(const void *numbers, size_t count) {
   for (size_t i = 0; i < count; i++) {
     double flag = number_in(numbers, i);
@@ -93,7 +101,7 @@ static bool are_flags(const void *numbers, size_t count) {
   return true;
 }
 
-/* Whether the parameters are of their types. */
+/* True if the values of Integer and Boolean parameters fit their types. */
 static bool have_types(const char *parameters) {
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
@@ -104,7 +112,7 @@ static bool have_types(const char *parameters) {
   return true;
 }
 
-/* Whether the modes that events alone set are among those that they set. */
+/* True if the modes that events alone set are in their ranges. */
 static bool are_modes(const char *parameters) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches == NULL) return true;
@@ -117,7 +125,7 @@ static bool are_modes(const char *parameters) {
   return true;
 }
 
-/* Whether the solver could have saved its part of the situation, which is used in co-simulation alone. */
+/* True if the solver could have saved its part, which co-simulation alone uses. */
 static bool could_solver_save(const struct Instance *instance, const struct Situation *fixed, const char *saved) {
   const struct Solver *solver = lagrangian.solver;
   return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->could_save == NULL ||
@@ -125,8 +133,8 @@ static bool could_solver_save(const struct Instance *instance, const struct Situ
 }
 
 /*
- * Whether an instance could have saved the situation: a right checksum does not keep anyone from writing one by hand. An
- * input may be infinite, at the end of a polynomial; what depends on it is then discarded.
+ * True if an instance could have saved the snapshot. fixed: an aligned copy of its fixed part. An input may be
+ * infinite, at the end of a polynomial; results that depend on it are discarded.
  */
 static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
   const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,     fixed->tolerance,

@@ -6,7 +6,7 @@
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 
-/* Gives the instance the values of a time within the step. False where they do not exist. */
+/* Gives the instance the values of a time within the step. False if they do not exist. */
 static bool move_to(struct Instance *instance, double time) {
   if (!solver_take_state(instance, time) || solver_project(instance, time, instance->state) != NULL) return false;
   evaluate_advance_inputs(instance, time); /* from the time of the situation */

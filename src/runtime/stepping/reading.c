@@ -6,10 +6,10 @@
 #include "evaluation/evaluate.h"
 #include "stepping/start.h"
 
-/* Whether what is told may be other than the situation. */
+/* True if the reported values may differ from the stored state. */
 static bool may_differ(const struct Instance *instance) {
   const struct Situation *situation = instance->situation;
-  if (instance->shown == NULL) return false; /* nothing moves what was set */
+  if (instance->shown == NULL) return false; /* nothing moves the values that were set */
   if (situation->phase == PHASE_INITIALIZATION) return true;
   return lagrangian.event_laws != NULL && situation->phase == PHASE_STEP_COMPLETE &&
          situation->changed == CHANGED_VALUES;
@@ -22,7 +22,7 @@ static void exchange_situations(struct Instance *instance) {
   instance->prepared_is_stale = true;
 }
 
-/* Keeps the first message. */
+/* Receives messages; keeps the first one. */
 static void keep_message(void *receiver, enum Status status, const char *message) {
   char *text = receiver;
   (void)status;
@@ -37,7 +37,7 @@ static void tell_impossible_start(struct Instance *instance, const char *reason)
   instance->told_impossible_start = true;
 }
 
-/* Brings the copy to what is told, without a word: what does not go, the function that begins there will tell. */
+/* Computes the reported values on the copy, without messages: the function that starts there will report failures. */
 static void find_silently(struct Instance *instance) {
   char reason[MESSAGE_LENGTH] = "";
   struct Log log = instance->log;
@@ -75,10 +75,10 @@ void reading_end(struct Instance *instance) {
   instance->situation->phase = PHASE_ERROR;
 }
 
-/* The displacement of the difference quotients, in units of the scales of what is displaced. */
+/* Displacement of the difference quotients, in units of the scales. The relative truncation error is about 1e-12. */
 static const double displacement = 1e-3;
 
-/* The largest of count values, in units of the sizes of what they change, which are 1 at least. */
+/* Returns the largest of count values relative to the variables that they change, at least 1. */
 static double relative_size(const double *value, const double *of, size_t count) {
   double largest = 0.0;
   for (size_t i = 0; i < count; i++) largest = fmax(largest, fabs(value[i]) / fmax(fabs(of[i]), 1.0));
@@ -93,7 +93,7 @@ static double size_of_seed(const struct Instance *instance, const struct Seed *s
   return fmax(size, relative_size(seed->parameter, instance->parameter, lagrangian.parameter_count));
 }
 
-/* Lets the situation be the start from what was set, displaced by step along the seed. False where there is none. */
+/* Computes the start from the values that were set, displaced by step along the seed. False if there is none. */
 static bool find_displaced(struct Instance *instance, const struct Seed *seed, double step) {
   memcpy(instance->situation, instance->given, situation_size());
   instance->situation->time += step * seed->time;
@@ -103,7 +103,7 @@ static bool find_displaced(struct Instance *instance, const struct Seed *seed, d
   return start_find(instance) == STATUS_DONE;
 }
 
-/* Adds the difference quotient of fourth order to along[state_count]; the situation is then undefined. */
+/* Adds the central difference quotient of fourth order to along[state_count]; the state is then undefined. */
 static bool add_differences(struct Instance *instance, const struct Seed *seed, double step, double *along) {
   static const double weight[] = {1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0};
   static const double at[] = {-2.0, -1.0, 1.0, 2.0};
@@ -114,7 +114,10 @@ static bool add_differences(struct Instance *instance, const struct Seed *seed, 
   return true;
 }
 
-/* With workspace: kept of situation_size() bytes, along of state_count zeros. */
+/*
+ * Computes the directional derivative of the start. Workspace: kept of situation_size() bytes, along of state_count
+ * zeros.
+ */
 static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct Situation *kept,
                        double *along) {
   struct Log log = instance->log;
@@ -130,7 +133,7 @@ static bool find_along(struct Instance *instance, const struct Seed *seed, doubl
   return is_found;
 }
 
-/* Systems that switch are left out: modes of the start may differ from those beside it. */
+/* Excludes systems with events: the modes of displaced starts may differ. */
 enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state) {
   bool is_moved = instance->is_reading && instance->shown_is_found && lagrangian.constraints.projection != NULL &&
                   lagrangian.event_laws == NULL && instance->situation->phase == PHASE_INITIALIZATION;

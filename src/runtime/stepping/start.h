@@ -1,5 +1,5 @@
 /*
- * How the simulation and each of its steps set out: constraints fulfilled, and modes found, from the values that were set.
+ * Starts of the simulation and of each step: fulfils the constraints and finds the modes for the values that were set.
  */
 #ifndef START_H
 #define START_H
@@ -7,14 +7,14 @@
 #include "instance/instance.h"
 
 /*
- * Brings the instance from the values that were set to the start of the simulation, behind impacts and events at the start
- * itself; an error, logged, where there is none.
+ * Computes the start of the simulation from the values that were set, after impacts and events at the start. Logs an
+ * error if there is none.
  */
 enum Status start_find(struct Instance *instance);
 
 /*
- * Brings constraints and modes into agreement with parameters, inputs and a state that were set, as a step begins. False
- * after logging why the step is discarded.
+ * Brings constraints and modes into agreement with parameters, inputs and a state that were set, at the start of a
+ * step. False after logging why the step is discarded.
  */
 bool start_step(struct Instance *instance);
 

@@ -1,4 +1,11 @@
-/* The way from one communication point to the next, for every solver. */
+/*
+ * Communication steps, for all solvers.
+ *
+ * The solver makes steps of its own length until one reaches the communication point; dense output gives the state
+ * there. After each solver step, its events are handled one by one: the step is cut at the event, and the solver
+ * restarts after it. A step that cannot be finished ends at the last time with a state, and is discarded. It ends for
+ * certain: the number of solver steps or the work is limited, and so are steps in a row that do not change the time.
+ */
 #include "stepping/steps.h"
 
 #include <float.h>
@@ -15,24 +22,24 @@
 
 enum StepResult {
   STEP_DONE,
-  STEP_PARTIAL, /* the state belongs to a time before the end */
-  STEP_FAILED   /* the state is as it was */
+  STEP_PARTIAL, /* the state is that of a time before the end */
+  STEP_FAILED   /* the state is that of the start */
 };
 
-/* Steps too short to change the time are a singularity, which a solver could pass through. */
+/* Consecutive solver steps too short to change the time: more are a singularity, which must not be stepped over. */
 enum { RESTING_STEP_LIMIT = 20 };
 
-/* So many steps in one communication step, or operations (see auto.c), take a good part of a second. */
+/* Solver steps and operations (taylor_rule.h) in a communication step that take a good part of a second. */
 enum { SLOW_STEPS = 50000 };
 static const double SLOW_WORK = 2e9;
 
-/* Operations in one communication step, where the system gives no number of steps: some 10 s. */
+/* Operations in a communication step if the system sets no maxSteps: about 10 s. */
 static const double WORK_LIMIT = 3e10;
 
 static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
                                    "parameters or other coordinates";
 
-/* Brings the solver to the start of the step: it goes on with its last step, or starts anew. */
+/* Brings the solver to the start of the step: it continues its last step or restarts. */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
   struct Situation *situation = instance->situation;
@@ -42,7 +49,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
                  (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
     situation_begin(situation, step->start);
-    /* The state or the parameters may have been set, unless an event has settled all. */
+    /* State or parameters may have been set, unless an event has made all consistent. */
     bool is_settled = situation->changed == CHANGED_BY_EVENT;
     if (!is_settled && !start_step(instance)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
@@ -52,7 +59,7 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
   return STEP_DONE;
 }
 
-/* A user should hear of much work long before it is too much. */
+/* Warns early about slow steps. */
 static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step, double work) {
   log_message(
       instance, STATUS_WARNING,
@@ -63,16 +70,16 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
       lagrangian.steps.max_steps > 0 ? "sets" : "can change: by default it is as many as take about 10 s");
 }
 
-/* What is known on the way through a communication step. */
+/* Data of a communication step in progress. */
 struct Course {
   struct EventProgress progress;
-  int64_t before[STATISTIC_COUNT]; /* the statistics as it began */
-  bool is_told;                    /* that it is slow */
-  int resting;                     /* the last steps, which were too short to change the time */
-  bool ends_at_event;              /* the solver came to one behind which the motion does not go on */
+  int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
+  bool is_told;                    /* the warning was logged */
+  int resting;                     /* consecutive solver steps too short to change the time */
+  bool ends_at_event;              /* the motion cannot go on after an event */
 };
 
-/* Operations in the communication step. */
+/* Returns the operations in the communication step. */
 static double work_in_step(const struct Instance *instance, const struct CommunicationStep *step,
                            const struct Course *course) {
   const int64_t *present = instance->situation->statistics, *before = course->before;
@@ -81,7 +88,7 @@ static double work_in_step(const struct Instance *instance, const struct Communi
          (double)step->count * lagrangian.steps.work.step;
 }
 
-/* NULL, or why the solver gives up. */
+/* Returns NULL, or the limit that is exceeded. */
 static const char *excess(const struct CommunicationStep *step, double work) {
   if (lagrangian.steps.max_steps == 0)
     return work < WORK_LIMIT
@@ -93,7 +100,7 @@ static const char *excess(const struct CommunicationStep *step, double work) {
              : "it has taken as many steps as maxSteps of <solver> allows within one communication step";
 }
 
-/* NULL, or why the solver gives up. */
+/* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
 static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step, struct Course *course) {
   double work = work_in_step(instance, step, course);
   const char *problem = excess(step, work);
@@ -106,7 +113,7 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
   return NULL;
 }
 
-/* One step of the solver, or one past a zero that it cannot reach. NULL, or the reason why there is none. */
+/* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
 static const char *advance_once(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
   const struct EventLaws *laws = lagrangian.event_laws;
   const struct Span *last = &instance->situation->last_step;
@@ -124,7 +131,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   return course->resting < RESTING_STEP_LIMIT ? NULL : solver_resting;
 }
 
-/* Goes through the next event in the solver's last step, which then ends there. NULL, or the reason why the motion does. */
+/* Handles the next event in the solver's last step, which then ends there. Returns NULL, or the reason for stopping. */
 static const char *pass_events(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
   return lagrangian.event_laws != NULL ? lagrangian.event_laws->pass(instance, step, &course->progress) : NULL;
 }
@@ -136,8 +143,8 @@ static void tell_observer(struct Instance *instance, struct CommunicationStep *s
 }
 
 /*
- * Makes steps until the last one reaches the end; NULL, or the reason why none does. *reached: the time up to which the motion
- * is known then: what the solver has beyond an event that cannot be told is none.
+ * Makes steps until one reaches the end. Returns NULL, or the reason for a failure. *reached: the time up to which the
+ * motion is known; it is not known beyond an event that cannot be resolved.
  */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
                          double *reached) {
@@ -157,7 +164,7 @@ static const char *reach(struct Instance *instance, struct CommunicationStep *st
   }
 }
 
-/* Where a mechanism comes to its limit, its user looks for the part that holds it. */
+/* Logs the constraint that is closest to singular, which users look for at the limit of a mechanism. */
 static void log_weakest(struct Instance *instance, double time) {
   const struct EventLaws *laws = lagrangian.event_laws;
   const char *name = lagrangian.constraints.projection->weakest(instance, time, instance->state);
@@ -169,7 +176,7 @@ static void log_weakest(struct Instance *instance, double time) {
         time, name);
 }
 
-/* What to do about a solver that stopped: no solver helps where an event has no end. */
+/* Logs that the solver stopped, and advice. Another solver does not help against events without end. */
 static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                      bool ends_at_event, double reached) {
   const struct Solver *solver = lagrangian.solver;
@@ -181,13 +188,13 @@ static void log_stop(const struct Instance *instance, const struct Communication
               others != NULL ? ", or build with another <solver>: " : "", others != NULL ? others : "");
 }
 
-/* The state becomes that of the time which the solver came to, and says why it is not the end. */
+/* Sets the state to that of the reached time, and logs why it is not the end. */
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                             bool ends_at_event, double reached) {
   const struct EventLaws *laws = lagrangian.event_laws;
   size_t unkept = instance->unkept;
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
-  /* Where the constraints fail, the state is that of the solver. */
+  /* If the constraints fail, the state stays that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
@@ -209,7 +216,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     return readiness;
   }
   bool ends_at_event = false;
-  const char *law = NULL; /* that does not hold at the end */
+  const char *law = NULL; /* the law violated at the end */
   const char *problem = reach(instance, step, &ends_at_event, reached);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
@@ -221,7 +228,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   if (problem == NULL) *reached = last->start;
   if (*reached > step->end) *reached = last->start;
-  if (*reached < step->start) *reached = step->start; /* what was told already stays */
+  if (*reached < step->start) *reached = step->start; /* events before the start were reported already */
   if (law != NULL) return stop(instance, step, law, true, *reached);
   return stop(instance, step, problem != NULL ? problem : "the motion grows without bound", ends_at_event, *reached);
 }
@@ -238,7 +245,7 @@ static void do_advance(void *argument) {
   task->result = advance_to_end(task->instance, task->step, task->reached);
 }
 
-/* Advances inside of what the solver needs around it. */
+/* Runs the step in the solver's error-handling context. */
 static enum StepResult run(struct Instance *instance, struct CommunicationStep *step, double *reached) {
   const struct Solver *solver = lagrangian.solver;
   if (solver == NULL || solver->run == NULL) return advance_to_end(instance, step, reached);
@@ -249,15 +256,15 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
 }
 
 /*
- * How far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at each of
- * them. Half a step is more than rounding.
+ * Returns how far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at
+ * each step, and at most half a step.
  */
 static double rounding_of_sum(const struct Situation *situation, double end, double size) {
   double steps = (end - situation->start_time) / size + 1.0;
   return fmin(0.5 * DBL_EPSILON * steps * fmax(fabs(end), fabs(situation->start_time)), 0.5 * size);
 }
 
-/* What is wrong with a communication step. */
+/* Checks the arguments of a communication step; logs an error. */
 static enum Status check_step(struct Instance *instance, double time, double size) {
   const struct Situation *situation = instance->situation;
   if (!isfinite(time)) return refuse_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
@@ -279,7 +286,7 @@ static enum Status check_step(struct Instance *instance, double time, double siz
   return STATUS_DONE;
 }
 
-/* The step to time + size, or to stopTime where rounding alone leads past it. */
+/* Returns the step to time + size, or to stopTime if only rounding leads past it. */
 static struct CommunicationStep step_within_experiment(const struct Situation *situation, double time, double size) {
   double stop = situation->stop_time;
   if (situation->stop_time_defined && time < stop && stop < time + size)

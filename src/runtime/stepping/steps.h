@@ -1,12 +1,12 @@
-/* Communication steps. */
+/* Communication steps (FMI: DoStep). */
 #ifndef STEPS_H
 #define STEPS_H
 
 #include "instance/instance.h"
 
 /*
- * Goes on from time by size. Discards after
- * logging where the solver came to a part of the step alone, which situation->time then tells.
+ * Advances from time by size, both in s. Returns STATUS_DISCARD, after logging, if only a part of the step could be
+ * made; situation->time is then its end.
  */
 enum Status communication_step(struct Instance *instance, double time, double size);
 

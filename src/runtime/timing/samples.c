@@ -7,7 +7,7 @@
 #include "instance/time_laws.h"
 #include "timing/time_events.h"
 
-/* The number of the first sample from a time on: the quotient alone may be off by the rounding of its division. */
+/* Returns the number of the first sample from a time on; the quotient alone may be off by rounding. */
 static double first_count(double time, double offset, double period) {
   double count = fmax(0.0, floor((time - offset) / period));
   double latest = time - rounding_of_time(time);
@@ -15,7 +15,10 @@ static double first_count(double time, double offset, double period) {
   return count;
 }
 
-/* A period that is no positive number is refused as the simulation starts, see conditions.c; the sample is then at the start. */
+/*
+ * A period that is not positive is an error at the start of the simulation (conditions.c); the sample is then put
+ * there.
+ */
 void samples_start(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Settlement settlement = settlement_of(instance);

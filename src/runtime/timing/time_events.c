@@ -1,7 +1,7 @@
 /*
- * Time events. The indicator of a timed branch is f(t) = a + b t, with a and b constant between events, so that its zero is
- * t - f(t)/b from any t. Near the zero f(t) is a difference of close numbers, which is exact, and a second step from there
- * gives the number next to -a/b.
+ * Time events. The indicator of a timed branch is f(t) = a + b t, with a and b constant between events. Newton's method
+ * t - f(t) / b gives its zero from any t in one step. Near the zero f(t) is an exact difference of close numbers, so a
+ * second step gives the double next to -a / b.
  */
 #include "timing/time_events.h"
 
@@ -10,17 +10,17 @@
 #include "instance/time_laws.h"
 #include "timing/samples.h"
 
-/* Newton steps: one to the zero, and those that take away the rounding of the way there. */
+/* Newton steps: one to the zero, and two that remove its rounding error. */
 enum { ZERO_STEPS = 3 };
 
-/* With accelerations of 0. */
+/* Evaluates with accelerations of 0. */
 void time_events_values(struct Settlement *settlement, double time) {
   struct Point point = instance_point(settlement->instance);
   point.time = time;
   settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, settlement->value);
 }
 
-/* How long until the branch comes to 0, by the values at a time; INFINITY where it does not. */
+/* Returns the time in s until the branch reaches 0, from the values at a time; INFINITY if it does not. */
 static double time_to_zero(const struct Settlement *settlement, size_t branch) {
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
   double value = settlement->value[branch], rate = settlement->value[branch_rate_place(settlement->switches, branch)];
@@ -28,7 +28,7 @@ static double time_to_zero(const struct Settlement *settlement, size_t branch) {
   return mode * rate < 0.0 && isfinite(duration) ? duration : INFINITY;
 }
 
-/* The branch that comes to 0 first; branch_count for none. */
+/* Returns the branch that reaches 0 first; branch_count for none. */
 static size_t first_to_turn(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t first = switches->branch_count;

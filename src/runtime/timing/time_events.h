@@ -1,10 +1,10 @@
-/* Branches that time alone turns. */
+/* Branches that depend on time alone. */
 #ifndef TIME_EVENTS_H
 #define TIME_EVENTS_H
 
 #include "events/settlement.h"
 
-/* Fills value[] of the switch table at a time. What depends on accelerations is undefined. */
+/* Evaluates value[] of the switch table at a time. Values that depend on accelerations are undefined. */
 void time_events_values(struct Settlement *settlement, double time);
 
 #endif
