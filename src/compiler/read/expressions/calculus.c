@@ -15,7 +15,10 @@ static const struct Quantity nothing = {.node = ZERO};
 static const char integral_form[] = "integral(name, from, to, expression)";
 static const char derivative_form[] = "diff(expression, name)";
 
-/* The symbol of another dummy of the scope, which the caller closes. */
+/*
+ * Adds a dummy variable with this range to the scope and returns its symbol. The caller removes it by decrementing
+ * dummy_count.
+ */
 static Node open_dummy(struct Parser *parser, Node low, Node high) {
   struct Scope *scope = parser->scope;
   struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
@@ -24,7 +27,10 @@ static Node open_dummy(struct Parser *parser, Node low, Node high) {
   return dummy->symbol;
 }
 
-/* An expression of these locals, among them dummies. It stays whole: pieces would look at the dummies beyond it. */
+/*
+ * Parses an expression with these local names, dummies among them. Piecewise functions stay whole: their modes would
+ * depend on dummies, which are replaced later.
+ */
 static struct Quantity parse_kept_whole(struct Parser *parser, struct Local *locals) {
   struct Scope *scope = parser->scope;
   struct Local *given = parser->locals;
@@ -39,7 +45,7 @@ static struct Quantity parse_kept_whole(struct Parser *parser, struct Local *loc
   return value;
 }
 
-/* An expression in which a name stands for a dummy, the last of the scope's, which the caller closes. */
+/* Parses an expression in which a name stands for a new dummy. The caller removes the dummy. */
 static struct Quantity parse_with_dummy(struct Parser *parser, const char *name, struct Dimension dimension, Node low,
                                         Node high) {
   struct Local local = {name, {.node = open_dummy(parser, low, high), .dimension = dimension}, parser->locals};
@@ -51,7 +57,10 @@ static void check_nesting(struct Parser *parser) {
     FAIL(parser, "%s: more than %d nested integrals and derivatives; expected fewer", parser->place.what, DUMMY_LIMIT);
 }
 
-/* The name behind the expression of diff, before that is read; the reading position stays. */
+/*
+ * Returns the name after the expression of diff(...) and sets `end` to the text after the closing parenthesis. The
+ * reading position does not move.
+ */
 static char *look_ahead_for_name(struct Parser *parser, const char **end) {
   const char *begin = parser->next;
   for (int depth = 0; *parser->next != '\0' && depth >= 0 && !(depth == 0 && *parser->next == ','); parser->next++)
@@ -73,7 +82,10 @@ static const struct Local *find_local(const struct Parser *parser, const char *n
   return local;
 }
 
-/* By an argument of a function or the variable of an integral: by a dummy, in whose place its value comes. */
+/*
+ * Parses the derivative with respect to an argument of a function or the variable of an integral. Differentiates with
+ * respect to a dummy, then substitutes the value.
+ */
 static struct Quantity derivative_by_local(struct Parser *parser, const struct Local *local) {
   struct Scope *scope = parser->scope;
   check_nesting(parser);
@@ -94,7 +106,10 @@ static bool is_variable(const struct Graph *graph, Node node) {
   return kind == PARAMETER || kind == TIME || kind == COORDINATE || kind == VELOCITY || kind == STATE || kind == INPUT;
 }
 
-/* A copy of the locals, with dummies in place of the values that depend on a variable; the caller closes them. */
+/*
+ * Copies the list of local names and replaces each value that depends on the variable by a dummy. The caller removes
+ * the dummies.
+ */
 static struct Local *hold_locals(struct Parser *parser, Node variable) {
   struct Local *held = NULL, **end = &held;
   for (const struct Local *local = parser->locals; local != NULL && !parser->failed; local = local->outer) {
@@ -109,8 +124,9 @@ static struct Local *hold_locals(struct Parser *parser, Node variable) {
 }
 
 /*
- * The expression of diff by a variable. Arguments of the function around it are names of their own, and held: dummies stand for those
- * whose values depend on the variable, and give way to these values behind the derivative.
+ * Parses the expression of diff(...) and differentiates it with respect to a variable. Arguments of the enclosing
+ * function are held constant even if their values depend on the variable. So dummies replace such arguments, and the
+ * values are substituted after differentiation.
  */
 static Node derivative_with_arguments_held(struct Parser *parser, Node variable, struct Dimension *dimension) {
   struct Graph *graph = parser->graph;
@@ -157,7 +173,7 @@ struct Quantity parse_partial_derivative(struct Parser *parser) {
   return parser->failed ? nothing : derivative;
 }
 
-/* The number of nodes that the author gives; 0 where lagc is to choose. */
+/* Parses the optional number of nodes; returns 0 if lagc is to choose it. */
 static size_t parse_node_count(struct Parser *parser) {
   if (!accept_character(parser, ',')) return 0;
   long count = parse_whole(parser, "the number of nodes of integral(...)");
@@ -178,7 +194,7 @@ struct Quantity parse_integral(struct Parser *parser) {
   expect_character(parser, ',', format_text("after the end of %s", integral_form));
   check_nesting(parser);
   if (parser->failed) return nothing;
-  struct Dimension dimension = quantity_add(parser, from, to).dimension; /* their units agree */
+  struct Dimension dimension = quantity_add(parser, from, to).dimension; /* checks that their units agree */
   struct Quantity value = parse_with_dummy(parser, name, dimension, from.node, to.node);
   struct Integral integral = {.value = value.node, .given = parse_node_count(parser)};
   expect_character(parser, ')', format_text("at the end of %s", integral_form));

@@ -1,10 +1,15 @@
-/* Derivatives by a name, and integrals. */
+/* Partial derivatives diff(...) and integrals integral(...). */
 #pragma once
 
 #include "read/expressions/cursor.h"
 
-/* diff(expression, name), behind its first parenthesis: the derivative with all other names held constant. */
+/*
+ * Parses diff(expression, name) after its opening parenthesis: the partial derivative, all other names held constant.
+ */
 struct Quantity parse_partial_derivative(struct Parser *parser);
 
-/* integral(name, from, to, expression) or integral(name, from, to, expression, nodes), behind its first parenthesis. */
+/*
+ * Parses integral(name, from, to, expression) or integral(name, from, to, expression, nodes) after its opening
+ * parenthesis.
+ */
 struct Quantity parse_integral(struct Parser *parser);

@@ -23,7 +23,7 @@ static bool is_of_word(char letter) {
   return isalnum((unsigned char)letter) || letter == '_';
 }
 
-/* Whether a word that joins conditions stands at a position behind the character before it. */
+/* True if the text begins with the word and, or, or not. before: the preceding character. */
 static bool is_connective(char before, const char *text) {
   static const char *const words[] = {"and", "or", "not"};
   for (size_t i = 0; i < sizeof words / sizeof *words && !is_of_word(before) && before != '.'; i++) {
@@ -61,7 +61,7 @@ static Node both(struct Graph *graph, Node first, Node second) {
   return function(graph, GATE, first, is_positive(graph, second));
 }
 
-/* What is compared must agree in its unit; a comparison by itself is a mode, or a Boolean parameter. */
+/* Parses a comparison of two sums with equal units, or a single mode or Boolean parameter. */
 static Node parse_relation(struct Parser *parser) {
   struct Graph *graph = parser->graph;
   struct Quantity left = parse_sum(parser);
@@ -81,7 +81,7 @@ static Node parse_relation(struct Parser *parser) {
   return comparison == MORE || comparison == LESS_THAN_OTHER ? sign : negation(graph, negate(graph, sign));
 }
 
-/* Whether what is in the parenthesis at the reading position is a condition: no operator of sums follows it. */
+/* True if the parentheses at the reading position enclose a condition rather than an operand of a sum or comparison. */
 static bool is_group(const struct Parser *parser) {
   const char *next = parser->next;
   int depth = 0;
@@ -105,7 +105,9 @@ static Node parse_group(struct Parser *parser) {
   return condition;
 }
 
-/* Of not not ... the last two make 1 or 0 of the condition; those before change nothing but which of them it is. */
+/*
+ * Parses { not } and a condition. More than two negations are reduced to one or two; two map the condition to 1 or 0.
+ */
 static Node parse_factor(struct Parser *parser) {
   long negations = 0;
   while (accept_word(parser, "not")) negations++;
@@ -137,7 +139,7 @@ struct Quantity parse_choice(struct Parser *parser) {
   static const struct Quantity nothing = {.node = ZERO};
   Node condition = parse_condition(parser);
   expect_character(parser, ',', "after the condition of if(condition, expression, expression)");
-  /* An expression need not have a value where the other one counts. */
+  /* Drops the requirements of domains: each expression needs a value only while it is chosen. */
   size_t requirements = parser->scope->requirements.count;
   struct Quantity positive = parser->failed ? nothing : parse_sum(parser);
   expect_character(parser, ',', "between the two expressions of if(condition, expression, expression)");
@@ -145,7 +147,7 @@ struct Quantity parse_choice(struct Parser *parser) {
   parser->scope->requirements.count = requirements;
   expect_character(parser, ')', "at the end of if(condition, expression, expression)");
   if (parser->failed) return nothing;
-  struct Quantity result = quantity_add(parser, positive, other); /* their units agree */
+  struct Quantity result = quantity_add(parser, positive, other); /* checks that their units agree */
   result.node = choose_node(parser->graph, condition, positive.node, other.node);
   return result;
 }

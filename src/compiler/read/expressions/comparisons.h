@@ -1,22 +1,19 @@
-/*
- * Conditions in expressions: comparisons, joined by and, or, not and parentheses. Modes and Boolean parameters are
- * conditions too.
- */
+/* Conditions: comparisons joined by and, or, not and parentheses. Modes and Boolean parameters are conditions too. */
 #pragma once
 
 #include "read/expressions/cursor.h"
 
-/* A node that is constant between events, and positive where the condition holds. */
+/* Parses a condition. The node is constant between events, and positive while the condition holds. */
 Node parse_condition(struct Parser *parser);
 
-/* True if a text holds a comparison, or a word that joins conditions. */
+/* True if the text contains a comparison, or one of the words and, or, not. */
 bool is_condition(const char *text);
 
 /*
- * Reads what an event waits for. True for a condition, see parse_condition(); false for an expression, or after reporting
- * an error, when it is ZERO.
+ * Parses when="..." of an event. Returns true with the node of a condition, see parse_condition(). Returns false with
+ * an expression, whose zero crossing is the event. After reporting an error, returns false with ZERO.
  */
 bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value);
 
-/* The rest of if(condition, expression, expression). */
+/* Parses the arguments of if(condition, expression, expression) after the opening parenthesis. */
 struct Quantity parse_choice(struct Parser *parser);

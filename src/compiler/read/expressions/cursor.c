@@ -12,7 +12,7 @@ long current_line(struct Parser *parser) {
   return parser->place.line + parser->newlines;
 }
 
-/* The indices of a <for> around the expression are unknown in the functions that it calls. */
+/* Functions cannot use the indices of a <for> around the calling expression. */
 const struct Quantity *find_quantity(const struct Parser *parser, const char *name) {
   for (const struct Local *local = parser->locals; local != NULL; local = local->outer)
     if (strcmp(local->name, name) == 0) return &local->value;

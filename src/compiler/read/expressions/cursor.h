@@ -1,22 +1,25 @@
-/* The reading position in the text of an expression. */
+/* The state of the expression parser: reading position, local names and error flag. */
 #pragma once
 
 #include "read/names/definitions.h"
 #include "read/names/scope.h"
 
-/* Where an expression stands, for messages, and what it may depend on. */
+/* The context of an expression: its line and subject for messages, and the symbols that it may depend on. */
 struct Place {
   long line;
   const char *what;      /* such as "the potential" */
   unsigned kinds;        /* bit k: may depend on symbols of kind k */
-  int input_derivatives; /* how many time derivatives inputs must have there */
+  int input_derivatives; /* time derivatives that each input in the expression must have */
 };
 
-/* A name that holds in a part of an expression alone: the index of a sum, an argument of a function. */
+/*
+ * A name that is valid in a part of an expression: the index of a sum, the variable of an integral, an argument of a
+ * function.
+ */
 struct Local {
   const char *name;
   struct Quantity value;
-  struct Local *outer; /* the next one around it; NULL for none */
+  struct Local *outer; /* the enclosing one; NULL for none */
 };
 
 struct NamedFunction;
@@ -26,35 +29,41 @@ struct Parser {
   struct Graph *graph;
   struct Place place;
   const char *text, *next;
-  const char *counted; /* the line breaks before are newlines: counting goes on from there */
+  const char *counted; /* end of the text whose line breaks are counted in `newlines` */
   long newlines;
   int nesting;
   long repetitions; /* bodies of sum(...) parsed so far */
   struct Local *locals;
-  const struct NamedFunction *function; /* whose expression is read; NULL for none */
-  const struct Parser *caller;          /* of the function */
-  const char *use;                      /* of the function, for messages, without its name */
+  const struct NamedFunction *function; /* whose expression is parsed; NULL for none */
+  const struct Parser *caller;          /* the parser of the expression that calls the function */
+  const char *use;                      /* the outermost call of the function, for messages */
   bool failed;
 };
 
 void skip_space(struct Parser *parser);
 
-/* Whether the character comes next, which is then passed. */
+/* Skips white space, and the character c if it follows. Returns false if another character follows. */
 bool accept_character(struct Parser *parser, char c);
 
-/* The same of one that must come; context completes "expected '('". */
+/* Skips white space and the character c, or reports an error. context completes "expected '('". */
 void expect_character(struct Parser *parser, char c, const char *context);
 
-/* What stands at the reading position, for messages. */
+/* Returns the token at the reading position in quotes, or "the end", for messages. The text may be in the buffer. */
 const char *found(const struct Parser *parser, char buffer[32]);
 
-/* What a name stands for at the reading position; NULL where it is unknown. */
+/*
+ * Returns the value of a name at the reading position: of a local name, else of one in the scope. NULL if it is
+ * unknown.
+ */
 const struct Quantity *find_quantity(const struct Parser *parser, const char *name);
 
-/* The line of the reading position. */
+/* Returns the line of the reading position. */
 long current_line(struct Parser *parser);
 
-/* Reports the first error of an expression; later ones would only follow from it. */
+/*
+ * Reports the first error of an expression and sets parser->failed. Later errors are not reported, as the first may
+ * cause them. An expression that waits for a definition reports nothing: it will be parsed again.
+ */
 #define FAIL(parser, ...)                                                                                              \
   do {                                                                                                                 \
     if (!(parser)->failed && !definitions_are_waiting((parser)->scope->definitions))                                   \

@@ -1,6 +1,19 @@
 /*
- * The number of nodes is the smallest for which the integral and its derivatives by what moves agree, to 1e-13 of the
- * integral of their magnitude, with a rule of 128 nodes: at the start values, and at random states around them.
+ * An integral is replaced by Gauss-Legendre quadrature with n nodes x[k] and weights w[k] on the unit interval,
+ *
+ *   integral from a to b of f(s) ds  ~  (b - a) sum over k of w[k] f(a + (b - a) x[k]).
+ *
+ * It is exact for polynomials of degree 2 n - 1 and converges geometrically for analytic f. The equations of motion
+ * contain an ordinary sum, which is differentiated exactly.
+ *
+ * n is the smallest number that passes a test at the start values and at SAMPLES - 1 random states. The test compares
+ * f, and its derivatives with respect to the moving symbols, with a reference: by n and by n + 1 nodes, the error must
+ * be below 1e-13 of the integral of the magnitude. The reference has REFERENCE_NODES nodes in each of two parts,
+ * divided by the golden section so that no errors cancel by symmetry. A state that fails with CHOICE_LIMIT nodes is tested
+ * again with an allowance for rounding errors; if it fails again, the integral gets a warning. A state costs at most
+ * about CHOICE_LIMIT^2 evaluations of f and its derivatives, plus the reference.
+ *
+ * P. J. Davis, P. Rabinowitz, Methods of Numerical Integration, 2nd edition, 1984, chapters 2 and 4.
  */
 #include "read/expressions/integration.h"
 
@@ -17,12 +30,14 @@
 #include "model/model.h"
 #include "read/names/pieces_of_functions.h"
 
+/* Largest number of nodes that lagc chooses, nodes in each part of the reference, and states that are tested. */
 enum { CHOICE_LIMIT = 32, REFERENCE_NODES = 64, SAMPLES = 6 };
 
+/* Relative accuracy of integrals: some 450 roundings, well below the tolerances of solvers. */
 static const double exactness = 1e-13;
-static const double golden_section = 0.3819660112501051; /* a share of 1 */
+static const double golden_section = 0.3819660112501051; /* smaller part of the unit interval */
 
-/* What a motion changes by itself. */
+/* Kinds of symbols that vary along a motion other than time and inputs. */
 static const unsigned moving =
     1u << COORDINATE | 1u << VELOCITY | 1u << STATE | 1u << DISPLACEMENT | 1u << ACCELERATION | 1u << REACTION;
 
@@ -35,9 +50,9 @@ struct Sampling {
   const struct Scope *scope;
   const Node *targets;
   size_t count;
-  double *start, *symbols, *values;   /* the last of all nodes of the graph */
-  double *sums, *sizes;               /* one for each target: of its values, and of their magnitudes */
-  double *reference, *reference_size; /* the same by many nodes */
+  double *start, *symbols, *values;   /* per symbol: start value and present value; per node: present value */
+  double *sums, *sizes;               /* one per target: quadrature of its value, and of its magnitude */
+  double *reference, *reference_size; /* the same by the reference rule */
   uint64_t random;
 };
 
@@ -49,7 +64,7 @@ Node replaced(struct Graph *graph, Node node, Node symbol, Node by) {
   return result;
 }
 
-/* From -1 to 1. */
+/* Returns a random number between -1 and 1; next_random() is between 0.5 and 1.5. */
 static double random_number(struct Sampling *sampling) {
   return 2.0 * next_random(&sampling->random) - 2.0;
 }
@@ -60,13 +75,13 @@ static double scale_of(const struct VariableList *list, size_t index) {
   return variable->nominal > 0.0 ? variable->nominal : fmax(1.0, fabs(variable->start));
 }
 
-/* How far a symbol may be from its start value. */
+/* Returns the largest deviation of a symbol from its start value in a sample. */
 static double spread_of(const struct Model *model, const struct Symbol *symbol, double start) {
   size_t index = (size_t)symbol->index;
   switch (symbol->kind) {
   case PARAMETER:
     if (index < model->parameters.count && model->parameters.items[index].type != TYPE_REAL) return 0.0;
-    return start == 0.0 ? 1.0 : 0.2 * start; /* one that is 0 may leave nothing to see of what it stands before */
+    return start == 0.0 ? 1.0 : 0.2 * start; /* a parameter that is 0 would hide the term that it multiplies */
   case COORDINATE: return scale_of(&model->coordinates, index);
   case VELOCITY: return scale_of(&model->velocities, index);
   case STATE: return scale_of(&model->states, index);
@@ -78,12 +93,12 @@ static double spread_of(const struct Model *model, const struct Symbol *symbol, 
   }
 }
 
-/* Of a parameter; other values are as they are. */
+/* Restricts a parameter to its range; other values are unchanged. */
 static double within_limits(const struct Model *model, const struct Symbol *symbol, double value) {
   size_t index = (size_t)symbol->index;
   if (symbol->kind != PARAMETER || index >= model->parameters.count) return value;
   const struct Variable *parameter = &model->parameters.items[index];
-  return fmin(fmax(value, parameter->minimum), parameter->maximum); /* of which NaN sets none */
+  return fmin(fmax(value, parameter->minimum), parameter->maximum); /* fmin and fmax ignore NaN, which means no limit */
 }
 
 static double value_of(struct Sampling *sampling, Node node) {
@@ -93,7 +108,10 @@ static double value_of(struct Sampling *sampling, Node node) {
   return sampling->values[node];
 }
 
-/* A state at random, or the start. */
+/*
+ * Sets the values of all symbols: start values for share = 0, random values around them else. Enclosing dummies get
+ * values in their intervals.
+ */
 static void choose_state(struct Sampling *sampling, double share) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
@@ -110,7 +128,10 @@ static void choose_state(struct Sampling *sampling, double share) {
   }
 }
 
-/* Adds the sums over a part of the interval, as of shares of it from 0 to 1, and those of magnitudes. */
+/*
+ * Adds the quadrature over a part of the interval to the sums of values and magnitudes. from, to: fractions of the
+ * interval.
+ */
 static void add_part(struct Sampling *sampling, const struct Rule *rule, double from, double to) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
@@ -141,7 +162,7 @@ static void clear_sums(struct Sampling *sampling) {
   memset(sampling->sizes, 0, sampling->count * sizeof *sampling->sizes);
 }
 
-/* By two parts whose ratio is no simple number, so that nothing cancels by symmetry. False where a value is not finite. */
+/* Computes the reference. Returns false if a value is not finite. */
 static bool find_reference(struct Sampling *sampling) {
   const struct Rule rule = rule_of(REFERENCE_NODES);
   bool is_finite = true;
@@ -156,7 +177,10 @@ static bool find_reference(struct Sampling *sampling) {
   return is_finite;
 }
 
-/* The largest error by so many nodes, relative to the size of its target, beyond what rounding explains. */
+/*
+ * Returns the largest error of the targets by this number of nodes, beyond the rounding error bound, relative to the
+ * integral of the magnitude.
+ */
 static double error_of(struct Sampling *sampling, const double *roundings, size_t nodes) {
   const struct Rule rule = rule_of(nodes);
   double worst = 0.0;
@@ -170,7 +194,7 @@ static double error_of(struct Sampling *sampling, const double *roundings, size_
   return worst;
 }
 
-/* What rounding may make of each target, by the integral of its bound. */
+/* Returns a rounding error bound for each target, in units of DBL_EPSILON: the integral of the integrand's bound. */
 static double *roundings_in(const struct Sampling *sampling) {
   struct Graph *graph = sampling->scope->graph;
   Node *bounds = allocate(sampling->count, sizeof *bounds);
@@ -186,7 +210,10 @@ static double *roundings_in(const struct Sampling *sampling) {
   return bounded.reference;
 }
 
-/* As many as this state needs, from a number that others need; its error where the limit is not enough. */
+/*
+ * Returns the number of nodes that the present state needs, at least `nodes`, and sets the remaining error. The second
+ * attempt allows for rounding errors.
+ */
 static size_t nodes_at(struct Sampling *sampling, size_t nodes, double *error) {
   double *roundings = allocate(sampling->count, sizeof *roundings);
   size_t first = nodes;
@@ -210,7 +237,7 @@ static bool find_state(struct Sampling *sampling, double share) {
   return is_finite;
 }
 
-/* The integrand, and its derivatives by what moves. */
+/* Prepares to sample the integrand and its derivatives with respect to the moving symbols. */
 static struct Sampling sampling_of(struct Scope *scope, Node value) {
   struct Graph *graph = scope->graph;
   struct Gradient slopes = gradient_by_kinds(graph, value, moving);
@@ -230,7 +257,7 @@ static struct Sampling sampling_of(struct Scope *scope, Node value) {
                            .reference_size = allocate(count, sizeof(double))};
 }
 
-/* True the first time that an integral is named in its line; outputs, for example, are read twice. */
+/* True for the first message about an integral on its line. Some expressions are parsed twice, as those of outputs. */
 static bool is_new(struct Parser *parser, const struct Integral *integral) {
   struct Scope *scope = parser->scope;
   char *key = format_text("%s:%ld:%s", scope->diagnostics->file, current_line(parser), integral->text);
@@ -268,7 +295,7 @@ static size_t choose_nodes(struct Parser *parser, const struct Integral *integra
   return nodes;
 }
 
-/* The sum over the nodes of an expression of the dummy. */
+/* Returns the weighted sum over the nodes for an expression of the dummy. */
 static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value) {
   struct Graph *graph = parser->graph;
   const struct Dummy dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
@@ -281,7 +308,10 @@ static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value)
   return multiply(graph, length, sum);
 }
 
-/* True if the node is a polynomial of second degree in what moves, whose second derivatives are constants. */
+/*
+ * True if a node with these first derivatives is a quadratic polynomial in the moving symbols. Sets its second
+ * derivatives.
+ */
 static bool is_quadratic(struct Graph *graph, const struct Gradient *slopes, struct Gradient *curvatures) {
   for (size_t i = 0; i < slopes->count; i++) {
     curvatures[i] = gradient_by_kinds(graph, slopes->values[i], moving);
@@ -301,8 +331,8 @@ static Node at_rest(struct Graph *graph, Node node) {
 }
 
 /*
- * Of energies that are quadratic in what moves, the coefficients alone are integrated: they are constants, as masses and
- * stiffnesses by hand are.
+ * Integrates the coefficients of an expression that is quadratic in the moving symbols. They are constants, like masses
+ * and stiffnesses that are given as numbers.
  */
 static Node sum_of_quadratic(struct Parser *parser, const struct Rule *rule, Node value, const struct Gradient *slopes,
                              const struct Gradient *curvatures) {

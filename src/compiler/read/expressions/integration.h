@@ -1,18 +1,21 @@
-/* Integrals by Gauss and Legendre: how many nodes they need, and the sum that stands for them. */
+/* Integrals by Gauss-Legendre quadrature: chooses the number of nodes and builds the sum. */
 #pragma once
 
 #include "algebra/quadrature.h"
 #include "read/expressions/cursor.h"
 
-/* Over the last dummy of the scope. */
+/* An integral over the last dummy of the scope. */
 struct Integral {
   Node value;
-  size_t given; /* nodes that the author gave; 0 for none */
-  char *text;   /* as it is written */
+  size_t given; /* number of nodes that the author gave; 0 for none */
+  char *text;   /* source text, for messages */
 };
 
-/* The sum over the nodes, by its pieces. Warns where no number of nodes is enough; reports an integrand without a finite value. */
+/*
+ * Returns the weighted sum over the nodes, in which piecewise functions become modes. Warns if CHOICE_LIMIT nodes do
+ * not suffice. Reports an integrand without a finite value.
+ */
 Node integrate(struct Parser *parser, const struct Integral *integral);
 
-/* A node with another in place of a symbol. */
+/* Returns the node with another one substituted for a symbol. */
 Node replaced(struct Graph *graph, Node node, Node symbol, Node by);

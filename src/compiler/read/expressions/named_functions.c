@@ -6,13 +6,13 @@
 #include "read/expressions/number_units.h"
 #include "read/expressions/parser.h"
 
+/* Units of work that a call counts, which bound the time that nested calls take. */
 enum { CALL_WORK = 1000 };
 
 struct NamedFunction *function_named(const struct Scope *scope, const char *full_name) {
   return names_find(scope->functions, full_name);
 }
 
-/* "s, t2" */
 static char *list_arguments(const struct NamedFunction *function) {
   char *list = copy_text("");
   for (size_t i = 0; i < function->argument_count; i++)
@@ -20,13 +20,13 @@ static char *list_arguments(const struct NamedFunction *function) {
   return list;
 }
 
-/* The arguments of a call, each a local name of the function; NULL after an error. */
+/* Parses the arguments of a call as local names. Returns the innermost one, which is the last; NULL after an error. */
 static struct Local *parse_arguments(struct Parser *parser, const struct NamedFunction *function) {
   struct Local *locals = allocate(function->argument_count, sizeof *locals);
   size_t count = 0;
   do {
     struct Quantity value = parse_sum(parser);
-    if (value.literal) value.dimension = dimension_unknown; /* it takes the unit of what it meets */
+    if (value.literal) value.dimension = dimension_unknown; /* adopts the unit of the other operand */
     if (count < function->argument_count)
       locals[count] = (struct Local){function->arguments[count], value, count > 0 ? &locals[count - 1] : NULL};
     count++;
@@ -39,7 +39,7 @@ static struct Local *parse_arguments(struct Parser *parser, const struct NamedFu
   return parser->failed ? NULL : &locals[count - 1];
 }
 
-/* The indices of each <for> around a function in its own file, before its arguments. */
+/* Appends the indices of each <for> around the definition, in the function's own file, as outermost local names. */
 static struct Local *add_indices(struct Parser *parser, const struct NamedFunction *function, struct Local *locals) {
   size_t length = strlen(function->prefix);
   for (const struct Loop *loop = function->loop; loop != NULL; loop = loop->outer) {
@@ -55,7 +55,7 @@ static struct Local *add_indices(struct Parser *parser, const struct NamedFuncti
   return locals;
 }
 
-/* Reports a function that calls itself, perhaps by way of others. */
+/* Reports direct or indirect recursion. */
 static void check_recursion(struct Parser *parser, const struct NamedFunction *function) {
   const struct Parser *first = parser;
   while (first->function != NULL && first->function != function) first = first->caller;
@@ -78,14 +78,16 @@ static void require_value_unit(struct Parser *parser, const struct NamedFunction
   *value = (struct Quantity){.node = value->node, .dimension = function->value};
 }
 
-/* What calls the function in the end, and where, for messages of its expression. */
+/*
+ * Returns the subject of messages about the function's expression: the outermost call with its line, and the function.
+ */
 static const char *name_of_use(struct Parser *parser, const struct NamedFunction *function) {
   if (parser->function != NULL) return format_text("%s '%s'", parser->use, function->name);
   parser->use = format_text("%s of line %ld, in the function", parser->place.what, current_line(parser));
   return format_text("%s '%s'", parser->use, function->name);
 }
 
-/* The expression in the file where it stands, with the names that are known there. */
+/* Parses the function's expression in the context of the file that defines it. */
 static struct Quantity read_expression(struct Parser *parser, const struct NamedFunction *function,
                                        struct Local *locals) {
   struct Scope *scope = parser->scope;

@@ -1,4 +1,7 @@
-/* Functions that a system defines by an expression of their arguments, which stands wherever they are called. */
+/*
+ * Functions that a system defines with <function>. Each call parses the function's expression with the arguments as
+ * local names.
+ */
 #pragma once
 
 #include "read/expressions/cursor.h"
@@ -6,16 +9,16 @@
 struct NamedFunction {
   char *name, **arguments;
   size_t argument_count;
-  const char *text;                   /* the expression */
-  long line;                          /* where it begins */
-  struct Dimension value;             /* unknown where the system gives no unit */
-  const char *file, *origin, *prefix; /* in which it stands; as in struct Diagnostics and struct Scope */
-  const struct Loop *loop;            /* around it; NULL for none */
+  const char *text;
+  long line;                          /* on which the text begins */
+  struct Dimension value;             /* of the result; unknown if the system gives no unit */
+  const char *file, *origin, *prefix; /* of the defining file, as in struct Diagnostics and struct Scope */
+  const struct Loop *loop;            /* innermost <for> around the definition; NULL for none */
   bool is_used;
 };
 
-/* The function of this full name; NULL where there is none. */
+/* Returns the function of this full name; NULL for none. */
 struct NamedFunction *function_named(const struct Scope *scope, const char *full_name);
 
-/* The value of a function at the reading position, behind the parenthesis that opens its arguments. */
+/* Parses the arguments of a call after its opening parenthesis. Returns the value of the function. */
 struct Quantity parse_function_call(struct Parser *parser, struct NamedFunction *function);

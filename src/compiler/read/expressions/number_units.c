@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "read/names/definitions.h"
 
-/* Of two numbers the one with more digits is the likelier one to be measured: 9.81 and not 2. */
+/* Of two factors keeps the one with more digits, which is more likely a measured quantity: 9.81 rather than 2. */
 struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second) {
   if (first.text == NULL) return second;
   return second.text != NULL && strlen(second.text) > strlen(first.text) ? second : first;
@@ -22,7 +22,10 @@ struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second)
   return first.factor.text != NULL ? second.factor : first.factor;
 }
 
-/* The unit that the number must have so that the quantity has the one that is expected, where one is; the radian counts as 1. */
+/*
+ * Returns the unit that the number needs for the quantity to have the expected one, without radians; "..." if exponents
+ * are fractional.
+ */
 static const char *missing_unit(struct Quantity quantity, struct Dimension expected) {
   struct Dimension ratio = dimension_multiply(expected, quantity.dimension, -1.0);
   struct Dimension unit = dimension_multiply(dimension_one, ratio, 1.0 / quantity.factor.power);

@@ -1,21 +1,25 @@
 /*
- * The units of numbers. A number is a pure number; one that stands alone takes the unit of what it is added to or compared
- * with. Where units only fit if a number that multiplies had one, a warning names it, and the reading goes on.
+ * Units of numbers. A number is dimensionless; a number alone adopts the unit of the quantity that it is added to or
+ * compared with. If two units would agree provided that a numeric factor had a unit, a warning names the number and
+ * parsing continues.
  */
 #pragma once
 
 #include "read/names/scope.h"
 
-/* The factor of a product, of a quotient's divisor, and of a power. */
+/* Return the numeric factor of a product, and of a power or divisor. */
 struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second);
 struct NumberFactor factor_raised(struct NumberFactor factor, double power);
 
-/* The factor of a sum and the like: what mends one term alone mends nothing. */
+/*
+ * Returns the numeric factor of a sum; none unless both terms have one, as a unit on one term alone would not repair
+ * the sum.
+ */
 struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second);
 
 /*
- * Warns that a quantity has another unit than expected, and what its number must be instead: once for each number on a
- * line. problem: what does not fit. False, without a message, where no number could mend it.
+ * Warns that a quantity has another unit than expected, and suggests a unit for its numeric factor: once per number and
+ * line. problem: the first half of the message. Returns false without a message if the quantity has no numeric factor.
  */
 bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quantity, struct Dimension expected,
                           const char *problem);

@@ -20,6 +20,10 @@
 #include "read/names/words.h"
 #include "read/tables/table.h"
 
+/*
+ * Limits of the depth of recursion and of the terms of all sums in an expression, and the units of work that a primary
+ * counts. They bound the stack and the time of compilation.
+ */
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 50 };
 
 static const char *const kind_names[SYMBOL_KIND_COUNT] = {
@@ -35,7 +39,7 @@ static const char *const kind_names[SYMBOL_KIND_COUNT] = {
     [MODE] = "modes",
 };
 
-/* What names the argument of der(...) in messages begins so. */
+/* Begins the subject of messages about the argument of der(...). */
 static const char derived[] = "der(...) in ";
 static const char no_derivative[] = "; expected coordinates or velocities, whose derivatives the system knows";
 
@@ -47,7 +51,7 @@ static const struct Quantity nothing = {.node = ZERO};
 
 static struct Quantity parse_sign(struct Parser *parser);
 
-/* Recursion is bounded here, so that no input exhausts the stack. */
+/* Counts a level of recursion, up to a limit, so that no input overflows the stack. */
 static void enter(struct Parser *parser) {
   if (++parser->nesting > NESTING_LIMIT + 1)
     FAIL(parser, "%s: more than %d nested parentheses or powers; expected fewer, or a <define> for a part",
@@ -99,7 +103,7 @@ static char *read_identifier(struct Parser *parser) {
   return identifier;
 }
 
-/* The index after an identifier, if there is one. */
+/* Appends the index after an identifier, if there is one. */
 static char *read_index(struct Parser *parser, char *name) {
   if (*parser->next == '[') {
     parser->next++;
@@ -112,7 +116,7 @@ static char *read_index(struct Parser *parser, char *name) {
   return name;
 }
 
-/* The rest of a name after its first identifier. */
+/* Appends the index and the further parts of a name after its first identifier. */
 static char *read_name_suffix(struct Parser *parser, char *name) {
   name = read_index(parser, name);
   while (!parser->failed && *parser->next == '.' &&
@@ -129,14 +133,14 @@ char *read_name(struct Parser *parser) {
   return read_name_suffix(parser, identifier);
 }
 
-/* Time derivatives that the system knows of an input. */
+/* Returns how many time derivatives of an input are inputs themselves. */
 static int derivatives_of_input(const struct Scope *scope, Node symbol) {
   int count = 0;
   while ((symbol = time_derivative_of_symbol(scope, symbol)) != ZERO) count++;
   return count;
 }
 
-/* Where the motion rests on derivatives of the inputs in a node, which has this name. */
+/* Reports inputs in a node that lack the time derivatives needed here. name: the name that stands for the node. */
 static void require_input_derivatives(struct Parser *parser, Node node, const char *name) {
   const struct Graph *graph = parser->graph;
   int needed = parser->place.input_derivatives;
@@ -187,13 +191,16 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
   return *quantity;
 }
 
-/* Bounds with names may cross on purpose: sum(j, 2, i-1, ...) is empty for the first i. */
+/*
+ * True if both bounds are literals. Bounds with names may be reversed on purpose: sum(j, 2, i-1, ...) is empty for i =
+ * 1.
+ */
 static bool bounds_are_numbers(const char *begin, const char *end) {
   while (begin < end && !isalpha((unsigned char)*begin)) begin++;
   return begin == end;
 }
 
-/* Goes on to the parenthesis that closes the present one. What is passed over may name what is not there. */
+/* Skips to the parenthesis that closes the current call. The skipped text may contain unknown names. */
 static void skip_to_end(struct Parser *parser) {
   for (int depth = 0; *parser->next != '\0' && !(depth == 0 && *parser->next == ')'); parser->next++)
     depth += (*parser->next == '(') - (*parser->next == ')');
@@ -203,7 +210,7 @@ static struct Quantity number_of(const struct Parser *parser, double number) {
   return (struct Quantity){.node = graph_constant(parser->graph, number), .dimension = dimension_one, .literal = true};
 }
 
-/* What stands before the body of sum(index, first, last, body). */
+/* The part of sum(index, first, last, body) before the body. */
 struct SumHead {
   char *index;
   long first, last;
@@ -236,7 +243,7 @@ static struct SumHead parse_sum_head(struct Parser *parser) {
   return head;
 }
 
-/* The body is read once for each value of the index. */
+/* Parses the body once for each value of the index. */
 static struct Quantity parse_repeated_sum(struct Parser *parser) {
   const struct SumHead head = parse_sum_head(parser);
   const char *body = parser->next;
@@ -256,7 +263,9 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
-/* Whether the present expression waits for the rate of a state in the node. */
+/*
+ * True if the current expression must wait for the rate of a state in the node, because the rate has not been parsed.
+ */
 static bool waits_for_rates(struct Parser *parser, Node node) {
   const struct Graph *graph = parser->graph;
   bool waits = false;
@@ -271,7 +280,7 @@ static bool waits_for_rates(struct Parser *parser, Node node) {
   return waits;
 }
 
-/* Accelerations, forces of reaction, and inputs without derivatives of their own have none that a system knows. */
+/* Parses der(...). Its argument has no accelerations, no reaction forces, and no inputs without a time derivative. */
 static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Place place = parser->place;
   parser->place.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
@@ -300,7 +309,7 @@ static struct Quantity parse_table(struct Parser *parser, const struct Table *ta
   return parser->failed ? nothing : quantity_of_table(parser, table, name, arguments);
 }
 
-/* The table of a name as the file calls it; NULL where there is none. */
+/* Returns the table that the current file calls by this name; NULL for none. */
 static const struct Table *find_table(const struct Parser *parser, const char *name) {
   char *full_name = scope_full_name(parser->scope, name);
   const struct Table *table = table_named(parser->scope, full_name);
@@ -308,7 +317,7 @@ static const struct Table *find_table(const struct Parser *parser, const char *n
   return table;
 }
 
-/* One or two arguments up to the closing parenthesis. */
+/* Parses one or two arguments and the closing parenthesis. */
 static void parse_operands(struct Parser *parser, const char *name, int arity, struct Quantity *a, struct Quantity *b) {
   *a = parse_sum(parser);
   *b = nothing;
@@ -374,7 +383,7 @@ static struct Quantity parse_call(struct Parser *parser, const char *name) {
 static void require_limits(struct Parser *parser) {
   const char *limit = graph_limit(parser->graph);
   if (limit == NULL) return;
-  if (parser->scope->diagnostics->errors > 0) parser->failed = true; /* said already */
+  if (parser->scope->diagnostics->errors > 0) parser->failed = true; /* the limit has been reported */
   else
     FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->place.what, limit);
 }
@@ -386,10 +395,12 @@ static struct Quantity parse_parentheses(struct Parser *parser) {
   return value;
 }
 
-/* A variable, or a call of a function or a table, whose name alone may have an index or belong to a part. */
+/*
+ * Parses a variable or a call. Of callable names, only those of tables and <function>s may have an index or a prefix.
+ */
 static struct Quantity parse_named(struct Parser *parser) {
   char *name = read_identifier(parser);
-  const char *end = parser->next; /* an error about the name is on its line */
+  const char *end = parser->next; /* errors about the name are reported on its line */
   if (accept_character(parser, '(')) return parse_call(parser, name);
   parser->next = end;
   name = read_name_suffix(parser, name);
@@ -480,7 +491,7 @@ struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(
   return parser->failed ? nothing : value;
 }
 
-/* False where the text has a mistake; the value is then nothing. */
+/* Parses the text by the function `read`. Returns false after an error; the value is then 0. */
 static bool read_text(struct Scope *scope, const char *text, struct Place place,
                       struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
   struct Parser parser = parser_of(scope, text, place);

@@ -1,10 +1,10 @@
-/* The expression language: plain infix text to nodes, with dimensions checked on the way. */
+/* Recursive-descent parser of expressions. It builds nodes of the expression graph and checks units on the way. */
 #pragma once
 
 #include "read/expressions/cursor.h"
 
 /*
- * Parses an expression. Errors are reported with their line, and the result is then 0 with an unknown dimension.
+ * Parses an expression. Errors are reported with their lines; the result is then 0 with an unknown unit.
  *
  *   sum      = term { ("+" | "-") term }
  *   term     = sign { ("*" | "/") sign }
@@ -22,35 +22,38 @@
  */
 struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
 
-/* The same from the reading position on, as far as it goes. */
+/* Parses a sum at the reading position, as far as it extends. */
 struct Quantity parse_sum(struct Parser *parser);
 
-/* The same to the end of the text, or what another function reads of it. */
+/* Parses the whole text by the function `read`; reports text that is left over. */
 struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(struct Parser *parser));
 
-/* A power or primary, as a factor of a product. */
+/* Parses a power or primary, as a factor of a product. */
 struct Quantity parse_power(struct Parser *parser);
 
-/* The name that a call declares, as the index of sum(index, first, last, expression), whose form the usage is. */
+/*
+ * Parses a name that a call declares, and the comma after it, such as the index of sum(index, first, last, expression).
+ * usage: that form, for messages.
+ */
 char *parse_declared(struct Parser *parser, const char *what, const char *usage);
 
-/* A whole number from an expression of compile-time numbers. */
+/* Parses an expression of compile-time numbers whose value must be an integer. */
 long parse_whole(struct Parser *parser, const char *what);
 
-/* A name at the reading position, its indices worked out. */
+/* Reads a name at the reading position and evaluates its indices. */
 char *read_name(struct Parser *parser);
 
-/* The value of a name, which must be allowed in this place. */
+/* Returns the value of a name. Reports a name that is unknown or not allowed here. */
 struct Quantity look_up(struct Parser *parser, const char *name);
 
-/* Parses an expression of numbers and compile-time numbers alone. Returns false after reporting an error. */
+/* Parses an expression of compile-time numbers. Returns false after reporting an error. */
 bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value);
 
-/* The same without the unit. */
+/* Like parse_constant(), without the unit. */
 bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
 
 /*
- * Replaces the indices in a name by their values: theta[i+1] to theta[3]. parts: whether it may have several, as in
- * motor.theta. Returns NULL after reporting an error.
+ * Evaluates the indices in a name: theta[i+1] becomes theta[3]. parts: the name may have several parts, as motor.theta.
+ * Returns NULL after reporting an error.
  */
 char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);

@@ -19,7 +19,10 @@ static void require_dimensionless(struct Parser *parser, struct Quantity value, 
     FAIL(parser, "%s", problem);
 }
 
-/* The unit of operands that do not agree: the one of a is kept, unless only a number in a could mend it. */
+/*
+ * Reports operands whose units disagree, by a warning if a numeric factor can explain it. Returns the unit to continue
+ * with: that of a, or of b if the factor is in a.
+ */
 static struct Dimension mended_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
                                          const char *where) {
   char *problem = format_text("%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what,
@@ -32,7 +35,7 @@ static struct Dimension mended_dimension(struct Parser *parser, struct Quantity 
   return a.dimension;
 }
 
-/* The dimension of a sum, a minimum and the like, whose operands must agree. */
+/* Returns the common unit of the operands of a sum, minimum or maximum, and reports disagreement. */
 static struct Dimension common_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
                                          const char *where) {
   if (a.literal) return b.dimension;
@@ -41,7 +44,7 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
   return a.dimension.known ? a.dimension : b.dimension;
 }
 
-/* All numbers made of numbers since the expression began must be finite. */
+/* Reports a constant that overflowed or is undefined. The flag was cleared at the beginning of the expression. */
 static void require_finite(struct Parser *parser, const char *what) {
   if (parser->graph->not_finite)
     FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->place.what, what);
@@ -87,7 +90,10 @@ static long line_after_reading(struct Parser *parser) {
   return scope_line(parser->scope, current_line(parser));
 }
 
-/* A power or root of numbers that has a finite value, or of what may have one. */
+/*
+ * Reports constant powers and roots without a finite real value. A variable base of a fractional power is recorded for
+ * the check of domains at the start values.
+ */
 static void check_power(struct Parser *parser, Node base, Node exponent) {
   const struct Graph *graph = parser->graph;
   bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
@@ -119,7 +125,10 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
   return result;
 }
 
-/* A function of numbers must have a finite value; one of variables must have one where these are. */
+/*
+ * Reports a constant function value that is not finite. A variable argument is recorded for the check of domains at the
+ * start values.
+ */
 static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
   if (parser->graph->not_finite)
     FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
@@ -148,7 +157,10 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
   return result;
 }
 
-/* In <set> it is a value, elsewhere it switches. */
+/*
+ * Returns floor(node). In a <set> it is evaluated at the event; elsewhere it is piecewise constant, and its jumps are
+ * events.
+ */
 static Node floor_in_place(struct Parser *parser, Node node) {
   bool is_value = (parser->place.kinds & AT_INSTANT) != 0;
   return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));

@@ -1,6 +1,6 @@
 /*
- * Arithmetic with quantities: operations on nodes and dimensions at once. What has no finite value or mixes units is
- * reported, and parser->failed is then set.
+ * Arithmetic of quantities: builds the expression and checks the units. Results that are not finite and units that do
+ * not agree are reported, and parser->failed is set.
  */
 #pragma once
 
@@ -13,16 +13,19 @@ struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, stru
 struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct Quantity b);
 struct Quantity quantity_power(struct Parser *parser, struct Quantity base, struct Quantity exponent);
 
-/* floor, ceil, round or mod; b is ignored for one argument. */
+/* Returns floor, ceil, round or mod, by name; b is used by mod only. */
 struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b);
 
-/* uniform or gauss of a seed and a number, which is rounded to a whole one where it changes between events. */
+/*
+ * Returns uniform or gauss, by name, of a seed and an index. An index that varies continuously is rounded to the
+ * nearest integer.
+ */
 struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number);
 
-/* A function of the language other than a power; b is ignored for one argument. */
+/* Returns a function of the expression graph other than a power; b is ignored for functions of one argument. */
 struct Quantity quantity_function(struct Parser *parser, enum Operation operation, struct Quantity a,
                                   struct Quantity b);
 
-/* A table of this name at its one or two arguments. */
+/* Returns the value of a table of this name at its one or two arguments. */
 struct Quantity quantity_of_table(struct Parser *parser, const struct Table *table, const char *name,
                                   const struct Quantity arguments[2]);

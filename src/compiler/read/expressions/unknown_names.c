@@ -11,7 +11,7 @@
 #include "read/names/words.h"
 #include "read/tables/table.h"
 
-/* What may stand where numbers alone are allowed, or everything. */
+/* Returns the kinds of names that are allowed here, for messages. */
 static const char *expected_names(const struct Parser *parser) {
   if (parser->place.kinds == 1u << PARAMETER) return "a parameter or a constant";
   return parser->place.kinds == 0 ? "a number, or a constant that stands further up"
@@ -23,7 +23,7 @@ static bool is_known(const struct Parser *parser, const char *name) {
   return scope_find(parser->scope, full_name) != NULL || definitions_contain(parser->scope->definitions, full_name);
 }
 
-/* The components that a thing has, such as "bob.x or bob.y"; "" where there is none of this name. */
+/* Returns the known components of a point, body or frame, such as "bob.x or bob.y"; "" if there are none. */
 static char *components_of(const struct Parser *parser, const char *body, size_t length) {
   static const char *const components[] = {"x",      "y",      "z",  "angle",  "vx",     "vy",     "vz",
                                            "ax",     "ay",     "az", "omegaX", "omegaY", "omegaZ", "alphaX",
@@ -36,7 +36,7 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
   return list;
 }
 
-/* How many of name[1], name[2], ... there are. */
+/* Returns the largest n for which name[1], ..., name[n] are known, up to LIMIT. */
 static int count_indices(const struct Parser *parser, const char *name) {
   enum { LIMIT = 1000 };
   for (int i = 1; i <= LIMIT; i++) {
@@ -47,7 +47,7 @@ static int count_indices(const struct Parser *parser, const char *name) {
 }
 
 void report_unknown_name(struct Parser *parser, const char *name) {
-  /* A search through all names is for messages that are shown. */
+  /* Messages beyond ERROR_LIMIT are not printed, so that they need no search through all names. */
   bool shown = parser->scope->diagnostics->errors < ERROR_LIMIT;
   const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
   const char *point = strrchr(name, '.');
@@ -83,7 +83,7 @@ void report_reserved(struct Parser *parser, const char *name) {
          parser->place.what, name, expected_names(parser));
 }
 
-/* Those of one argument first. */
+/* Lists the functions of the graph, those of one argument first, each followed by ", ". */
 static char *function_names(void) {
   struct TextStream names;
   FILE *file = open_text(&names);
@@ -94,7 +94,7 @@ static char *function_names(void) {
   return close_text(&names);
 }
 
-/* Those of the file being read, as it calls them. */
+/* Considers the names of the current file, without its prefix. */
 static void consider_own(struct Similar *similar, const struct Names *names, const char *prefix) {
   size_t length = strlen(prefix);
   for (size_t i = 0; i < names->capacity; i++) {

@@ -11,7 +11,7 @@
 
 static const char expected[] = "the name of a <particle>, <body>, <point> or <frame>, or base";
 
-/* A vector along the base's axes, with its unit. */
+/* A vector along the base's axes, with the unit of its components. */
 struct Arrow {
   struct Vector vector;
   struct Dimension dimension;
@@ -28,7 +28,9 @@ bool is_function_of_vectors(const char *name) {
   return false;
 }
 
-/* A component by its name; 0 where there is none, as of a particle in a plane. */
+/*
+ * Returns a component by its name; 0 if it does not exist, as z of a particle in the plane. Sets is_known if it exists.
+ */
 static Node parse_component(struct Parser *parser, const char *name, bool *is_known) {
   char *full_name = scope_full_name(parser->scope, name);
   bool is_there =
@@ -37,7 +39,7 @@ static Node parse_component(struct Parser *parser, const char *name, bool *is_kn
   return is_there ? look_up(parser, name).node : ZERO;
 }
 
-/* Components that are called NAME.x, or NAME.vx, ...; false where there is none of them. */
+/* Sets the vector of the components NAME.x, NAME.vx or the like. Returns false if none of them exists. */
 static bool find_components(struct Parser *parser, const char *name, const char *prefix, struct Vector *vector) {
   bool is_known = false;
   for (int i = 0; i < 3 && !parser->failed; i++)
@@ -45,7 +47,7 @@ static bool find_components(struct Parser *parser, const char *name, const char 
   return is_known;
 }
 
-/* A column of a frame's rotation. */
+/* Sets a column of a frame's rotation matrix. Returns false if there is no such frame. */
 static bool find_axis(struct Parser *parser, const char *frame, int axis, struct Vector *vector) {
   bool is_known = strcmp(frame, "base") == 0;
   if (is_known) vector->along[axis] = ONE;
@@ -54,7 +56,7 @@ static bool find_axis(struct Parser *parser, const char *frame, int axis, struct
   return is_known;
 }
 
-/* What a name with a part at its end stands for: a point's velocity, or an axis of a frame; false for neither. */
+/* Sets the vector that NAME.axisX, NAME.v or NAME.omega stands for. Returns false for other names. */
 static bool find_part(struct Parser *parser, const char *name, struct Arrow *arrow) {
   const char *part = strrchr(name, '.');
   if (part == NULL) return false;
@@ -105,7 +107,7 @@ static struct Arrow parse_arrow(struct Parser *parser) {
   return parser->failed ? no_arrow : parse_named_arrow(parser, name);
 }
 
-/* Whether a number comes next: a literal, a call, or a name that has a value of its own. */
+/* True if a scalar comes next: a literal, a call other than cross, or a name with a scalar value. */
 static bool is_number_ahead(struct Parser *parser) {
   skip_space(parser);
   const char *begin = parser->next;
@@ -131,7 +133,7 @@ static struct Arrow scaled_by(struct Parser *parser, struct Arrow arrow, struct 
   return arrow;
 }
 
-/* The numbers before a vector, as one. */
+/* Parses the scalar factors in front of a vector and returns their product. */
 static struct Quantity parse_factors(struct Parser *parser) {
   struct Quantity product = parse_power(parser);
   while (!parser->failed) {
@@ -172,7 +174,7 @@ static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct 
   return a;
 }
 
-/* Parentheses nest as deep as the sums of numbers in which they stand may. */
+/* Parses a sum of vectors. Parentheses count toward the same nesting limit as those of scalars. */
 static struct Arrow parse_vector(struct Parser *parser) {
   enum { NESTING_LIMIT = 1000 };
   if (++parser->nesting > NESTING_LIMIT)

@@ -1,10 +1,16 @@
-/* Functions of vectors: points, their velocities, axes of frames, and what is made of them, along the base's axes. */
+/*
+ * Functions of vectors, which are points, their velocities, axes of frames, angular velocities and combinations of
+ * these. All components are along the base's axes.
+ */
 #pragma once
 
 #include "read/expressions/cursor.h"
 
-/* Whether the name is cross, distance, dot or norm. */
+/* True if the name is cross, distance, dot or norm. */
 bool is_function_of_vectors(const char *name);
 
-/* Parses its arguments and the parenthesis that closes them. */
+/*
+ * Parses the arguments of such a function and its closing parenthesis. Returns a scalar; cross, which is none, is
+ * reported.
+ */
 struct Quantity parse_function_of_vectors(struct Parser *parser, const char *name);

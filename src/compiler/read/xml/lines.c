@@ -6,22 +6,25 @@
 #include "base/memory.h"
 #include "read/xml/nodes.h"
 
-/* Lines beyond are not numbered by libxml2. */
+/* Largest line number in the 16-bit field `line` of libxml2's nodes. */
 enum { LINE_LIMIT = 65535 };
 
-/* In the psvi of a node, which libxml2 leaves free; content is that of an element. */
+/*
+ * Lines of an element (first and content) or of another node (both equal), in the node's field `psvi`, which libxml2
+ * leaves unused.
+ */
 struct NodeLines {
   long first, content;
 };
 
-/* In the psvi of an attribute. */
+/* Lines of an attribute's value, in the attribute's field `psvi`. */
 struct AttributeLines {
   long first;
-  size_t *breaks; /* where in the value a blank stands for a line break */
+  size_t *breaks; /* character offsets in the value at which a blank replaces a line break */
   size_t break_count;
 };
 
-/* Where reading stands; wrong where the text and the document do not agree. */
+/* The reading position in the source text. `wrong` is set when text and document disagree, which ends the scan. */
 struct Scan {
   const char *next, *end;
   long line;
@@ -52,7 +55,9 @@ static void pass_any(struct Scan *scan, const char *characters) {
   while (scan->next < scan->end && strchr(characters, *scan->next) != NULL) pass(scan);
 }
 
-/* Copies of the node keep the line that libxml2 has room for. */
+/*
+ * Sets the lines of a node. The 16-bit field of libxml2 is set too, because copies of a node keep it and lose `psvi`.
+ */
 static void set_lines(xmlNodePtr node, long first, long content) {
   struct NodeLines *lines = allocate(1, sizeof *lines);
   *lines = (struct NodeLines){first, content};
@@ -64,7 +69,10 @@ void set_line(xmlNodePtr node, long line) {
   set_lines(node, line, line);
 }
 
-/* Passes a value up to its quote and finds its line breaks; each character that is not one, or stands for one, counts. */
+/*
+ * Advances to the closing quote of an attribute's value and records its line breaks. Offsets count characters of the
+ * parsed value: a UTF-8 sequence, an entity and a CR LF pair are one each.
+ */
 static void find_breaks(struct Scan *scan, char quote, struct AttributeLines *lines) {
   size_t place = 0;
   for (; scan->next < scan->end && *scan->next != quote; pass(scan)) {
@@ -100,7 +108,7 @@ static void find_attribute(struct Scan *scan, xmlNodePtr element) {
   if (scan->next < scan->end) scan->next++;
 }
 
-/* Passes a text, of which a <![CDATA[ ]]> is a part. */
+/* Advances to the next markup after a text. CDATA sections are part of the text. */
 static void pass_text(struct Scan *scan) {
   for (pass_to(scan, "<"); begins(scan, "<![CDATA["); pass_to(scan, "<")) pass_behind(scan, "]]>");
 }
@@ -168,7 +176,7 @@ long line_of_content(const xmlNode *element) {
   return element->psvi != NULL ? ((const struct NodeLines *)element->psvi)->content : line_of(element);
 }
 
-/* The length of a letter in UTF-8. */
+/* Returns the number of bytes of a UTF-8 character. */
 static size_t letter_length(const char *letter) {
   size_t length = 1;
   while (((unsigned char)letter[length] & 0xC0u) == 0x80u) length++;

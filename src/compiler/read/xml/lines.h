@@ -1,6 +1,7 @@
 /*
- * The lines on which nodes of a document stand. libxml2 numbers an element by the end of its start tag, a text by that of its
- * end, and nothing beyond 65,535; it keeps no lines of attributes.
+ * Line numbers of nodes and attributes. Those of libxml2 do not suffice: an element has the line where its start tag
+ * ends, a text the line where it ends. They stop at 65,535, and attributes have none. So the source text is scanned
+ * once more, in parallel with the document.
  */
 #pragma once
 
@@ -8,20 +9,26 @@
 
 #include <libxml/tree.h>
 
-/* Finds the lines of all nodes in the text from which the document was read. Without effect where that is not UTF-8. */
+/*
+ * Finds the lines of all nodes of a document in the text that it was parsed from. Stops where the two disagree, as in
+ * files that are not UTF-8; line_of() then falls back on libxml2.
+ */
 void lines_find(xmlDocPtr document, const char *text, size_t length);
 
-/* Gives a node that comes from elsewhere its line. */
+/* Sets the line of a node that was not parsed from the file. */
 void set_line(xmlNodePtr node, long line);
 
-/* The line on which a node begins. */
+/* Returns the line on which a node begins. */
 long line_of(const xmlNode *node);
 
-/* The line on which the value of an attribute begins; that of the element where it has none of this name. */
+/* Returns the line on which the value of an attribute begins; the line of the element if it has no such attribute. */
 long line_of_attribute(const xmlNode *element, const char *name);
 
-/* The line on which the start tag of an element ends, and its content begins. */
+/* Returns the line on which the start tag of an element ends and its content begins. */
 long line_of_content(const xmlNode *element);
 
-/* The value of an attribute, in which the line breaks of the file are in place of the blanks that XML makes of them. */
+/*
+ * Returns a copy of an attribute's value with the line breaks of the file, which XML replaces by blanks. NULL if there
+ * is no such attribute.
+ */
 char *attribute_in_lines(xmlNodePtr element, const char *name);

@@ -25,7 +25,7 @@ bool attribute_is(xmlNodePtr node, const char *name, const char *value) {
   return text != NULL && strcmp(text, value) == 0;
 }
 
-/* A blank, and the line breaks of a text alone, by which what follows it keeps its line. */
+/* Returns a blank followed by the line breaks of the text. */
 static char *breaks_of(const char *text) {
   char *breaks = copy_text(text), *end = breaks;
   for (; *text != '\0'; text++)

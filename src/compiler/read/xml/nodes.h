@@ -1,4 +1,4 @@
-/* What the elements of a document say, as strings. */
+/* Names, attributes and texts of XML nodes as strings. */
 #pragma once
 
 #include <stdbool.h>
@@ -7,18 +7,21 @@
 
 #include "read/xml/lines.h"
 
-/* Whether it is an element of this name. */
+/* True if the node is an element of this name. */
 bool is_element(const xmlNode *node, const char *name);
 
-/* Whether the element has an attribute of this name, and whether that has this value. */
+/* True if the element has an attribute of this name; attribute_is(): and if the attribute has this value. */
 bool has_attribute(xmlNodePtr node, const char *name);
 bool attribute_is(xmlNodePtr node, const char *name, const char *value);
 
-/* NULL where missing. */
+/* Returns a copy of the attribute's value; NULL if the element has no such attribute. */
 char *attribute(xmlNodePtr node, const char *name);
 
-/* The element's text, in which the line breaks of a comment, or a blank, separate what stands before and after it. */
+/*
+ * Returns the text of the element. Each comment in it becomes a blank and the line breaks of the comment. So words stay
+ * apart and line numbers stay right.
+ */
 char *text_of(xmlNodePtr node);
 
-/* Whether it describes a robot in place of a system. */
+/* True if the document describes a robot (URDF or MJCF) instead of a system. */
 bool is_robot(xmlDocPtr document);

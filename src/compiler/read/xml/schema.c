@@ -12,7 +12,7 @@
 
 enum { CHOICE_LIMIT = 40 };
 
-/* Names that may stand in one place, those of the schema's document. */
+/* The names or values that the schema allows in one position, at most CHOICE_LIMIT of them. */
 struct Choices {
   char *names[CHOICE_LIMIT];
   size_t count;
@@ -21,10 +21,13 @@ struct Choices {
 struct Check {
   xmlDocPtr schema;
   struct Diagnostics *diagnostics;
-  xmlNodePtr last; /* the element behind which nothing is checked; NULL for none */
+  xmlNodePtr last; /* the element at which validation was cut off; NULL for none */
 };
 
-/* libxml2 counts for each error all elements before: what follows the last one that is told is hidden from it. */
+/*
+ * Cuts off all nodes after the element, at every level up to the root, so that validation ends there. libxml2 counts
+ * all preceding elements for each error, which is quadratic in files with many errors. show_rest() restores the nodes.
+ */
 static void hide_rest(struct Check *check, xmlNodePtr element) {
   check->last = element;
   for (xmlNodePtr node = element; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
@@ -41,7 +44,7 @@ static void show_rest(struct Check *check) {
   check->last = NULL;
 }
 
-/* What the schema declares below a node: the first <xs:kind name="..."> in the order of the file. */
+/* Returns the first declaration <xs:kind name="..."> below a node of the schema, in document order; NULL for none. */
 static xmlNodePtr find_declared(xmlNodePtr parent, const char *kind, const char *name) {
   xmlNodePtr found = NULL;
   for (xmlNodePtr node = parent->children; node != NULL && found == NULL; node = node->next)
@@ -51,7 +54,7 @@ static xmlNodePtr find_declared(xmlNodePtr parent, const char *kind, const char 
 
 static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices);
 
-/* What a reference such as <xs:group ref="..."> or <xs:extension base="..."> stands for. */
+/* Collects from the target of a reference, such as <xs:group ref="..."> or <xs:extension base="...">. */
 static void collect_referred(xmlNodePtr schema, xmlNodePtr node, const char *reference, const char *kind_of_target,
                              const char *kind, const char *key, struct Choices *choices) {
   xmlChar *name = xmlGetProp(node, (const xmlChar *)reference);
@@ -60,7 +63,10 @@ static void collect_referred(xmlNodePtr schema, xmlNodePtr node, const char *ref
   xmlFree(name);
 }
 
-/* The values of `key` of each <xs:kind> that the schema allows in a place, such as the name of each attribute. */
+/*
+ * Collects the attribute `key` of every <xs:kind> that the schema allows at a node, such as the names of all attributes
+ * of an element. Nested elements are not entered.
+ */
 static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices) {
   collect_referred(schema, place, "type", "complexType", kind, key, choices);
   collect_referred(schema, place, "base", "complexType", kind, key, choices);
@@ -74,7 +80,10 @@ static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const
   }
 }
 
-/* What the schema says of an element: in the type named like its parent, if that declares it itself, or else anywhere. */
+/*
+ * Returns the declaration of an element: the one in the type named after its parent if there is one, else the first one
+ * in the schema.
+ */
 static xmlNodePtr declaration_of(const struct Check *check, xmlNodePtr element) {
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);
   bool is_inside = element->parent->type == XML_ELEMENT_NODE;
@@ -90,7 +99,10 @@ static struct Choices choices_in(const struct Check *check, xmlNodePtr element, 
   return choices;
 }
 
-/* The values that the schema lists for an attribute, in the type named like its element or anywhere; none where it lists none. */
+/*
+ * Returns the values that the schema lists for an attribute, from the type named after its element or else from
+ * anywhere. Empty if the schema lists none.
+ */
 static struct Choices choices_of_value(const struct Check *check, xmlNodePtr element, const char *attribute) {
   struct Choices choices = {.count = 0};
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);
@@ -101,7 +113,7 @@ static struct Choices choices_of_value(const struct Check *check, xmlNodePtr ele
   return choices;
 }
 
-/* "did you mean 'unit'?", or "expected name, start or unit" without anything similar. */
+/* Returns "did you mean 'unit'?" for the most similar choice, or "expected name, start or unit" if none is similar. */
 static char *remedy(const char *wanted, struct Choices choices) {
   struct Similar similar = {.wanted = wanted};
   struct TextStream text;
@@ -121,7 +133,9 @@ static void report_attribute(const struct Check *check, xmlNodePtr element, cons
                what_then);
 }
 
-/* One that is there with another spelling was told with it. */
+/*
+ * Reports a missing attribute, unless a given attribute is a probable misspelling of it, which is reported by itself.
+ */
 static void report_missing_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
   for (const xmlAttr *given = element->properties; given != NULL; given = given->next) {
     struct Similar similar = {.wanted = (const char *)given->name};
@@ -141,7 +155,7 @@ static void report_element(const struct Check *check, xmlNodePtr element) {
                is_known ? "cannot stand in" : "is not an element of", parent, *hint != '\0' ? hint : what_then);
 }
 
-/* The first element, or the first text that is not blank, in an element; NULL where there is none. */
+/* Returns the first child of this type that is not blank; NULL for none. */
 static xmlNodePtr first_of(xmlNodePtr element, xmlElementType type) {
   xmlNodePtr node = element->children;
   while (node != NULL && (node->type != type || xmlIsBlankNode(node))) node = node->next;
@@ -156,7 +170,7 @@ static void report_text(const struct Check *check, const xmlNode *node, const ch
                (int)strcspn(word, " \t\r\n"), word, where, expected);
 }
 
-/* A text among elements, or an element or a text where there should be none. */
+/* Reports text between elements, or content in an element that must be empty. */
 static void report_content(const struct Check *check, xmlNodePtr element) {
   const char *name = (const char *)element->name;
   const xmlNode *text = first_of(element, XML_TEXT_NODE), *inner = first_of(element, XML_ELEMENT_NODE);
@@ -182,7 +196,10 @@ static void report_root(const struct Check *check, xmlNodePtr root) {
                  name);
 }
 
-/* The attribute that libxml2 speaks of, "" for the text of an element. */
+/*
+ * Returns the name of the attribute that a message of libxml2 mentions; "" if the message is about the text of an
+ * element.
+ */
 static char *attribute_in(const char *message) {
   static const char before[] = "attribute '";
   const char *begin = strstr(message, before);
@@ -271,7 +288,7 @@ void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
   xmlFreeDoc(check.schema);
 }
 
-/* Below a node of the schema; one that is declared in several places is told at the first. */
+/* Prints the elements declared below a node of the schema, each at its first declaration. */
 static void print_elements(FILE *file, xmlNodePtr schema, xmlNodePtr parent) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     char *name = is_element(node, "element") ? attribute(node, "name") : NULL;

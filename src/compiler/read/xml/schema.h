@@ -1,4 +1,4 @@
-/* Holds a file against the schema of system.xml, in words of its author; fmu/system.xsd says what may stand where. */
+/* Validates documents against the schema fmu/system.xsd and reports violations in terms of the language. */
 #pragma once
 
 #include <stdio.h>
@@ -7,11 +7,11 @@
 
 #include "base/diagnostics.h"
 
-/* The text of fmu/system.xsd, built into the program. */
+/* The text of fmu/system.xsd, compiled into lagc. */
 extern const char system_schema[];
 
-/* Reports each place where the document does not follow the schema. */
+/* Reports every violation of the schema. */
 void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics);
 
-/* A line "element NAME" for each element of the schema. */
+/* Prints a line "element NAME" for each element of the schema. */
 void schema_print_elements(FILE *file);

@@ -6,10 +6,13 @@
 
 #include "base/memory.h"
 
-/* An XML parser compares all attributes of an element with each other, and a schema's messages count what comes before. */
+/*
+ * Limits in bytes, elements per file and attributes per element. They bound quadratic costs of libxml2: it compares the
+ * attributes of an element pairwise, and each message of its validator counts all preceding elements.
+ */
 enum { LENGTH_LIMIT = 10000000, ELEMENT_LIMIT = 40000, ATTRIBUTE_LIMIT = 200 };
 
-/* Where reading stands, and what it has counted. */
+/* The reading position, with the numbers of elements in the file and of attributes in the current element. */
 struct Scan {
   const char *next, *end;
   long line;
@@ -21,19 +24,18 @@ static bool begins(const struct Scan *scan, const char *text) {
   return (size_t)(scan->end - scan->next) >= length && memcmp(scan->next, text, length) == 0;
 }
 
-/* Passes the next byte. */
 static char pass(struct Scan *scan) {
   scan->line += *scan->next == '\n';
   return *scan->next++;
 }
 
-/* Passes all up to the text and the text itself. */
+/* Advances to the end of the next occurrence of the text. */
 static void pass_behind(struct Scan *scan, const char *text) {
   while (scan->next < scan->end && !begins(scan, text)) pass(scan);
   if (scan->next < scan->end) scan->next += strlen(text);
 }
 
-/* Passes a tag, whose values may hold '>'. */
+/* Advances to the end of a tag. Quoted values may contain '>'. */
 static void pass_tag(struct Scan *scan) {
   char quote = '\0';
   scan->attributes = 0;
@@ -46,7 +48,10 @@ static void pass_tag(struct Scan *scan) {
   }
 }
 
-/* Comments and the like count as elements: a parser keeps them too. */
+/*
+ * Advances past a tag, comment, CDATA section or processing instruction. Each counts as an element, because libxml2
+ * makes a node of it. Returns false after reporting that a limit is exceeded.
+ */
 static bool pass_markup(struct Scan *scan, struct Diagnostics *diagnostics) {
   long line = scan->line;
   scan->elements += !begins(scan, "</");

@@ -1,4 +1,4 @@
-/* The text of an XML file, as far as it is not so large or so made that reading it would take long. */
+/* Reads the text of an XML file and rejects files whose processing would take too long. */
 #pragma once
 
 #include <stddef.h>
@@ -6,7 +6,8 @@
 #include "base/diagnostics.h"
 
 /*
- * The bytes of the file. NULL where it cannot be read, and after reporting that it is too long, or
- * has too many elements, or attributes in one of them.
+ * Returns the bytes of the file and sets their number; the caller releases them. Returns NULL without a message if the
+ * file cannot be read. Returns NULL with a message if it is too long, has too many elements, or too many attributes in
+ * one.
  */
 char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics);

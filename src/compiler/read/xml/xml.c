@@ -9,7 +9,7 @@
 #include "read/xml/schema.h"
 #include "read/xml/source_text.h"
 
-/* What an XML parser says of a mistake, in words of the file's author; NULL where its own are right. */
+/* Returns a message for an error of the XML parser in terms of the file; NULL to keep the message of libxml2. */
 static char *meaning_of(const xmlError *error) {
   const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
   if (strstr(message, "EntityRef") != NULL)
@@ -63,7 +63,7 @@ static char *meaning_of(const xmlError *error) {
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *told = diagnostics;
-  if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* what follows from the first mistake */
+  if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* caused by the first error */
   char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
   if (meaning != NULL) message = meaning;
   int length = (int)strcspn(message, "\n");
@@ -72,8 +72,8 @@ static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
 }
 
 /*
- * Ends the reading at a document type declaration, with which a short file can stand for one of any length. libxml2 hands
- * its parser on as the first argument.
+ * Stops parsing at a document type declaration: by its entities a short file can expand to any length ("billion
+ * laughs"). libxml2 passes its parser as the first argument.
  */
 static void refuse_document_type(void *context, const xmlChar *name, const xmlChar *external_id,
                                  const xmlChar *system_id) {

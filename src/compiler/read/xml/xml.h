@@ -1,15 +1,20 @@
-/* Loads and validates a system.xml with libxml2; its messages become ours. */
+/*
+ * Loads XML files with libxml2 and validates those of systems. Messages of libxml2 are replaced by messages for the
+ * author of the file.
+ */
 #pragma once
 
 #include <libxml/tree.h>
 
 #include "base/diagnostics.h"
 
-/* Reads the file, whatever its elements are. NULL after reporting why it cannot be read. */
+/*
+ * Reads and parses the file without validation. Returns NULL after reporting an error. The caller frees the document.
+ */
 xmlDocPtr xml_read(const char *path, struct Diagnostics *diagnostics);
 
 /*
- * Reads the file and holds it against the schema, unless it is that of a robot, reporting every mistake. NULL where there is one: what else it means for
- * names and expressions would hide it among messages that follow from it.
+ * Reads the file and validates it against the schema, unless it describes a robot. Returns NULL after reporting errors.
+ * Later passes read valid documents only, so that no error causes further ones.
  */
 xmlDocPtr xml_load(const char *path, struct Diagnostics *diagnostics);
