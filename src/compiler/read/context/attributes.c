@@ -20,7 +20,7 @@ struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds) {
       .line = line_of(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
 }
 
-/* Where an attribute has its value, which is a number or a name. */
+/* Returns the context of a number or a name in an attribute. */
 static struct Place place_of_attribute(xmlNodePtr node, const char *name) {
   struct Place place = place_at(node, name, 0);
   place.line = line_of_attribute(node, name);
@@ -64,7 +64,7 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 Node without_displacements(struct Reader *reader, long line, const char *what, Node node) {
   struct Graph *graph = reader->model->graph;
   if (!graph_depends_on(graph, node, DISPLACEMENT)) return node;
-  if (reader->undisplaced_count < graph->symbol_count) { /* what has been read since may have switches */
+  if (reader->undisplaced_count < graph->symbol_count) { /* expressions parsed since then may have added modes */
     reader->undisplaced = undisplaced_symbols(graph);
     reader->undisplaced_count = graph->symbol_count;
   }

@@ -11,7 +11,7 @@ static bool is_linear_in_velocities(struct Graph *graph, Node node) {
   return is_linear;
 }
 
-/* Whether it moves what it holds, also where all velocities are 0. */
+/* True if the constraint prescribes a motion, also at zero velocities. */
 static bool is_moving(const struct Model *model, Node constraint) {
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, constraint, VELOCITY))
@@ -23,7 +23,10 @@ static bool is_moving(const struct Model *model, Node constraint) {
   return simplify_fraction(graph, value) != ZERO;
 }
 
-/* Accelerations feel the second derivatives of inputs that move a position, and the first of those in velocities. */
+/*
+ * Reports inputs with too few time derivatives. The constraint on accelerations contains second derivatives of inputs
+ * in holonomic constraints, and first ones in those of velocities.
+ */
 static void require_rates(const struct Reader *reader, const struct Variable *constraint) {
   const struct Model *model = reader->model;
   size_t needed = graph_depends_on(model->graph, constraint->node, VELOCITY) ? 1 : 2;

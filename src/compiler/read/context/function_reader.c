@@ -57,7 +57,7 @@ void declare_function(struct Reader *reader, xmlNodePtr node) {
                                      .prefix = reader->source->prefix,
                                      .loop = reader->definitions->present};
   read_arguments(reader, node, function);
-  /* A function is no value: its name alone cannot be used. */
+  /* A function has no value without arguments: NAN reserves its name. */
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   if (function->argument_count > 0 && scope_define(reader->scope, name, word, line_of(node)))
     names_set(reader->scope->functions, name, function);

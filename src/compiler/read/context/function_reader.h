@@ -1,7 +1,6 @@
-/* <function>. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Makes the function known; its expression is read where it is called. */
+/* Defines the function of a <function>. Its expression is parsed at each call. */
 void declare_function(struct Reader *reader, xmlNodePtr node);

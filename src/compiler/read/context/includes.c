@@ -10,11 +10,11 @@
 
 struct Includes {
   struct Names *sources;   /* prefix -> struct Source */
-  struct Names *documents; /* canonical path, and what is said of a robot -> struct Document */
+  struct Names *documents; /* canonical path and options for robots -> struct Document */
   struct Names *given;     /* full name -> struct Given */
 };
 
-/* A file that was read, NULL where it has mistakes. */
+/* A parsed file; NULL if it has errors. */
 struct Document {
   xmlDocPtr document;
 };
@@ -31,7 +31,7 @@ void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root) {
 void includes_end(struct Reader *reader) {
   struct Includes *includes = reader->includes;
   source_enter(reader, names_find(includes->sources, ""));
-  reader->scope->prefix = ""; /* the scope lives longer */
+  reader->scope->prefix = ""; /* the scope outlives the sources */
   for (size_t i = 0; i < includes->documents->capacity; i++)
     if (includes->documents->places[i].text != NULL)
       xmlFreeDoc(((struct Document *)includes->documents->places[i].meaning)->document);
@@ -53,7 +53,9 @@ char *path_beside(const struct Reader *reader, const char *file) {
 
 enum { DEPTH_LIMIT = 100 };
 
-/* Recursion is bounded here, so that no chain of files exhausts the stack. */
+/*
+ * Bounds the depth of includes, so that no chain of files overflows the stack. Returns false after reporting an error.
+ */
 static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
   int depth = 0;
   for (const struct Source *outer = source->outer; outer != NULL; outer = outer->outer) depth++;
@@ -63,7 +65,7 @@ static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Sou
   return false;
 }
 
-/* Whether the file is one of those that lead to it. */
+/* Returns false after reporting that the file includes itself, directly or through others. */
 static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
   const struct Source *first = source->outer;
   while (first != NULL && (first->canonical_path == NULL || strcmp(first->canonical_path, source->canonical_path) != 0))
@@ -79,12 +81,15 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
   return false;
 }
 
-/* What an <include> may say of a robot. */
+/* Attributes of <include> that are options for robots. */
 enum { ROBOT_WORDS = 7 };
 static const char *const of_robots[ROBOT_WORDS] = {"base",   "tool",   "limits",  "friction",
                                                    "effort", "ground", "keyframe"};
 
-/* The <system> in the file of a source, or that its robot is with what the <include> says of it; NULL after reporting why not. */
+/*
+ * Returns the document of a <system> file, or the system made from a robot file with the options of the <include>. NULL
+ * after reporting errors.
+ */
 static xmlDocPtr load_system(const struct Source *source, const struct RobotOptions *options,
                              struct Diagnostics *diagnostics) {
   xmlDocPtr document = xml_load(source->file, diagnostics);
@@ -106,7 +111,7 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   return NULL;
 }
 
-/* The document of a source, read once for all that include it in the same way. */
+/* Returns the document of a source. It is parsed once for all <include>s of this file with the same options. */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
   char *key = copy_text(source->canonical_path);
   for (size_t i = 0; i < ROBOT_WORDS; i++) {
@@ -136,7 +141,7 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
   return known->document;
 }
 
-/* Adds what an <include> gives to a name, behind what those further out give to it. */
+/* Appends an override of a name, after those of outer <include>s. */
 static void add_given(struct Reader *reader, const char *full_name, struct Given given) {
   struct Given *added = allocate(1, sizeof *added), *last = names_find(reader->includes->given, full_name);
   *added = given;
@@ -163,7 +168,7 @@ static void note_given(struct Reader *reader, const struct Source *source) {
   }
 }
 
-/* Sets the root where the file can be read. */
+/* Loads the file and sets the root of the source, unless there are errors. */
 static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) {
   source->canonical_path = canonical_path(source->file);
   if (source->canonical_path == NULL)
@@ -205,7 +210,7 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   return source != NULL && source->root != NULL ? source : NULL;
 }
 
-/* Whether what is given to this name is for the kind of element that it is; reports where it is not, once. */
+/* True if the override has the element name of the declaration. Reports the first use of one that has not. */
 static bool check_kind(struct Reader *reader, struct Given *given, const char *element, const char *name) {
   const char *as = (const char *)given->node->name;
   bool is_right = strcmp(element, as) == 0;

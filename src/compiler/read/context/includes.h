@@ -1,60 +1,65 @@
 /*
- * <include>: other files that are read as parts of a system, their names with a prefix: what motor.xml calls theta is
- * motor.theta of the system. An <include> may give values to what the file declares.
+ * <include>: other files as parts of a system. Their names get a prefix: theta of motor.xml is motor.theta in the
+ * system. An <include> may override values of elements in the file.
  */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* A file that is read, each time that it is included. */
+/* An included file, once per <include> and repetition. */
 struct Source {
-  const char *file;     /* as messages name it */
-  char *canonical_path; /* the same for two names of one file */
-  char *prefix;         /* of its names: "motor."; "" of the system's own file */
-  char *origin;         /* for messages; NULL of the system's own file */
-  xmlNodePtr include;   /* that asks for it; NULL of the system's own file */
-  xmlNodePtr root;      /* <system>; NULL where the file cannot be read */
-  struct Source *outer; /* the file with the <include> */
-  size_t body_count;    /* of those that were declared */
+  const char *file;     /* name for messages */
+  char *canonical_path; /* equal for all names of the same file */
+  char *prefix;         /* of its names: "motor."; "" for the main file */
+  char *origin;         /* how it came to be read, for messages; NULL for the main file */
+  xmlNodePtr include;   /* the <include> element; NULL for the main file */
+  xmlNodePtr root;      /* <system>; NULL if the file cannot be read */
+  struct Source *outer; /* the file that contains the <include>; NULL for the main file */
+  size_t body_count;    /* bodies declared so far */
 };
 
-/* What the <include>s around a declaration give to it: a list that begins with the outermost one. */
+/* An override of a declaration by an <include>, in a list that begins with the outermost <include>. */
 struct Given {
-  xmlNodePtr node;             /* the element in the <include> */
-  struct Source *source;       /* in which it stands */
-  const struct Source *target; /* the file that it gives to */
-  struct Given *inner;         /* of the next <include> further in that gives something; NULL for none */
+  xmlNodePtr node;             /* the overriding element in the <include> */
+  struct Source *source;       /* of the overriding element */
+  const struct Source *target; /* the included file with the declaration */
+  struct Given *inner;         /* override by the next inner <include>; NULL for none */
   bool is_used;
 };
 
-/* Begins with the system's own file, which becomes the reader's source. */
+/* Begin and end with the main file, which becomes the reader's source. includes_end() frees all documents. */
 void includes_begin(struct Reader *reader, const char *path, xmlNodePtr root);
 void includes_end(struct Reader *reader);
 
-/* The source that an <include> asks for; NULL after reporting why there is none. */
+/* Returns the source for an <include> element; NULL after reporting an error. */
 struct Source *include_open(struct Reader *reader, xmlNodePtr node);
 
-/* Goes on in another file; returns the one before. */
+/* Makes another file current; returns the previous one. */
 struct Source *source_enter(struct Reader *reader, struct Source *source);
 
-/* The path of a file that the present one names. */
+/* Returns the path of a file that the current one names, relative to it. */
 char *path_beside(const struct Reader *reader, const char *file);
 
-/* What is given to the element of this full name; NULL for nothing. Reports where another kind of element is given. */
+/*
+ * Returns the overrides of the element of this full name; NULL for none. Reports overrides by another kind of element.
+ */
 const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* The outermost that gives this attribute; NULL for none. */
+/* Returns the outermost override with this attribute; NULL for none. */
 const struct Given *giver_of(const struct Given *given, const char *attribute);
 
-/* The outermost that gives a value, if none further out gives a start; NULL for none. */
+/* Returns the outermost override with a value, unless one further out has a start; NULL for none. */
 const struct Given *giver_of_value(const struct Given *given);
 
-/* Enters the file of a giver and sets the node to its element; stays where there is no giver. Returns the file before. */
+/*
+ * Makes the file of an override current and sets the node to its element; does nothing for NULL. Returns the previous
+ * file.
+ */
 struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node);
 
-/* As number_attribute(), of the outermost that gives it or else of the node itself. */
+/* Like number_attribute(), for the outermost override with the attribute, else for the node itself. */
 bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
                             double *value);
 
-/* Reports what was given to nothing. */
+/* Reports overrides of elements that do not exist. */
 void check_given(struct Reader *reader);

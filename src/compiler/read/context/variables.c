@@ -20,7 +20,7 @@ Node append_input(struct Reader *reader, struct Variable variable) {
   return variable.node;
 }
 
-/* Here an angle is not a number: turns in a minute are no frequency in Hz. */
+/* True if both dimensions are equal and known. Angles count here: rpm is no unit for Hz. */
 static bool is_same_dimension(struct Dimension first, struct Dimension second) {
   for (int i = 0; i < BASE_UNIT_COUNT; i++)
     if (first.exponent[i] != second.exponent[i]) return false;
@@ -44,7 +44,7 @@ char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char 
 
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
   char *name = name_attribute(reader, node, "name");
-  if (name == NULL) name = copy_text("?"); /* reported already */
+  if (name == NULL) name = copy_text("?"); /* the error has been reported */
   struct Variable variable = variable_create(name, attribute(node, "description"), line_of(node));
   variable.unit = attribute(node, "unit");
   variable.dimension = unit_attribute(reader, node, "unit");

@@ -1,18 +1,18 @@
-/* What elements declare becomes variables of the model. */
+/* Makes variables of the model from elements. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Name, description and units; the rest is not there. */
+/* Returns a variable with the element's name, description and units; all else is unset. */
 struct Variable common_attributes(struct Reader *reader, xmlNodePtr node);
 
-/* The display unit in an attribute of the element, for what has this dimension; NULL where missing or after an error. */
+/* Returns the display unit in an attribute, for values of this dimension; NULL if missing or after an error. */
 char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension dimension);
 
-/* Reports a range or a start value that does not fit. */
+/* Reports a minimum above the maximum, or a start value outside of them. */
 void check_range(struct Reader *reader, const struct Variable *variable);
 
-/* An input without a rate; returns its symbol. */
+/* Appends an input without time derivatives to the model and returns its symbol. */
 Node append_input(struct Reader *reader, struct Variable variable);
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);

@@ -1,6 +1,11 @@
 /*
- * Named expressions: the text of each <define>, the value of each calculated <parameter> and each component of a particle
- * or body, which may use each other in any order. All names are collected first; then each expression is read after those that it needs.
+ * Named expressions: the text of each <define>, the value of each calculated <parameter>, and each component of a
+ * particle or body. They may use each other in any order.
+ *
+ * All names are collected first. Then the expressions are parsed in topological order by a depth-first search with an
+ * explicit stack: an expression that meets an unparsed name pushes that name, waits, and is parsed again later. Each
+ * expression is pushed once per name that it waits for. An expression that waits for an ACTIVE one is part of a cycle
+ * and is reported.
  */
 #pragma once
 
@@ -13,24 +18,24 @@ struct Scope;
 struct Source;
 struct Given;
 
-/* An expression and the element whose name it has. */
+/* An expression and the element that it belongs to. */
 struct NamedExpression {
   xmlNodePtr node;
-  const char *attribute;     /* that holds the expression; NULL for the text */
-  struct Source *source;     /* in which the element stands */
-  const struct Given *given; /* where an <include> gives the expression; else NULL */
+  const char *attribute;     /* contains the expression; NULL for the element's text */
+  struct Source *source;     /* of the element */
+  const struct Given *given; /* the override by an <include> that contains the expression; NULL for none */
 };
 
-/* A <for> with a value of its index, and those further out. */
+/* A <for> with one value of its index. `outer` leads to the enclosing ones. */
 struct Loop {
   char *index;
   double value;
   xmlNodePtr node;
-  struct Source *source;    /* in which it stands */
-  const struct Loop *outer; /* the next one around it */
+  struct Source *source;    /* of the <for> */
+  const struct Loop *outer; /* next enclosing one; NULL for none */
 };
 
-/* ACTIVE: it has been found to need others, which are read now. */
+/* UNREAD: not yet parsed. ACTIVE: waits for other expressions. READ: parsed, and its value is known. */
 enum DefinitionState { UNREAD, ACTIVE, READ };
 
 struct Definition {
@@ -43,33 +48,39 @@ struct Definition {
 struct Definitions {
   struct Definition *items;
   size_t count;
-  struct Names *numbers;      /* name -> size_t, its place among the items */
-  const struct Loop *present; /* around what is collected now; NULL for none */
-  size_t *stack;              /* those to be read, the present one on top */
+  struct Names *numbers;      /* name -> size_t, an index into items */
+  const struct Loop *present; /* innermost <for> during collection; NULL for none */
+  size_t *stack;              /* indices of items to be parsed, the current one on top */
   size_t stack_count, waiting;
 };
 
 struct Definitions *definitions_create(void);
 
-/* The index of a <for> has a new value until the next call of definitions_leave(). */
+/* Enter a <for> with a value of its index, and leave it again. */
 void definitions_enter(struct Definitions *definitions, struct Loop loop);
 void definitions_leave(struct Definitions *definitions);
 
-/* Gives all indices their values, and takes them back; none that has another meaning. */
+/*
+ * Define the indices of all enclosing loops as numbers, and remove them again. An index whose name has another meaning
+ * is skipped.
+ */
 void bind_indices(struct Scope *scope, const struct Loop *loop);
 void unbind_indices(struct Scope *scope, const struct Loop *loop);
 
-/* Collects an expression under its name, as it is for the present indices. */
+/* Collects an expression under its name, with the present indices. */
 void definitions_add(struct Definitions *definitions, char *name, const struct NamedExpression *expression);
 
-/* That of this number is to be read before those on the stack. */
+/* Schedules an item to be parsed before those on the stack. */
 void definitions_push(struct Definitions *definitions, size_t number);
 
-/* Whether the name is that of an expression which has not been read yet; the present one then waits for it. */
+/* True if the name is that of an expression that has not been parsed. The current expression then waits for it. */
 bool definitions_wait_for(struct Definitions *definitions, const char *name);
 
-/* Whether an expression of this name was collected; false without definitions. */
+/* True if an expression of this name was collected; false if there are no definitions. */
 bool definitions_contain(const struct Definitions *definitions, const char *name);
 
-/* Whether the present expression waits, so that its value means nothing and its mistakes are told when it is read again. */
+/*
+ * True if the current expression waits. Its value is then meaningless, and its errors are reported when it is parsed
+ * again.
+ */
 bool definitions_are_waiting(const struct Definitions *definitions);

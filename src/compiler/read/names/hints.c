@@ -128,7 +128,7 @@ static const struct Hint of_elements[] = {
     {"filter", "write <state name=\"z\" rate=\"(u - z)/T\"/>"},
 };
 
-/* The hint for a text that is a word of the list, "" where it is none. */
+/* Returns the hint for a word in the list; "" for none. */
 static const char *look_up(const struct Hint *list, size_t count, const char *text) {
   for (size_t i = 0; i < count; i++)
     if (strcmp(text, list[i].written) == 0) return list[i].hint;
@@ -145,7 +145,7 @@ const char *hint_for_element(const char *name) {
   return look_up(of_elements, sizeof of_elements / sizeof *of_elements, name);
 }
 
-/* Groups of three digits are as likely as decimals behind a comma. */
+/* True if the text is a comma or apostrophe between digits, as a decimal comma or between thousands. */
 static bool is_separator(const char *begin, const char *next) {
   return next > begin && isdigit((unsigned char)next[-1]) && (*next == ',' || *next == '\'') &&
          isdigit((unsigned char)next[1]);

@@ -1,19 +1,22 @@
-/* The right way to write what other languages write otherwise: ends of messages about expressions. */
+/* Hints for constructs of other languages: they end error messages with the right way to write them. */
 #pragma once
 
 #include "algebra/graph.h"
 
-/* For what stands at `next` in an expression and is no part of the language there, such as "; write ^ for a power". */
+/*
+ * Returns a hint for the text at `next` that is not part of an expression, such as "; write ^ for a power"; "" for
+ * none.
+ */
 const char *hint_for_text(const char *begin, const char *next);
 
-/* For a function of other languages; "" where there is none. */
+/* Returns a hint for a function of other languages; "" for none. */
 const char *hint_for_function(const char *name);
 
-/* For a name of other languages that is unknown in this one; "" where there is none. */
+/* Returns a hint for an unknown name that other languages have; "" for none. */
 const char *hint_for_name(const char *name);
 
-/* For an element of other languages, what to write instead; "" where there is nothing known. */
+/* Returns a hint for an element that other languages have; "" for none. */
 const char *hint_for_element(const char *name);
 
-/* What to do instead of using symbols of a kind where only those of others are allowed, one bit (1 << kind) each. */
+/* Returns a remedy for symbols of a kind that is not allowed. allowed: the kinds that are, one bit (1 << kind) each. */
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed);

@@ -8,12 +8,14 @@
 
 struct Names *names_create(void) {
   struct Names *names = allocate(1, sizeof *names);
-  names->capacity = 64; /* powers of two, at least twice as many places as names */
+  names->capacity = 64; /* a power of two, at least twice the number of names */
   names->places = allocate(names->capacity, sizeof *names->places);
   return names;
 }
 
-/* Where a search for the name begins: the hash function FNV-1a. */
+/*
+ * Returns the first slot to search for a name. The hash function is FNV-1a; collisions are resolved by linear probing.
+ */
 static size_t home_of(const struct Names *names, const char *text) {
   uint64_t hash = 14695981039346656037u;
   for (; *text != '\0'; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
@@ -24,7 +26,7 @@ static size_t after(const struct Names *names, size_t place) {
   return (place + 1) & (names->capacity - 1);
 }
 
-/* The place of the name, or the empty one where it would be. */
+/* Returns the slot of a name, or the empty slot for it. */
 static struct Name *place_of(const struct Names *names, const char *text) {
   size_t place = home_of(names, text);
   while (names->places[place].text != NULL && strcmp(names->places[place].text, text) != 0) place = after(names, place);
@@ -62,7 +64,7 @@ void names_remove(struct Names *names, const char *text) {
   release(name->meaning);
   *name = (struct Name){0};
   names->count--;
-  /* Names after it may have been put there because its place was taken. */
+  /* Names in the following slots may have been displaced by this one: insert them again. */
   size_t place = (size_t)(name - names->places);
   for (place = after(names, place); names->places[place].text != NULL; place = after(names, place)) {
     struct Name moved = names->places[place];

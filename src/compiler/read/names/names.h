@@ -1,10 +1,10 @@
-/* A table of names: what each stands for is found in a time that does not grow with their number. */
+/* A hash table from names to values. Finding, setting and removing a name take constant time on average. */
 #pragma once
 
 #include <stddef.h>
 
 struct Name {
-  char *text; /* NULL where the place is empty */
+  char *text; /* NULL in an empty slot */
   void *meaning;
 };
 
@@ -15,11 +15,11 @@ struct Names {
 
 struct Names *names_create(void);
 
-/* What the name stands for; NULL where it is not in the table. */
+/* Returns the value of a name; NULL if it is not in the table. */
 void *names_find(const struct Names *names, const char *text);
 
-/* Gives a name a meaning, in place of the one before, which is given back. */
+/* Sets the value of a name, of which the table takes ownership, and releases the old one. */
 void names_set(struct Names *names, const char *text, void *meaning);
 
-/* Does nothing where the name is not in the table. */
+/* Removes a name and releases its value; does nothing if it is not in the table. */
 void names_remove(struct Names *names, const char *text);

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "model/switches.h"
 
-/* Indicators that are compared in a step of work. */
+/* Switching functions that are compared per unit of work. */
 enum { COMPARISONS = 8 };
 
 static bool tells_of_contacts(const struct Switches *switches, const struct Cone *cone) {
@@ -31,7 +31,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
   return kinds;
 }
 
-/* The mode of the switch of this kind with this indicator; a new one where there is none. */
+/* Returns the mode of the switching function of this kind; adds it if there is none. */
 static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_side) {
   struct Switches *switches = scope->switches;
   graph_work(scope->graph, switches->branch_count / COMPARISONS);
@@ -95,7 +95,7 @@ Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node ri
   }
 }
 
-/* The even or odd number that is nearest to a node: 2 floor(x/2 + 1/2) or, of x - 1, one more. */
+/* Returns the even (parity 0) or odd (parity 1) number nearest to a node: 2 floor((x + 1 - parity)/2) + parity. */
 static Node nearest_of_parity(struct Graph *graph, Node node, double parity) {
   Node half = scale(graph, 0.5, add(graph, node, graph_constant(graph, 1.0 - parity)));
   Node twice = scale(graph, 2.0, function(graph, FLOOR, half, ZERO));
@@ -103,8 +103,9 @@ static Node nearest_of_parity(struct Graph *graph, Node node, double parity) {
 }
 
 /*
- * Between two zeros of sin(pi x), x - 1/2 is next to floor(x), and no other number of its parity is nearer than 3/2: so the value
- * is right for all x in the piece, and somewhat beyond. Where x rests on a whole number, it is the nearest one.
+ * Between two zeros of sin(pi x), the sign gives the parity of floor(x). x - 1/2 differs from floor(x) by at most 1/2,
+ * and from other numbers of this parity by at least 3/2. So rounding x - 1/2 to this parity is right on the piece and
+ * 1/2 beyond its ends. If x rests on an integer (sign 0), that integer is the value.
  */
 Node floor_of(struct Scope *scope, Node node, long line) {
   struct Graph *graph = scope->graph;
@@ -116,7 +117,7 @@ Node floor_of(struct Scope *scope, Node node, long line) {
   return choose_node(graph, sign, nearest_of_parity(graph, middle, 0.0), odd);
 }
 
-/* As derivatives of min and max need it. */
+/* Returns 1 if left < right, else 0, in terms of a mode. Derivatives of min and max contain it. */
 static Node pieces_of_less(struct Scope *scope, Node left, Node right, long line) {
   Node difference = subtract(scope->graph, right, left);
   if (graph_is_constant_in_time(scope->graph, difference)) return function(scope->graph, LESS, left, right);
@@ -137,7 +138,7 @@ static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, No
   }
 }
 
-/* Branches use the cone of the graph, so that the nodes are collected in another one. */
+/* Collects the nodes in a cone of its own, as making modes uses that of the graph. */
 Node with_pieces(struct Scope *scope, Node node, long line) {
   const struct Graph *graph = scope->graph;
   if (keeps_whole(scope)) return node;

@@ -1,45 +1,44 @@
 /*
- * abs, sign, min, max, if and the knots of tables are smooth pieces. Which of them holds is a mode, the sign of a switching
- * function, that events alone change: so every expression is smooth between events, and its pieces have series.
+ * Piecewise functions: abs, sign, min, max, if, floor and the segments of tables. The active piece is a mode: the sign
+ * of a switching function, constant between events. So every expression is smooth between events and has a Taylor
+ * series.
  */
 #pragma once
 
 #include "read/names/scope.h"
 
-/*
- * The sign of a node: -1, 0 or 1, a mode where it may change along the motion. function and line say what needs it, for
- * messages.
- */
+/* Returns the sign of a node: -1, 0 or 1, as a mode if it may change along the motion. function, line: for messages. */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
-/* The side of 0 on which the expression of an event is: struct Branch.is_side. */
+/* Returns the last nonzero sign of an event's expression, as a mode: see struct Branch.is_side. */
 Node side_of(struct Scope *scope, Node node, long line);
 
-/* Whether a node that is constant in time changes where parameters are set, by these alone. */
+/* True if the node is constant in time and changes with parameters alone, without modes. */
 bool rests_on_parameters(const struct Graph *graph, Node node);
 
-/* Of a condition of parameters alone: a mode, by which an event knows whether it held before these were set. */
+/*
+ * Returns a mode for a condition on parameters. An event compares it with the condition to see whether setting
+ * parameters changed it.
+ */
 Node tuned_condition(struct Scope *scope, Node node, long line);
 
-/* A bit beyond those of kinds of symbols: whether contacts are closed, or frictions slide. */
+/* A bit of kinds beyond those of symbols: whether contacts are closed or frictions slide. */
 enum { CONTACT_STATE = 1 << 29 };
 
-/* Another one, of places: the expression is read at events alone, so that its roundings are values there. */
+/* A bit of allowed kinds: the expression is evaluated only at events, so that floor and the like are plain values. */
 enum { AT_INSTANT = 1 << 28 };
 
-/* The kinds of symbols that a node rests on, also by what decides on its pieces; CONTACT_STATE among them. */
+/* Returns the kinds of symbols that a node depends on, including those that decide its modes, with CONTACT_STATE. */
 unsigned kinds_that_decide(const struct Scope *scope, Node node);
 
 /*
- * A node that was read while the scope keeps expressions whole, by its pieces, unless it still does; line: for messages.
+ * Replaces the piecewise functions of a node that was parsed while the scope kept them whole. Does nothing while the
+ * scope still does. line: for messages.
  */
 Node with_pieces(struct Scope *scope, Node node, long line);
 
-/*
- * The largest whole number that is not above a node. Along the motion it switches at zeros of sin(pi x), whose sign says whether
- * it is even or odd.
- */
+/* Returns floor(node). Along the motion its events are the zeros of sin(pi x), whose sign is the parity of floor(x). */
 Node floor_of(struct Scope *scope, Node node, long line);
 
-/* abs, sign, min or max of nodes, by their pieces. */
+/* Returns abs, sign, min or max of nodes in terms of modes. */
 Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);

@@ -9,7 +9,7 @@
 
 struct Entry {
   struct Quantity quantity;
-  long line; /* of the definition; 0 for names of the language itself and indices */
+  long line; /* of the definition; 0 for words of the language, compile-time numbers and indices */
   bool is_index;
 };
 
@@ -67,7 +67,7 @@ void scope_set_index(struct Scope *scope, const char *name, double value) {
   find_entry(scope, name)->is_index = true;
 }
 
-/* Does nothing where the name has another meaning. */
+/* Does nothing if the name is not an index. */
 void scope_remove_index(struct Scope *scope, const char *name) {
   const struct Entry *entry = find_entry(scope, name);
   if (entry != NULL && entry->is_index) names_remove(scope->names, name);
@@ -119,7 +119,7 @@ bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct
   return !scope->checks_units || dimension_agrees(first, second);
 }
 
-/* Symbols that are new, those of branches among them, are constant until something else is said. */
+/* Extends the list to symbols added since, such as modes, which are constant unless set otherwise. */
 static Node *time_derivatives_of(struct Scope *scope) {
   size_t count = scope->graph->symbol_count;
   for (; scope->time_derivative_count < count; scope->time_derivative_count++) {

@@ -13,13 +13,22 @@ static bool is_same_letter(char a, char b) {
 }
 
 /*
- * The number of mistakes between two names, by optimal string alignment: Levenshtein's distance with exchanged
- * neighbours as one mistake. Names of NAME_LIMIT letters and more are never near.
+ * Returns the optimal string alignment distance of two names: the least number of insertions, deletions, replacements
+ * and exchanges of neighbouring letters that turn one into the other, no substring being edited twice. Case is ignored.
+ * Dynamic programming over prefixes of lengths i and j:
+ *
+ *   d(i, j) = min(d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a(i) != b(j)],
+ *                 d(i-2, j-2) + 1 if a(i) = b(j-1) and a(i-1) = b(j)).
+ *
+ * It costs O(m n) for lengths m and n; names of NAME_LIMIT letters or more count as different.
+ *
+ * F. J. Damerau, A technique for computer detection and correction of spelling errors, Comm. ACM 7 (1964).
+ * R. A. Wagner, M. J. Fischer, The string-to-string correction problem, J. ACM 21 (1974).
  */
 static size_t edit_distance(const char *a, const char *b) {
   size_t m = strlen(a), n = strlen(b);
   if (m >= NAME_LIMIT || n >= NAME_LIMIT) return NAME_LIMIT;
-  size_t distance[NAME_LIMIT][NAME_LIMIT]; /* of the first i letters of a from the first j of b */
+  size_t distance[NAME_LIMIT][NAME_LIMIT]; /* between the first i letters of a and the first j of b */
   for (size_t i = 0; i <= m; i++) {
     for (size_t j = 0; j <= n; j++) {
       if (i == 0 || j == 0) {
@@ -36,7 +45,7 @@ static size_t edit_distance(const char *a, const char *b) {
   return distance[m][n];
 }
 
-/* How many mistakes a name has room for. */
+/* Returns how many typing errors are accepted in a name of this length. */
 static size_t allowed_mistakes(const char *name) {
   size_t length = strlen(name);
   return length < 3 ? 0 : length < 6 ? 1 : 2;
@@ -48,7 +57,7 @@ static size_t common_beginning(const char *a, const char *b) {
   return length;
 }
 
-/* Whether a known name is better than the best so far. */
+/* True if a known name is better than the best one so far. */
 static bool is_better(const struct Similar *similar, const char *known, size_t distance) {
   if (similar->best == NULL) return true;
   if (distance != similar->distance) return distance < similar->distance;

@@ -1,18 +1,17 @@
-/* The known name that was meant by an unknown one. */
+/* Suggests the known name that an unknown one was probably meant to be. */
 #pragma once
 
 #include "read/names/names.h"
 
 struct Similar {
-  const char *wanted, *best; /* best: NULL while nothing is similar */
-  size_t distance;           /* of best from wanted */
+  const char *wanted, *best; /* best: NULL for none */
+  size_t distance;           /* between best and wanted */
 };
 
 /*
- * Considers a known name, which is similar where upper and lower case alone tell it from the wanted one, or a mistake or
- * two in its typing: a letter too many, too few, wrong, or exchanged with its neighbour. Names of one or two letters have
- * too few for that. Of several, the nearest is best, then the one that begins the same for longer, then the first of the
- * alphabet.
+ * Considers a known name. It is similar if it differs in case alone, or by one typing error, or two from 6 letters on.
+ * Names below 3 letters must match but for case. The best name has the smallest distance, then the longest common
+ * beginning, then the first position in the alphabet.
  */
 void similar_consider(struct Similar *similar, const char *known);
 

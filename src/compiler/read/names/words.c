@@ -9,7 +9,7 @@ const char *const special_functions[] = {"sqrt", "der", "sum", "if", "and", "or"
 
 const char *const free_functions[] = {"diff", "integral", "floor", "ceil", "round", "mod", "gauss", "uniform", NULL};
 
-/* What all systems have values of: first what expressions can use, then results. */
+/* Names that every system has: first those that expressions can use, then results from FIRST_RESULT on. */
 static const char *const values[] = {"pi",
                                      "time",
                                      "kineticEnergy",
