@@ -40,7 +40,7 @@ static void check_content(const struct Reader *reader) {
                  model->given.constraint->name);
 }
 
-/* A variable of unknown unit agrees with all others, so that a forgotten unit hides mistakes. */
+/* A variable without a unit agrees with all units, so that a forgotten unit hides errors. */
 static void warn_without_unit(const struct Reader *reader) {
   const struct Model *model = reader->model;
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
@@ -55,7 +55,7 @@ static void warn_without_unit(const struct Reader *reader) {
                        lists[list]->items[i].name);
 }
 
-/* All that may hold displacements, with those that each holds marked. */
+/* Returns a flag per node: set for nodes that some quantity with displacements depends on. */
 static bool *mark_displaced(const struct Model *model) {
   Node *targets = allocate(4 * model->mechanism.body_count + 3, sizeof *targets);
   size_t count = 0;
@@ -83,14 +83,17 @@ static void warn_of_displacements(const struct Reader *reader) {
 
 static void warn_of_inertia(const struct Reader *reader, const struct Body *body, const char *what, Node inertia,
                             const double *values) {
-  /* One in a frame may be all moment of inertia, as the first link of a robot. */
+  /* A body in a frame may consist of moments of inertia alone, as the first link of a robot. */
   bool may_vanish = graph_is_constant(reader->model->graph, inertia) || body->is_in_frame;
   if (may_vanish ? values[inertia] >= 0 : values[inertia] > 0) return;
   report_warning(reader->diagnostics, body->line, "the %s of '%s' is %g at the start values; expected a positive one",
                  what, body->name, values[inertia]);
 }
 
-/* Of one that turns about one axis alone, authors give the moment about that. */
+/*
+ * Warns of an inertia tensor that violates the triangle inequality of principal moments. Skipped if a diagonal element
+ * is missing: authors of bodies that rotate about one axis give only that moment.
+ */
 static void warn_of_tensor(const struct Reader *reader, const struct Body *body, const double *values) {
   struct Matrix3 tensor;
   for (int i = 0; i < 3; i++)
@@ -104,7 +107,7 @@ static void warn_of_tensor(const struct Reader *reader, const struct Body *body,
                  body->name);
 }
 
-/* The first stillnesses are those of quaternions, whose norm is then 0 where the constraint is -1. */
+/* Reports quaternions that are zero at the start: their constraint, norm^2 - 1 = 0, is then -1. */
 static void check_quaternions(const struct Reader *reader, const double *values) {
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->constraints.count; i++) {
@@ -145,7 +148,10 @@ static void warn_at_start(const struct Reader *reader) {
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
 }
 
-/* The values of all nodes at the start, but with these velocities: the even ones, and the odd ones. */
+/*
+ * Returns the values of all nodes at the start with other velocities: `even` for those of even index, `odd` for the
+ * rest.
+ */
 static double *values_at_velocities(const struct Model *model, double even, double odd) {
   double *symbols = start_values(model);
   for (size_t i = 0; i < model->velocities.count; i++)
@@ -154,8 +160,9 @@ static double *values_at_velocities(const struct Model *model, double even, doub
 }
 
 /*
- * Of opposite velocities together, in which a part that is linear in them, a force, cancels: a dissipation grows from
- * rest. The sign of the odd velocities lets a damper between two coordinates move as well.
+ * Warns of dissipations that decrease from rest and so accelerate the motion. The average over opposite velocities
+ * cancels terms that are linear in them, which are forces. odd = -1 makes a damper between two neighbouring coordinates
+ * move.
  */
 static void warn_of_dissipation(const struct Reader *reader, double odd) {
   const struct Model *model = reader->model;
@@ -174,11 +181,11 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
                      "a positive one, such as b*v^2/2",
                      growth);
     told = dissipation->line;
-    dissipation->node = ZERO; /* is not told again */
+    dissipation->node = ZERO; /* no second warning */
   }
 }
 
-/* Of the system's own file; those of an included one may be for others. */
+/* Warns of functions that are never called. Included files may contain functions for other systems. */
 static void warn_of_functions(const struct Reader *reader) {
   const struct Names *functions = reader->scope->functions;
   for (size_t i = 0; i < functions->capacity; i++) {

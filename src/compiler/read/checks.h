@@ -1,7 +1,7 @@
-/* What no single element of a system shows. */
+/* Checks of a whole system, beyond single elements. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Reports a system without content, work without forces, ... and warns of what is likely a mistake. */
+/* Reports systems without content, work without forces and the like, and warns of probable mistakes. */
 void check_system(struct Reader *reader);

@@ -4,10 +4,10 @@
 
 #include "algebra/cone.h"
 
-/* The values of an expression at the start, and 1 s and 2 s later. */
+/* Samples of an expression: at the start, 1 s and 2 s later. */
 enum { TIMES = 3 };
 
-/* Relative: what rounding leaves of the second difference of an expression that is affine in time. */
+/* Relative rounding error of the second difference of an expression that is affine in time. */
 static const double rounding = 1e-12;
 
 static bool is_set_by(const struct Event *event, Node mode) {
@@ -16,7 +16,10 @@ static bool is_set_by(const struct Event *event, Node mode) {
   return is_set;
 }
 
-/* True if time, parameters and modes that nothing but the event sets decide on its expression, which the cone holds. */
+/*
+ * True if the event's expression depends only on time, parameters and modes that no other event sets. The graph's cone
+ * holds the expression's nodes.
+ */
 static bool is_alone(const struct Model *model, const struct Event *event) {
   const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
   const struct Graph *graph = model->graph;

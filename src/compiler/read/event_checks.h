@@ -1,7 +1,10 @@
-/* Events that cannot happen. */
+/* Checks for events that cannot happen. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Warns of events whose expressions rest on time alone and never pass 0 in their direction from the start values on. */
+/*
+ * Warns of events whose expression depends on time alone and never crosses zero in the event's direction after the
+ * start.
+ */
 void warn_of_events(const struct Reader *reader);

@@ -1,3 +1,13 @@
+/*
+ * Expansion of <for> and <include>. A depth-first traversal of the document appends every other element to
+ * reader->occurrences, with its file and its enclosing loops. A <for> repeats its content once per value of its index;
+ * an <include> continues in the document of the file, with a prefix for its names. Later passes iterate over this list.
+ * They restore file, prefix and indices for each element, so that no pass repeats the expansion.
+ *
+ * The traversal ends because loops have at most REPETITION_LIMIT repetitions, and files cannot include themselves.
+ * Nested loops multiply, so each step also counts units of work, and the graph's limit of work ends the expansion. The
+ * cost is linear in the number of expanded elements.
+ */
 #include "read/expansion.h"
 
 #include <math.h>
@@ -7,12 +17,18 @@
 #include "read/elements/elements.h"
 #include "read/names/definitions.h"
 
+/*
+ * Largest number of repetitions of a <for>, and the units of work that a repetition, an include and an element count.
+ */
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
 
-/* An index beyond could not be counted on in doubles. */
+/* Bound of indices, all of which are exact in a double. */
 static const double index_limit = 1e9;
 
-/* What a <for> turned out to be, kept in its _private: wrong, without and with repetitions. */
+/*
+ * States of a <for>, stored as addresses in its field _private: refused has an error, backwards always ran from a
+ * larger to a smaller number, repeated ran at least once.
+ */
 static char refused, backwards, repeated;
 
 static void expand_children(struct Reader *reader, xmlNodePtr parent);
@@ -22,7 +38,7 @@ static void report_index(struct Reader *reader, xmlNodePtr node) {
   report_at(reader, node, "the index '%s' of <for> is already a name; expected a new one", index);
 }
 
-/* Whether the bounds are right and the index is a new name. */
+/* True if the bounds are valid and the index is a new name; reports an error otherwise. */
 static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
   bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
   if (!are_whole || to - from >= REPETITION_LIMIT) {
@@ -35,7 +51,7 @@ static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char 
   return false;
 }
 
-/* At the innermost <for> that it stops; what follows in the file would only be told as the next to need anything. */
+/* Reports a limit that was reached in a <for>, at the innermost one. */
 static void check_limit(struct Reader *reader, xmlNodePtr node) {
   const char *limit = graph_limit(reader->model->graph);
   if (limit != NULL && reader->diagnostics->errors == 0)
@@ -67,8 +83,8 @@ static void expand_repetition(struct Reader *reader, xmlNodePtr node) {
 }
 
 /*
- * from="1" to="0" is how a system with N = 0 repeats nothing, and from="2" to="i-1" repeats nothing for the first i.
- * A loop that always runs backwards is a mistake.
+ * Warns of loops that always run backwards. Empty ranges alone are fine: from="1" to="0" repeats nothing in a system
+ * with N = 0, and from="2" to="i-1" nothing for i = 1.
  */
 static void check_repetitions(struct Reader *reader, xmlNodePtr parent) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
@@ -115,7 +131,10 @@ void expand(struct Reader *reader, xmlNodePtr root) {
   check_repetitions(reader, root);
 }
 
-/* Whether each <for> around an element is right; names may have been defined since the last pass. */
+/*
+ * True if every <for> around an element is valid. Names defined since the last pass may collide with an index, which is
+ * reported.
+ */
 static bool check_loops(struct Reader *reader, const struct Loop *loops) {
   const struct Loop *taken = NULL;
   for (const struct Loop *loop = loops; loop != NULL; loop = loop->outer) {

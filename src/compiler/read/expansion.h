@@ -1,10 +1,13 @@
-/* The document as a list of the elements that it has without <for> and <include>. */
+/* Expands <for> and <include>: turns the document into a list of elements, on which all passes work. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Makes the list of what is in the system's own file. Elements are declared on the way: bounds of a <for> may use constants above it. */
+/*
+ * Appends the elements of a <system> to the list and declares each one. The order matters: bounds of a <for> may use
+ * constants declared before it.
+ */
 void expand(struct Reader *reader, xmlNodePtr root);
 
-/* Reads all elements in a later pass. */
+/* Reads all elements of the list in a later pass. */
 void read_expanded(struct Reader *reader, enum Pass pass);

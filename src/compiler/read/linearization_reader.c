@@ -15,7 +15,7 @@ char *linearized_path(xmlNodePtr root, const char *path) {
   return path_beside_file(path, of);
 }
 
-/* Removes the state of <work/>: at a point of rest the linear power of the forces is 0. */
+/* Removes the state of <work/>: at an equilibrium the power of the forces is zero to first order. */
 static void remove_work(struct Model *model) {
   struct Graph *graph = model->graph;
   size_t kept = 0;

@@ -1,4 +1,4 @@
-/* <linearization>: another system and the point at which it is linearised. */
+/* <linearization>: a system and the point at which it is linearized. */
 #pragma once
 
 #include <libxml/tree.h>
@@ -7,12 +7,12 @@
 #include "model/model.h"
 #include "read/names/scope.h"
 
-/* The path of the system that root linearises, relative to the file that holds it. */
+/* Returns the path of the system that root linearizes, relative to the file of root; NULL if root names none. */
 char *linearized_path(xmlNodePtr root, const char *path);
 
-/* Turns the model that was read from there into the linearised one of this name. */
+/* Turns the model of that system into its linearization, with the name, point and solver in root. */
 void read_linearization(struct Model *model, struct Scope *scope, xmlNodePtr root, struct Diagnostics *diagnostics);
 
-/* Sets the point from "name=value" texts and marks the model as linearised. */
+/* Sets the point from texts "name=value" and marks the model as linearized. */
 void apply_point(struct Model *model, struct Scope *scope, const char *const *point, size_t count,
                  struct Diagnostics *diagnostics);

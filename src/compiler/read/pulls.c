@@ -5,13 +5,13 @@
 #include "read/context/variables.h"
 #include "read/space/forces.h"
 
-/* More would make the equations of long chains slow. */
+/* Largest number of bodies with a force, which bounds the size of the equations of long chains. */
 enum { MOST_PULLED = 30 };
 
 struct Pointer {
-  struct Vector place; /* m */
-  struct Vector held;  /* m, from the body's place along its axes */
-  Node time;           /* s */
+  struct Vector place; /* m, position of the pointer */
+  struct Vector held;  /* m, grabbed point relative to the body's position, along the body's axes */
+  Node time;           /* s, ratio of damping to stiffness */
 };
 
 static Node append_pull(struct Reader *reader, const char *name, const char *unit) {
@@ -28,7 +28,10 @@ static struct Vector append_vector(struct Reader *reader, const char *const name
   return vector;
 }
 
-/* From the body's place to the point of it that is held, along the base's axes; nothing for what has no direction. */
+/*
+ * Returns the vector from the body's position to the grabbed point along the base's axes; zero for a body without
+ * orientation.
+ */
 static struct Vector lever_of(const struct Model *model, const struct Body *body, struct Vector held) {
   struct Graph *graph = model->graph;
   if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, held);
@@ -54,7 +57,7 @@ static bool moves(const struct Graph *graph, const struct Vector *point) {
   return found;
 }
 
-/* stiffness (pointer - point - time d point/dt) */
+/* Adds the force stiffness (pointer - point - time d point/dt) at the grabbed point. */
 static void pull_body(struct Reader *reader, const struct Body *body, const struct Pointer *pointer) {
   struct Graph *graph = reader->model->graph;
   struct Vector held = held_point(reader->model, body, pointer->held);
@@ -75,7 +78,7 @@ void add_pulls(struct Reader *reader) {
   struct Pointer pointer = {.place = append_vector(reader, place), .held = append_vector(reader, held)};
   pointer.time = append_pull(reader, "time", "s");
   model->forces.any = true;
-  /* Counted from the last one: the end of a chain is what a hand is after. */
+  /* Includes the last body: the end of a chain is the natural part to pull. */
   for (size_t i = (count + every - 1) % every; i < count; i += every)
     pull_body(reader, &model->mechanism.bodies[i], &pointer);
 }

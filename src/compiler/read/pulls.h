@@ -1,10 +1,13 @@
 /*
- * What a page needs to let bodies be pulled with a pointer: inputs for the place of the pointer and for the point of the body that it
- * holds, and a force towards it at each body.
+ * Pointer interaction of a page: inputs for the position of the pointer and for the grabbed point of a body, and a
+ * spring force on each body.
  */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Adds the inputs pull.x, ... and pull.of.BODY, and the forces. Of very many bodies some are left out. */
+/*
+ * Adds the inputs pull.x, ... and pull.of.BODY, and the forces. If there are many bodies, only every second, third, ...
+ * gets one.
+ */
 void add_pulls(struct Reader *reader);

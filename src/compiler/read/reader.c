@@ -1,3 +1,16 @@
+/*
+ * A system is read in four passes over its elements, see enum Pass:
+ *
+ *   DECLARATIONS  defines constants, and symbols for parameters, inputs, coordinates, states, constraints, contacts
+ *                 and frictions, while expansion.c makes the list of elements;
+ *   DEFINITIONS   collects the named expressions, which resolution.c then parses in topological order;
+ *   POSITIONS     reads bodies, frames, shapes and start values;
+ *   EXPRESSIONS   reads energies, forces, constraints, events and outputs, which may use all names.
+ *
+ * Symbols whose indices depend on counts follow the first pass: modes, accelerations, constraint forces and reactions.
+ * Modes that expressions add come later. After the last pass switching functions and frictions are completed and the
+ * whole system is checked.
+ */
 #include "read/reader.h"
 
 #include <math.h>
@@ -23,7 +36,7 @@
 #include "read/tables/table.h"
 #include "read/xml/xml.h"
 
-/* Symbols for time and the accelerations; what der(...) makes of each symbol. */
+/* Adds the symbols of accelerations and sets the time derivatives of time, coordinates and velocities. */
 static void relate_to_time(struct Model *model, struct Scope *scope) {
   size_t n = model->coordinates.count;
   model->unknowns.accelerations = allocate(n, sizeof *model->unknowns.accelerations);
@@ -38,7 +51,7 @@ static void relate_to_time(struct Model *model, struct Scope *scope) {
   }
 }
 
-/* The name and unit of a force that does work along a variable. */
+/* Appends the reaction force along a variable, with its name and unit. */
 static void append_reaction(struct Model *model, struct Scope *scope, const struct Variable *along, const char *what) {
   struct Variable force =
       variable_create(format_text("%s.force", along->name), format_text("%s %s", what, along->name), along->line);
@@ -57,14 +70,17 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   }
 }
 
-/* Before it is read, a constraint in a unit such as m/s or A may be one of velocities or not. */
+/*
+ * Returns the unit of a constraint's force before its expression is read; unknown if the unit, such as m/s or A, leaves
+ * open whether the constraint is one of velocities.
+ */
 static struct Dimension early_force_dimension(const struct Variable *constraint) {
   const double *exponent = constraint->dimension.exponent;
   bool is_open = exponent[SECOND] < 0 || exponent[AMPERE] != 0;
   return is_open && !constraint->is_of_velocities ? dimension_unknown : constraint_force_dimension(constraint);
 }
 
-/* Symbols for the forces of the constraints, which are numbered after the accelerations. */
+/* Adds symbols for the forces of the constraints. Their indices follow those of the accelerations. */
 static void declare_constraint_forces(struct Model *model, struct Scope *scope) {
   model->unknowns.forces = allocate(model->constraints.count, sizeof *model->unknowns.forces);
   for (size_t i = 0; i < model->constraints.count; i++) {
@@ -93,12 +109,12 @@ static struct Model *model_create(void) {
   return model;
 }
 
-/* The names that each system knows. */
+/* Returns a scope with the names that every system has. */
 static struct Scope *language_of(struct Model *model, struct Diagnostics *diagnostics) {
   struct Scope *scope = scope_create(model->graph, diagnostics);
   scope->model = model;
   define_language(scope);
-  /* Authors write sin(2*time) and mean 2 rad/s, so time takes any unit. */
+  /* Authors write sin(2*time) and mean 2 rad/s, so time agrees with any unit. */
   model->time = scope_symbol(scope, TIME, 0, "time", dimension_unknown, 0);
   return scope;
 }
@@ -132,7 +148,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
                  graph_limit(reader->model->graph));
 }
 
-/* Reads the system itself, or by way of its linearisation; depth counts linearisations of linearisations. */
+/* Reads a system, or a linearization with its system. depth: 1 for the system of a linearization. */
 static struct Model *read_file(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics,
                                int depth, struct Scope **scope) {
   struct Diagnostics local = {.file = path, .noted = diagnostics->noted};

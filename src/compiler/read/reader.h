@@ -6,7 +6,7 @@
 #include "read/context/reader_options.h"
 
 /*
- * Reads a system, or the system that a <linearization> names together with its point. Every error is reported;
- * returns NULL where there was any.
+ * Reads a system, or a <linearization> with the system that it names. Reports every error and returns NULL if there was
+ * one.
  */
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics);

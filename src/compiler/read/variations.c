@@ -1,3 +1,15 @@
+/*
+ * Variational equations. With the accelerations a(q, v, z, p, t) as expressions, the sensitivity s = d q / d p of the
+ * coordinates q obeys
+ *
+ *   s'' = (d a / d q) s + (d a / d v) s' + (d a / d z) r + d a / d p,
+ *
+ * where z are further states, z' = f, and r = d z / d p obeys r' = the same derivative of f. Each right-hand side is
+ * one directional derivative (forward mode) of the expressions, along the direction of the neighbouring motion. The
+ * size of the expressions grows by a constant factor per name.
+ *
+ * E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd edition, 1993, section I.14.
+ */
 #include "read/variations.h"
 
 #include <string.h>
@@ -6,7 +18,7 @@
 #include "base/memory.h"
 #include "read/context/variables.h"
 
-/* The variable of this name by which can be differentiated; NULL for none. */
+/* Returns the variable of this name if sensitivities with respect to it exist; NULL otherwise. */
 static const struct Variable *find(const struct Model *model, const char *name) {
   const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
                                               &model->velocities, &model->states};
@@ -18,7 +30,7 @@ static const struct Variable *find(const struct Model *model, const char *name) 
   return NULL;
 }
 
-/* The derivative of a variable by another. */
+/* Returns the variable for the derivative of a variable with respect to another one. */
 static struct Variable derivative_of(const struct Model *model, const struct Variable *of, const struct Variable *by) {
   struct Variable derivative = variable_create(format_text("%s.by.%s", of->name, by->name),
                                                format_text("derivative of %s by %s", of->name, by->name), of->line);
@@ -28,7 +40,10 @@ static struct Variable derivative_of(const struct Model *model, const struct Var
   return derivative;
 }
 
-/* A coordinate with its velocity, whose acceleration is to follow; of the reaction of this place. */
+/*
+ * Appends the sensitivity of a coordinate and of its velocity. The acceleration is set later. reaction: index of its
+ * reaction force.
+ */
 static void append_coordinate(struct Model *model, size_t of, const struct Variable *by, size_t reaction) {
   struct Graph *graph = model->graph;
   struct Variable position = derivative_of(model, &model->coordinates.items[of], by);
@@ -44,7 +59,7 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   model->given.drives[place] = (struct Drive){.given = true, .reaction = reaction};
 }
 
-/* The derivative of a state behind the velocities, whose rate is to follow. */
+/* Appends the sensitivity of a state. Its rate is set later. */
 static void append_state(struct Model *model, size_t of, const struct Variable *by) {
   struct Variable state = derivative_of(model, &model->states.items[of], by);
   state.is_work = model->states.items[of].is_work;
@@ -54,8 +69,8 @@ static void append_state(struct Model *model, size_t of, const struct Variable *
 }
 
 /*
- * The direction of the motion of neighbours: one node for each symbol. first, first_state: of the coordinates and states for this
- * value, which follow the count and state_count that were there before.
+ * Returns the direction of a neighbouring motion, one node per symbol. count, state_count: of the original coordinates
+ * and states. first, first_state: indices of the sensitivities with respect to this variable.
  */
 static Node *direction_of(const struct Model *model, const struct Variable *by, size_t count, size_t first,
                           size_t state_count, size_t first_state) {
@@ -90,14 +105,17 @@ static const char *why_not(const struct Model *model, const struct Equations *eq
   return NULL;
 }
 
-/* Forces of constraints are numbered behind the accelerations. */
+/* Moves the indices of constraint forces after those of all accelerations. */
 static void number_forces(struct Model *model, size_t total) {
   struct Graph *graph = model->graph;
   for (size_t j = 0; j < model->constraints.count; j++)
     graph->symbols[graph->vertices[model->unknowns.forces[j]].left].index = (int)(total + j);
 }
 
-/* The reaction of all, which is 0, stands where drives have theirs. */
+/*
+ * Appends the reaction force that prescribed accelerations need, which is 0 and shared by all sensitivities. Returns
+ * its index.
+ */
 static size_t append_reaction(struct Model *model) {
   struct Variable reaction = variable_create(copy_text("variations.force"), NULL, 0);
   reaction.node = graph_symbol(model->graph, REACTION, (int)model->reactions.count, reaction.name);

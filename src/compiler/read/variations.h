@@ -1,17 +1,18 @@
 /*
- * What a motion depends on values by, as a part of the motion: of each coordinate its derivatives by given parameters, inputs
- * and start values, which move by the variational equations, as coordinates whose acceleration is given.
+ * Sensitivities as part of the motion: derivatives of coordinates and states with respect to parameters, inputs and
+ * start values. They obey the variational equations, and are coordinates whose acceleration is prescribed.
  */
 #pragma once
 
 #include "mechanics/equations.h"
 
 /*
- * Adds to the model, for each of the names, the coordinates COORDINATE.by.NAME with their velocities, and the outputs
- * OUTPUT.by.NAME, and of <work/> its derivative; the equations are those of the model without them, their accelerations all
- * expressions. They start with 0, or 1 of the start value itself, and stay on the linearised constraints as they begin; at
- * events, where they jump, they are set. They are wrong where constraints follow from others, which no expression shows.
- * Reports what cannot be differentiated so.
+ * Adds for each name the coordinates COORDINATE.by.NAME with their velocities, the states STATE.by.NAME and the outputs
+ * OUTPUT.by.NAME.
+ * equations: those of the model before, with all accelerations as expressions.
+ * The start value of a sensitivity is 0, or 1 with respect to the start value itself. Sensitivities satisfy the
+ * linearized constraints as far as their start values do. At events, where sensitivities jump, they must be set. Results are wrong if constraints are
+ * redundant, which no expression shows. Reports systems that cannot be differentiated in this way.
  */
 void add_variations(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
                     struct Diagnostics *diagnostics);

@@ -1,10 +1,9 @@
-/* <constraint>: what is 0 at all times. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Declares the constraint of an element; its name alone is no value, but that of its force is. */
+/* Declares the constraint of a <constraint>. Its name has no value of its own; that of its force has one. */
 void declare_constraint(struct Reader *reader, xmlNodePtr node);
 
-/* Reads the expression of the next constraint; they come in the order in which they were declared. */
+/* Reads the expression of a <constraint> and checks it. */
 void read_constraint(struct Reader *reader, xmlNodePtr node);

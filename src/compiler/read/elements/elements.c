@@ -24,7 +24,10 @@
 #include "read/space/joints.h"
 #include "read/space/springs.h"
 
-/* The value in an attribute, which an <include> may give, or in a list, with the unit that it has by itself. */
+/*
+ * Reads the value of a constant from an override, a list or its attribute. Returns false if there is none or after an
+ * error.
+ */
 static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given, char *listed,
                                 struct Quantity *value) {
   const struct Given *giver = giver_of(given, "value");
@@ -35,7 +38,7 @@ static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const st
   return right;
 }
 
-/* listed: its value in a list; NULL where it has an attribute of its own. */
+/* Defines a constant. listed: its value in a list; NULL if it has an attribute. */
 static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, char *listed) {
   struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
   const struct Given *given = given_for(reader, node, name);
@@ -57,7 +60,7 @@ static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, 
   scope_define(reader->scope, name, value, line_of(node));
 }
 
-/* values="1 2 3" of m: m[1], m[2] and m[3]. */
+/* Defines m[1], m[2] and m[3] for values="1 2 3" of m. */
 static void read_constants(struct Reader *reader, xmlNodePtr node, const char *name) {
   const char *next = attribute(node, "values");
   size_t count = 0;
@@ -100,7 +103,10 @@ static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const ch
   return nominal;
 }
 
-/* A start value where it is a number alone, as integrals need it before it is read with the others; else 0. */
+/*
+ * Returns a start value that is a plain number, else 0. Integrals need start values before the start expressions are
+ * read.
+ */
 static double plain_number(xmlNodePtr node, const char *name) {
   const char *text = attribute(node, name);
   char *end = NULL;
@@ -116,9 +122,9 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   velocity.dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0);
   velocity.display_unit = display_unit_attribute(reader, node, "velocityDisplayUnit", velocity.dimension);
   if (velocity.name == NULL) velocity.name = copy_text("?");
-  given_for(reader, node, position.name); /* is there, and read with the start values */
+  given_for(reader, node, position.name); /* marks overrides as used; start_expressions.c reads them */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
-  position.start = plain_number(node, "start"); /* see start_expressions.h */
+  position.start = plain_number(node, "start"); /* preliminary, see start_expressions.h */
   velocity.start = plain_number(node, "velocityStart");
   char *fixed = attribute(node, "fixed");
   position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
@@ -137,7 +143,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   model->forces.any |= model->given.drives[index].given;
 }
 
-/* Its rate, which is 0 too, lets velocities and what is made of them have their part in the force along it. */
+/* A displacement has a rate, which is zero too: it lets velocities contribute to the force along the displacement. */
 static void read_displacement(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable displacement = common_attributes(reader, node);
@@ -151,7 +157,10 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
   append_variable(&model->displacements, displacement);
 }
 
-/* Adds the element's expression to a sum, and as it is without displacements to another; returns the latter. */
+/*
+ * Adds the element's expression to a sum over displaced positions, and at zero displacements to another sum. Returns
+ * the latter term.
+ */
 static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
                         const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
@@ -171,14 +180,14 @@ static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   model->energies.driven |= driven;
 }
 
-/* The acceleration of a driven coordinate. */
+/* Reads the prescribed acceleration of a coordinate. */
 static void read_drive(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Quantity acceleration = {.node = ZERO};
   if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
   char *name = name_attribute(reader, node, "name");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
-  if (symbol == NULL) return; /* the name was taken, which is reported */
+  if (symbol == NULL) return; /* the name was taken, which has been reported */
   const struct Variable *velocity = &model->velocities.items[symbol->index];
   if (velocity->dimension.known)
     require_unit(reader, line_of_attribute(node, "acceleration"), "the acceleration", acceleration,
@@ -193,7 +202,7 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   require_unit(reader, output.line, what, value, output.dimension);
   if (!output.dimension.known) output.dimension = value.dimension;
   value.node = without_displacements(reader, output.line, what, value.node);
-  /* What it tells waits for no events, unlike expressions that use its name. */
+  /* The output itself stays whole and needs no events, unlike expressions that use its name. */
   Node told = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
   output.node = without_displacements(reader, output.line, what, told);
   value.dimension = output.dimension;
@@ -233,7 +242,7 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "stopTime %g is not after startTime %g", model->experiment.stop_time, start);
 }
 
-/* Further inputs that are the time derivatives of the last one. */
+/* Appends inputs that are the time derivatives of the last input. */
 static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   double derivatives = 0;
@@ -241,7 +250,7 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "derivatives=\"%g\" of <input>; expected 1 or 2", derivatives);
   size_t index = model->inputs.count - 1;
   for (int k = 0; k < 2 && derivatives >= k + 1; k++, index++) {
-    Node rate = append_input_rate(reader); /* which moves the list */
+    Node rate = append_input_rate(reader); /* may move the list */
     model->given.input_rates[index] = rate;
   }
 }
@@ -249,7 +258,7 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
 static void read_input(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = common_attributes(reader, node);
   const struct Given *given = given_for(reader, node, variable.name);
-  if (giver_of_value(given) != NULL) { /* an expression like a definition */
+  if (giver_of_value(given) != NULL) { /* read as a definition */
     check_calculated(reader, given, node);
     return;
   }
@@ -262,7 +271,7 @@ static void read_input(struct Reader *reader, xmlNodePtr node) {
   read_input_rates(reader, node);
 }
 
-/* The name of a state's rate among the named expressions; see parser.c. */
+/* Collects the rate of a state under the name der(STATE), which der(...) in parser.c waits for. */
 static void collect_rate(struct Reader *reader, xmlNodePtr node) {
   const struct Variable *state = &reader->model->states.items[reader->present->number];
   definitions_add(reader->definitions, format_text("der(%s)", state->name),
@@ -272,8 +281,8 @@ static void collect_rate(struct Reader *reader, xmlNodePtr node) {
 static void read_state(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable state = common_attributes(reader, node);
-  given_for(reader, node, state.name); /* is there, and read with the start values */
-  state.start = 0.0;                   /* see start_expressions.h */
+  given_for(reader, node, state.name); /* marks overrides as used; start_expressions.c reads them */
+  state.start = 0.0;                   /* preliminary, see start_expressions.h */
   state.nominal = nominal_attribute(reader, node, "nominal");
   number_attribute(reader, node, "min", &state.minimum);
   number_attribute(reader, node, "max", &state.maximum);
@@ -317,11 +326,11 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
 
 typedef void Action(struct Reader *reader, xmlNodePtr node);
 
-/* What becomes of an element in each pass; NULL for nothing. */
+/* The functions that read an element, one per pass; NULL for none. The table is sorted by name. */
 struct Element {
   const char *name;
   Action *declare, *collect, *place, *read;
-  bool is_of_system; /* counts in the system's own file alone */
+  bool is_of_system; /* read in the main file only, ignored in included ones */
 };
 
 static const struct Element elements[] = {

@@ -1,4 +1,3 @@
-/* <event>, <sample> and <set>. */
 #include <string.h>
 
 #include "algebra/cone.h"
@@ -10,7 +9,7 @@
 
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 
-/* What <set> changes: the symbol of a coordinate, velocity, state or mode. */
+/* Returns the symbol that a <set> assigns: a coordinate, velocity, state or mode. ZERO after reporting an error. */
 static Node target_of(struct Reader *reader, xmlNodePtr node) {
   static const struct {
     const char *attribute;
@@ -53,7 +52,7 @@ static void append_assignment(struct Event *event, Node symbol, Node value) {
 
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   Node symbol = target_of(reader, node);
-  bool is_of_sample = event->passage == PASSAGE_SAMPLES; /* whose values no event waits for */
+  bool is_of_sample = event->passage == PASSAGE_SAMPLES; /* its values need no events */
   struct Quantity value = (is_of_sample ? whole_expression_of : expression_text_of)(reader, node, "the value of <set>",
                                                                                     IN_EVENT | AT_INSTANT);
   if (symbol == ZERO || reader->diagnostics->errors > 0) return;
@@ -73,8 +72,8 @@ static bool is_boolean_parameter(const struct Reader *reader, Node node) {
 }
 
 /*
- * A condition as a function of modes alone, so that an event knows whether it held before a parameter was set. One that modes and
- * parameters decide on together is the branch of a number that is 1/2 where it holds, else -1/2.
+ * Returns a condition as a function of modes alone, so that an event can compare it before and after parameters are
+ * set. A condition of modes and parameters becomes the sign of a number that is 1/2 if it holds, else -1/2.
  */
 static Node condition_of_modes(struct Reader *reader, Node value, long line) {
   struct Graph *graph = reader->model->graph;
@@ -84,7 +83,10 @@ static Node condition_of_modes(struct Reader *reader, Node value, long line) {
   return tuned_condition(reader->scope, subtract(graph, holds, half), line);
 }
 
-/* A condition that comes to hold, or an expression that passes 0 in a direction. */
+/*
+ * Reads a condition whose change from false to true is the event, or an expression with the direction of its zero
+ * crossing.
+ */
 static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
   struct Graph *graph = reader->model->graph;
   struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
@@ -113,7 +115,7 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
         when);
 }
 
-/* Collects in the graph's cone what an event rests on, also by what decides on its pieces. */
+/* Collects in the graph's cone all nodes that an event depends on, including the switching functions of its modes. */
 static void collect_event(const struct Reader *reader, const struct Event *event) {
   const struct Graph *graph = reader->model->graph;
   const struct Switches *switches = &reader->model->switches;
@@ -135,7 +137,10 @@ static const char *words_for(const struct Event *event) {
   return event->passage == PASSAGE_SAMPLES ? "a <sample>" : "an <event>";
 }
 
-/* Of accelerations, an event may look at the forces of contacts, frictions and constraints alone. */
+/*
+ * Reports events that depend on accelerations; among these symbols only the forces of contacts, frictions and
+ * constraints are allowed.
+ */
 static void check_forces(const struct Reader *reader, struct Event *event, long line) {
   const struct Model *model = reader->model;
   unsigned kinds = kinds_that_decide(reader->scope, event->condition);
@@ -152,7 +157,7 @@ static void check_forces(const struct Reader *reader, struct Event *event, long 
                    words_for(event), graph_symbol_of(model->graph, model->unknowns.accelerations[i])->name);
 }
 
-/* What an event or a sample sets. */
+/* Reads each <set> of an event or a sample. */
 static void read_assignments(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, event);
@@ -167,7 +172,7 @@ static void append_event(struct Reader *reader, const struct Event *event) {
   switches->events[switches->event_count++] = *event;
 }
 
-/* A linearization is that of the motion between events. */
+/* True if the system is linearized, which has no events. */
 static bool is_linearized(const struct Reader *reader) {
   return reader->scope->switches == NULL;
 }
@@ -181,7 +186,7 @@ void read_event(struct Reader *reader, xmlNodePtr node) {
   append_event(reader, &event);
 }
 
-/* A time in an attribute, of parameters and modes. */
+/* Reads a time of parameters and modes from an attribute. */
 static Node read_time(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity time = {.node = ZERO};
   if (expression_attribute(reader, node, name, KIND(PARAMETER) | KIND(MODE), &time))
@@ -190,8 +195,8 @@ static Node read_time(struct Reader *reader, xmlNodePtr node, const char *name) 
 }
 
 /*
- * The sample at base + count period counts on. Where the period was set anew since the last one, this one becomes the base, from
- * which the new period counts.
+ * Advances the sample at time base + count period. If the period was changed since the previous sample, the present
+ * time becomes the base, and the new period counts from there.
  */
 static void count_on(struct Graph *graph, struct Event *event) {
   const struct Sample *sample = &event->sample;

@@ -1,4 +1,4 @@
-/* <friction>: along a velocity, or in the plane of two. */
+/* <friction>: dry friction along a velocity, or in the plane of two velocities. */
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "model/held_velocities.h"
@@ -6,7 +6,7 @@
 #include "read/elements/switching_reader.h"
 #include "read/space/forces.h"
 
-/* Where friction acts: along the velocity of a coordinate, or one that is an expression. */
+/* Reads the sliding velocity: that of a coordinate, or an expression. Returns false after reporting an error. */
 static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
   bool has_coordinate = has_attribute(node, "coordinate");
   if (has_coordinate == has_attribute(node, "velocity")) {
@@ -34,7 +34,7 @@ static struct Quantity read_friction_force(struct Reader *reader, xmlNodePtr nod
   return force;
 }
 
-/* Of accelerations, a friction may follow from the forces of contacts and constraints alone, and linearly. */
+/* Reports a friction force that depends on accelerations, or nonlinearly on constraint forces. */
 static void check_linear(struct Reader *reader, long line, const char *what, Node force) {
   struct Graph *graph = reader->model->graph;
   struct Gradient gradient = gradient_by_kinds(graph, force, KIND(ACCELERATION));
@@ -52,7 +52,7 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
   }
 }
 
-/* The velocity across that of a friction which acts in a plane. */
+/* Reads the second velocity of a friction in a plane. Returns false after reporting an error. */
 static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension along, struct Quantity *velocity) {
   if (!has_attribute(node, "velocity")) {
     report_at(reader, node, "a <friction> with across and without velocity; expected velocity=\"...\" beside it");
@@ -63,7 +63,7 @@ static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension
   return true;
 }
 
-/* Whether a force follows from that of a contact. */
+/* True if a force depends on that of a contact. */
 static bool follows_contact(const struct Model *model, Node force) {
   const struct Gradient gradient = gradient_by_kinds(model->graph, force, KIND(ACCELERATION));
   const struct Switches *switches = &model->switches;
@@ -74,7 +74,7 @@ static bool follows_contact(const struct Model *model, Node force) {
   return follows;
 }
 
-/* Reads what friction pushes with against negative velocities, which is the same where the attributes are not given. */
+/* Reads the friction forces for negative velocities; by default they are those for positive ones. */
 static void read_forces_back(struct Reader *reader, xmlNodePtr node, struct Dimension unit, struct Friction *friction) {
   bool has_force = has_attribute(node, "forceBack"), has_stiction = has_attribute(node, "stictionBack");
   friction->sliding_back = friction->sliding;
@@ -94,7 +94,7 @@ static void read_forces_back(struct Reader *reader, xmlNodePtr node, struct Dime
               "constraint, or one force in both directions");
 }
 
-/* Reads what friction pushes with; false after reporting an error. */
+/* Reads the friction forces. Returns false after reporting an error. */
 static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct Dimension unit,
                                  struct Friction *friction) {
   long line = reader->model->constraints.items[friction->constraint].line;
@@ -117,7 +117,7 @@ static void set_velocity(struct Reader *reader, xmlNodePtr node, struct Friction
   friction->velocity = velocity;
 }
 
-/* Sticking, it is the force of the constraint velocity = 0. */
+/* Sets the constraint velocity = 0, which applies while the friction sticks. */
 static void hold_velocity(struct Reader *reader, const struct Friction *friction, struct Dimension unit) {
   struct Graph *graph = reader->model->graph;
   struct Variable *constraint = &reader->model->constraints.items[friction->constraint];
@@ -128,7 +128,7 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
   if (friction->velocity != ZERO) check_constraint(reader, constraint);
 }
 
-/* Sliding, it pushes against the velocity. */
+/* Adds the force of a sliding friction against its velocity. */
 static void add_push(struct Reader *reader, const struct Friction *friction) {
   struct Graph *graph = reader->model->graph;
   Node push = negate(graph, sliding_push(graph, friction));

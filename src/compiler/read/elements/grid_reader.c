@@ -7,14 +7,15 @@
 #include "base/memory.h"
 #include "read/elements/table_lines.h"
 
+/* Largest number of values of a table; interpolation makes a mode of each knot. */
 enum { VALUE_LIMIT = 1000 };
 
 struct Grid {
-  struct TableLines lines; /* the first member, from which take_line() comes to the others */
+  struct TableLines lines; /* first member, so that take_line() can cast to struct Grid */
   struct Surface *surface;
 };
 
-/* Whether the knot is finite and follows the one before it. */
+/* True if the knot is finite and larger than the previous one; reports an error otherwise. */
 static bool check_knot(struct Grid *grid, const double *knots, size_t i) {
   if (isfinite(knots[i]) && (i == 0 || knots[i] > knots[i - 1])) return true;
   report_error(grid->lines.reader->diagnostics, grid->lines.line,
@@ -40,7 +41,7 @@ static bool check_size(struct Grid *grid) {
   return false;
 }
 
-/* The knots of the first argument; the corner in front of them may hold a word. */
+/* Reads the knots of the first argument. A word in the corner before them is skipped. */
 static void take_head(struct Grid *grid, const char *line) {
   struct Surface *surface = grid->surface;
   const char *rest = line;
@@ -53,7 +54,7 @@ static void take_head(struct Grid *grid, const char *line) {
   grid->lines.wrong = true;
 }
 
-/* Where the lines below have as many numbers as the first one, its first is that of the corner. */
+/* Removes the corner from the first line: it is a number if the lines below are as long as the first one. */
 static void drop_corner(struct Surface *surface) {
   surface->columns--;
   memmove(surface->x, surface->x + 1, surface->columns * sizeof *surface->x);

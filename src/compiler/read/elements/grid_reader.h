@@ -1,8 +1,11 @@
-/* The lines of a table of two arguments: the knots of the first one, then those of the second with the values there. */
+/*
+ * Reads tables of two arguments: a line with the knots of the first argument, then a line for each knot of the second
+ * argument with the values there.
+ */
 #pragma once
 
 #include "read/context/attributes.h"
 #include "read/tables/surface.h"
 
-/* file: NULL where the text has the lines. False after reporting what is wrong. */
+/* Reads the lines of a file, or of the element's text if file is NULL. Returns false after reporting an error. */
 bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file, struct Surface *surface);

@@ -15,7 +15,7 @@ bool has_value(xmlNodePtr node, const struct Given *given) {
   return giver_of_value(given) != NULL || (giver_of(given, "start") == NULL && has_attribute(node, "value"));
 }
 
-/* The value of a definition, parameter or input, in its unit where it gives one. */
+/* Checks the value of a definition, parameter or input against the unit that it gives, and returns it in this unit. */
 static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpression *expression,
                                    struct Quantity value) {
   xmlNodePtr node = expression->node, where = expression->given != NULL ? expression->given->node : node;
@@ -40,7 +40,7 @@ static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, co
   return (struct Quantity){.node = value.node, .dimension = value.dimension.known ? unit : dimension_unknown};
 }
 
-/* The time derivative of a state. */
+/* Reads the time derivative of a state. */
 static struct Quantity read_rate(struct Reader *reader, xmlNodePtr node) {
   struct Quantity rate = {.node = ZERO};
   expression_attribute(reader, node, "rate", IN_RATE, &rate);
@@ -73,7 +73,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   return value;
 }
 
-/* name: der(...) of the state. */
+/* Stores the rate of a state. name: der(STATE). */
 static void keep_rate(struct Reader *reader, const char *name, struct Quantity value) {
   struct Model *model = reader->model;
   for (size_t i = 0; i < model->states.count; i++) {
@@ -123,5 +123,5 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
     definitions_add(reader->definitions, name, &expression);
     return;
   }
-  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, line_of(node)); /* says what has the name */
+  scope_define(reader->scope, name, (struct Quantity){.node = ZERO}, line_of(node)); /* reports the name as taken */
 }

@@ -1,26 +1,30 @@
-/* The expressions of definitions.h: what each <define>, calculated <parameter>, particle and body gives. */
+/*
+ * Collects and reads the named expressions of definitions.h: those of <define>, calculated <parameter>s and <input>s,
+ * bodies, frames and rates.
+ */
 #pragma once
 
 #include "read/context/includes.h"
 #include "read/names/definitions.h"
 
-/* Whether a <parameter> or <input> has a value, its own or a given one, in place of a start. */
+/* True if a <parameter> or <input> has a value, its own or an override, instead of a start value. */
 bool has_value(xmlNodePtr node, const struct Given *given);
 
-/* Collects the expression of a <define>, or of a <parameter> or <input> that has a value. */
+/* Collects the expression of a <define>, or of a <parameter> or <input> with a value. */
 void collect_value(struct Reader *reader, xmlNodePtr node);
 
 /*
- * Collects the components of a <frame>, <point>, <particle> or <body>. Of several of one name, which is reported later, the first one
- * has them.
+ * Collects the components of a <frame>, <point>, <particle> or <body>. If several have the same name, which is reported
+ * later, the components are those of the first.
  */
 void collect_components(struct Reader *reader, xmlNodePtr node);
 
-/* Its value; name: its own. */
+/* Parses the expression. name: its full name. */
 struct Quantity read_named_expression(struct Reader *reader, const struct NamedExpression *expression,
                                       const char *name);
 
 /*
- * Enters the value of a <define>, <parameter> or <input> into the model, under its name; bodies enter their components.
+ * Stores the value of a <define>, <parameter>, <input> or rate in the model under its name. Elements of bodies and
+ * frames store their components themselves.
  */
 void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *name, struct Quantity value);

@@ -19,7 +19,7 @@ static enum VariableType type_of(xmlNodePtr node) {
   return type;
 }
 
-/* Reports what an element with a value, or one that gives a range to it from further out, says of what is set. */
+/* Reports attributes of settable parameters in an element that has a value, or in an override. */
 static void check_value_alone(struct Reader *reader, xmlNodePtr node) {
   static const char *const others[] = {"start", "min", "max", "type"};
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -30,7 +30,10 @@ static void check_value_alone(struct Reader *reader, xmlNodePtr node) {
                 (const char *)node->name, others[i]);
 }
 
-/* A given value goes before the start, min and max of the file and of <include>s further in. */
+/*
+ * An override with a value replaces start, min and max of the file and of inner <include>s. Beside the value and in
+ * outer <include>s they are errors.
+ */
 void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
   const struct Given *giver = giver_of_value(given), *inner = giver != NULL ? giver->inner : NULL;
   for (; given != inner; given = given->inner) {
@@ -66,7 +69,7 @@ static void check_type(struct Reader *reader, const struct Variable *variable) {
     report_error(diagnostics, variable->line, "'%s': a Boolean has neither min nor max; expected none", variable->name);
 }
 
-/* A number, or true or false. */
+/* Sets the start value to a number, or to true or false. */
 static void read_value(struct Reader *reader, xmlNodePtr node, const char *name, const char *text,
                        struct Variable *variable) {
   bool is_true = strcmp(text, "true") == 0, is_false = strcmp(text, "false") == 0;
@@ -77,7 +80,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
   else if (!number_in(reader, node, name, text, &variable->start)) variable->start = 0.0;
 }
 
-/* The start value in an attribute, that an <include> may give. */
+/* Reads the start value from an override or from the element's attribute. */
 static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable *variable) {
   struct Source *present = enter_giver(reader, giver_of(given, "start"), &node);
   char *text = attribute(node, "start");
@@ -92,7 +95,7 @@ static struct Variable variable_of(struct Reader *reader, xmlNodePtr node) {
   return variable;
 }
 
-/* With a start value that was read, and the range, which an <include> may give. */
+/* Declares a parameter whose start value has been read. The range may be overridden. */
 static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable variable) {
   struct VariableList *list = &reader->model->parameters;
   given_number_attribute(reader, node, given, "min", &variable.minimum);
@@ -105,7 +108,7 @@ static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *
   append_variable(list, variable);
 }
 
-/* The parameter of a list that has this name and this value. */
+/* Declares the parameter for one value of a list. */
 static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, const char *text) {
   struct Variable variable = variable_of(reader, node);
   variable.name = name;
@@ -127,7 +130,7 @@ void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name
               (const char *)node->name, name);
 }
 
-/* values="1 2 3" of m: m[1], m[2] and m[3]. */
+/* Declares m[1], m[2] and m[3] for values="1 2 3" of m. */
 static void read_list(struct Reader *reader, xmlNodePtr node) {
   const char *next = attribute(node, "values"), *name = name_attribute(reader, node, "name");
   if (has_attribute(node, "start") || has_attribute(node, "value"))

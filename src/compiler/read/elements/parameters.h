@@ -1,13 +1,13 @@
-/* <parameter>: numbers of each type of FMI, lists of them, and those that are calculated. */
+/* <parameter>: single values of each FMI type, lists of values, and calculated parameters. */
 #pragma once
 
 #include "read/context/includes.h"
 
-/* Reports an index in the name of a list. */
+/* Reports a list whose name has an index. */
 void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Declares a parameter that can be set, or one for each of its values; calculated ones are definitions. */
+/* Declares a parameter, or one per value of a list. Calculated parameters are collected as definitions instead. */
 void read_parameter(struct Reader *reader, xmlNodePtr node);
 
-/* Reports what cannot stand beside a value, the element's own or a given one. */
+/* Reports attributes that cannot be combined with a value, in the element or an override. */
 void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node);

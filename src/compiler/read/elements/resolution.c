@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "read/elements/named_expressions.h"
 
-/* Of a circle that is closed by the definition with this number: a -> b -> a. */
+/* Reports a cycle as a -> b -> a. closing: the definition that begins and ends it. */
 static void report_circle(const struct Definitions *definitions, struct Reader *reader, size_t top, size_t closing) {
   struct TextStream text;
   FILE *file = open_text(&text);
@@ -22,7 +22,10 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
   source_enter(reader, present);
 }
 
-/* Those that the present one waits for come before it, unless one of them waits for it. */
+/*
+ * Marks the definition at stack position `top` as waiting for those above it. Reports a cycle if one of these waits
+ * already.
+ */
 static void keep_waiting(struct Definitions *definitions, struct Reader *reader, size_t top) {
   size_t *stack = definitions->stack, closing = 0;
   bool is_circle = false;
@@ -33,7 +36,7 @@ static void keep_waiting(struct Definitions *definitions, struct Reader *reader,
   }
   if (!is_circle) return;
   report_circle(definitions, reader, top, closing);
-  for (size_t i = 0; i < definitions->stack_count; i++) { /* all of it fails, without a further word */
+  for (size_t i = 0; i < definitions->stack_count; i++) { /* all that wait become 0: one message per cycle */
     struct Definition *definition = &definitions->items[stack[i]];
     struct Quantity nothing = {.node = ZERO};
     if (definition->state == ACTIVE)
@@ -53,7 +56,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
     struct Requirements *requirements = &reader->scope->requirements;
     size_t requirement_count = requirements->count;
     definitions->waiting = 0;
-    bind_indices(reader->scope, definition->loop); /* a name that has another meaning is told later, see expansion.c */
+    bind_indices(reader->scope, definition->loop); /* clashes of names are reported later, see expansion.c */
     struct Quantity value = read_named_expression(reader, &definition->expression, definition->name);
     unbind_indices(reader->scope, definition->loop);
     if (definitions->waiting > 0) {

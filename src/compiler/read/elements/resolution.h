@@ -1,7 +1,7 @@
-/* The named expressions of definitions.h are read, each after those that it needs. */
+/* Parses the named expressions of definitions.h in topological order. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Reads all of them and makes their names known; names those that need each other in a circle. */
+/* Parses all named expressions and defines their names. Reports cycles. */
 void resolve_definitions(struct Reader *reader);

@@ -1,11 +1,14 @@
-/* Start values of coordinates and velocities: numbers, or expressions of parameters, which they then follow. */
+/*
+ * Start values of coordinates, velocities and states: numbers, or expressions of parameters that are evaluated again
+ * when parameters change.
+ */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Those of a <coordinate>, in the order of the declarations. */
+/* Read the start expressions of a <coordinate> and of a <state>. */
 void read_start_expressions(struct Reader *reader, xmlNodePtr node);
 void read_start_of_state(struct Reader *reader, xmlNodePtr node);
 
-/* Their values at the start values of the parameters; reports those that are not finite. */
+/* Evaluates the start expressions at the start values of the parameters. Reports values that are not finite. */
 void evaluate_start_expressions(struct Reader *reader);

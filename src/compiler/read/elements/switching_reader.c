@@ -21,7 +21,10 @@ Node new_mode(struct Reader *reader, const char *of, const char *what) {
                       format_text("%s.%s", of, what));
 }
 
-/* One that expressions of events know by the name of the variable which tells it. */
+/*
+ * Adds a mode that is also a name for expressions: the observed mode of a contact or friction, also a variable of the
+ * FMU.
+ */
 static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
   Node mode = new_mode(reader, constraint->name, what);
   char *name = format_text("%s.%s", constraint->name, what);
@@ -40,7 +43,7 @@ void declare_mode(struct Reader *reader, xmlNodePtr node) {
   append_variable(&model->modes, mode);
 }
 
-/* A constraint of this name that holds in a mode; returns its number. */
+/* Appends a constraint that applies while a mode is on. Returns its index. */
 static size_t declare_held(struct Reader *reader, struct Variable constraint) {
   struct VariableList *constraints = &reader->model->constraints;
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
@@ -58,7 +61,7 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
-/* The constraint of one end of a stop: x.min or x.max. */
+/* Returns the constraint of one end of a stop, named x.min or x.max. */
 static struct Variable end_of_stop(xmlNodePtr node, const char *coordinate, const char *end) {
   return variable_create(format_text("%s.%s", coordinate, end),
                          format_text("stop of %s at its %simum", coordinate, end), line_of(node));
@@ -73,7 +76,7 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
 }
 
-/* Returns the friction, without its constraint. */
+/* Appends a friction whose constraint follows. The pointer is valid until the next call. */
 static struct Friction *append_friction(struct Reader *reader, struct Friction friction) {
   struct Switches *switches = &reader->model->switches;
   switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
@@ -81,7 +84,7 @@ static struct Friction *append_friction(struct Reader *reader, struct Friction f
   return &switches->frictions[switches->friction_count++];
 }
 
-/* Makes a friction, the last one, the part along of one in a plane, and appends the part across. */
+/* Turns the last friction into the first axis of a friction in a plane, and appends the second axis. */
 static void declare_plane(struct Reader *reader, struct Friction *along, struct Variable constraint) {
   const char *name = constraint.name;
   along->plane.axis = ALONG;
@@ -110,14 +113,14 @@ void declare_friction(struct Reader *reader, xmlNodePtr node) {
   declare_friction_of(reader, common_attributes(reader, node), has_attribute(node, "across"));
 }
 
-/* Its constraints follow that of the contact. */
+/* Declares the friction of a contact. Its constraints follow that of the contact. */
 static void declare_friction_of_contact(struct Reader *reader, const struct Variable *contact) {
   struct Variable constraint = variable_create(format_text("%s.friction", contact->name),
                                                format_text("friction of %s", contact->name), contact->line);
   declare_friction_of(reader, constraint, true);
 }
 
-/* As many contacts as there are places where the shapes may touch: NAME, or NAME[1], NAME[2], ... */
+/* Declares a contact for each point at which the shapes may touch: NAME, or NAME[1], NAME[2], ... */
 static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
   size_t count = count_shape_contacts(reader, node);
   if (is_compliant(node)) return;
@@ -157,7 +160,7 @@ void number_modes(struct Reader *reader) {
 
 /* --- Contacts --- */
 
-/* The constraint -gap = 0, whose force is positive where it presses, while the contact is closed. */
+/* Sets the constraint -gap = 0 of a contact, which applies while it is closed. Its force is positive under pressure. */
 static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, Node gap) {
   struct Model *model = reader->model;
   struct Contact *contact = &model->switches.contacts[number];
@@ -187,7 +190,7 @@ static struct Friction *friction_of_contact(struct Reader *reader, const struct 
   return friction;
 }
 
-/* Coulomb's friction in the plane at right angles to the normal; in a mechanism that is in a plane itself, one velocity is 0. */
+/* Sets Coulomb friction in the tangent plane of a contact. In planar mechanisms one of the two velocities is 0. */
 static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, const struct Contact *contact,
                                     const struct Grip *grip, const struct Slip *slip) {
   struct Friction *friction = friction_of_contact(reader, contact);
@@ -239,7 +242,7 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
               name != NULL ? name : "");
   static const char *const ends[] = {"min", "max"};
   size_t number = reader->present->number;
-  bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no right name then */
+  bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no valid name */
   Node room = ZERO;                                                  /* max - min */
   for (int end = 0; end < 2 && symbol != NULL && is_declared; end++) {
     struct Quantity limit;

@@ -1,36 +1,45 @@
-/* <mode>, <event>, <sample>, <stop>, <contact> and <friction>: what switches a system. */
+/* <mode>, <event>, <sample>, <stop>, <contact> and <friction>: the elements that make a system hybrid. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* What may stand in conditions, and in forces that switch. */
+/* Kinds of symbols in conditions and in forces that depend on modes. */
 enum { IN_CONDITION = IN_FORCE & ~KIND(DISPLACEMENT) };
 
-/* A mode of no variable, named by what it is of. */
+/* Returns a new mode named OF.WHAT that belongs to no variable. */
 Node new_mode(struct Reader *reader, const char *of, const char *what);
 
-/* Make the modes and the constraints of an element known. */
+/* Declare the modes and constraints of an element. */
 void declare_mode(struct Reader *reader, xmlNodePtr node);
 void declare_contact(struct Reader *reader, xmlNodePtr node);
 void declare_stop(struct Reader *reader, xmlNodePtr node);
 void declare_friction(struct Reader *reader, xmlNodePtr node);
 
-/* After all declarations: modes count on behind the parameters. */
+/* Gives modes their indices, which follow those of the parameters; called after all declarations. */
 void number_modes(struct Reader *reader);
 
-/* Read their expressions, in the order of their declarations. */
+/* Read the expressions of an element that was declared. */
 void read_contact(struct Reader *reader, xmlNodePtr node);
 void read_stop(struct Reader *reader, xmlNodePtr node);
 void read_friction(struct Reader *reader, xmlNodePtr node);
 
-/* Lets a friction act whose velocities are set, and its force and stiction; unit: of these. */
+/*
+ * Adds the constraint and the sliding force of a friction whose velocities, force and stiction are set. unit: of the
+ * forces.
+ */
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit);
 
 void read_event(struct Reader *reader, xmlNodePtr node);
 void read_sample(struct Reader *reader, xmlNodePtr node);
 
-/* After all expressions: what decides on branches has the displacements at 0; reports what turns just there. */
+/*
+ * Sets virtual displacements to zero in all switching functions, after all expressions. Reports functions that are zero
+ * there identically.
+ */
 void undisplace_branches(struct Reader *reader);
 
-/* After all expressions: NAME.force of a friction, in events and outputs, is that while it slides too. */
+/*
+ * Replaces NAME.force of frictions in events and outputs: while sliding it is the sliding force. Called after all
+ * expressions.
+ */
 void complete_friction_forces(struct Reader *reader);

@@ -1,21 +1,24 @@
-/* The lines of numbers in a table's text or file; empty ones are passed over, and what follows # is left out. */
+/* Lines of numbers in the text or file of a table. Empty lines are skipped; # begins a comment. */
 #pragma once
 
 #include "read/context/attributes.h"
 
 struct TableLines {
   struct Reader *reader;
-  long line;       /* the present one, for messages */
-  bool wrong;      /* after an error, of which there is one a table: no further lines are taken */
-  bool is_heading; /* the line may be a heading: the first one of a file */
+  long line;       /* current line, for messages */
+  bool wrong;      /* after an error: no further lines are read, so that a table has one error */
+  bool is_heading; /* the line may be a heading, as the first one of a file */
   void (*take)(struct TableLines *lines, const char *text);
 };
 
-/* The file is beside the one that is read; messages name it and its lines. */
+/* Calls `take` for each line of a file, which is relative to the current file. Messages name the file and its lines. */
 void table_lines_of_file(struct TableLines *lines, xmlNodePtr node, const char *name);
 
-/* The text of an element, or a part of it. */
+/* Calls `take` for each line of a text node. */
 void table_lines_of_text(struct TableLines *lines, xmlNodePtr text);
 
-/* The numbers at the beginning of a line, with blanks, a comma or a semicolon between them; *rest is what follows them. */
+/*
+ * Returns the numbers at the beginning of a line, separated by blanks, a comma or a semicolon, and sets their count.
+ * *rest: the text after them.
+ */
 double *table_numbers(const char *line, size_t *count, const char **rest);

@@ -8,11 +8,12 @@
 #include "read/elements/table_lines.h"
 #include "read/tables/table.h"
 
+/* Largest number of points of a table; interpolation makes a mode of each knot. */
 enum { POINT_LIMIT = 500 };
 
-/* The points as they are read. */
+/* Collects the points of a table of one argument. */
 struct Points {
-  struct TableLines lines; /* the first member, from which take_line() comes to the others */
+  struct TableLines lines; /* first member, so that take_line() can cast to struct Points */
   struct Curve curve;
 };
 
@@ -55,7 +56,7 @@ static void take_line(struct TableLines *lines, const char *line) {
   }
 }
 
-/* <point x y/> or text. */
+/* Reads <point x y/> elements or lines of text. */
 static void read_content(struct Points *points, xmlNodePtr node) {
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
     points->lines.line = line_of(part);
@@ -83,7 +84,7 @@ static struct Table *create_table(struct Reader *reader, xmlNodePtr node) {
   return table;
 }
 
-/* NULL after reporting what is wrong. */
+/* Returns the table; NULL after reporting an error. */
 static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
   struct Points points = {.lines = {.reader = reader, .take = take_line}};
   if (file != NULL) table_lines_of_file(&points.lines, node, file);
@@ -117,7 +118,7 @@ void read_table(struct Reader *reader, xmlNodePtr node) {
   if (name != NULL)
     table = attribute_is(node, "arguments", "2") ? read_surface(reader, node, name, file)
                                                  : read_curve(reader, node, name, file);
-  /* A table is no value: its name alone cannot be used. */
+  /* A table has no value without arguments: NAN reserves its name. */
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   bool is_new = name != NULL && scope_define(reader->scope, name, word, line_of(node));
   if (is_new && table != NULL) names_set(reader->scope->tables, name, table);

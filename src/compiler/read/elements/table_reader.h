@@ -1,4 +1,4 @@
-/* <table>: functions of one or two variables that are given by points. */
+/* <table>: functions of one or two arguments, interpolated between points. */
 #pragma once
 
 #include "read/context/attributes.h"

@@ -3,9 +3,8 @@
  * particle or body. They may use each other in any order.
  *
  * All names are collected first. Then the expressions are parsed in topological order by a depth-first search with an
- * explicit stack: an expression that meets an unparsed name pushes that name, waits, and is parsed again later. Each
- * expression is pushed once per name that it waits for. An expression that waits for an ACTIVE one is part of a cycle
- * and is reported.
+ * explicit stack. An expression that meets unparsed names pushes them and is parsed again after them, so that most are
+ * parsed at most twice. An expression that waits for an ACTIVE one closes a cycle, which is reported.
  */
 #pragma once
 
