@@ -4,10 +4,10 @@
 
 #include "instance/instance.h"
 
-/* Whether an array argument is there when it has elements. */
+/* True if an array argument is not NULL, or has no elements. */
 bool check_array(struct Instance *instance, const void *array, size_t count, const char *argument);
 
-/* The variable of this value reference, of this type; NULL after logging. */
+/* Returns the variable of this value reference and type; NULL after logging an error. */
 const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, enum VariableType type);
 
 #endif

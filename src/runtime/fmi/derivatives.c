@@ -9,12 +9,12 @@
 #include "instance/initial_state.h"
 #include "stepping/reading.h"
 
-/* A direction and what follows from it; the arrays are parts of instance->work. */
+/* A direction and the derivatives along it; the arrays are parts of instance->work. */
 struct Direction {
   struct Seed seed;
   double *state, *input, *parameter;
   double *derivative, *derivative_along;
-  const double *acceleration, *acceleration_along; /* what result_along() takes */
+  const double *acceleration, *acceleration_along; /* arguments of result_along() */
 };
 
 static struct Direction direction_create(struct Instance *instance) {
@@ -29,7 +29,7 @@ static struct Direction direction_create(struct Instance *instance) {
   return direction;
 }
 
-/* Fills derivative and derivative_along at the point. */
+/* Computes derivative and derivative_along at the point. */
 static enum Status follow(struct Instance *instance, const struct Point *point, struct Direction *direction) {
   if (lagrangian.derivatives == NULL) return STATUS_DONE;
   if (!evaluate_derivatives(instance, point, direction->derivative)) return discard_for_singularity(instance);
@@ -60,7 +60,7 @@ static enum Status check_unknown(struct Instance *instance, const struct ScalarV
   return refuse_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
 }
 
-/* Reads the unknowns' derivatives along the direction. */
+/* Computes the unknowns' derivatives along the direction. */
 static enum Status read_along(struct Instance *instance, const struct Point *point, const struct Direction *direction,
                               const unsigned *reference, size_t count, double *value) {
   for (size_t i = 0; i < count; i++) {
@@ -102,7 +102,7 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
   return status;
 }
 
-/* The derivatives of all unknowns by one known, each times its seed, in the workspace column[unknown_count]. */
+/* Computes the seed-weighted sum of the derivatives of all unknowns by one known. column: workspace, unknown_count. */
 static enum Status weighted_column(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                    unsigned known, const double *seed, double *column, double *value) {
   const double one = 1.0;

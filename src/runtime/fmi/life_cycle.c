@@ -1,11 +1,19 @@
+/*
+ * State machine of FMI. An instance is in one phase (situation->phase):
+ *
+ *   instantiated -> initialization mode -> event mode <-> continuous-time mode -> terminated      model exchange
+ *   instantiated -> initialization mode -> step complete or failed <-> event mode -> terminated   co-simulation
+ *
+ * Co-simulation has event mode in FMI 3.0, if the importer uses it, and intermediate update mode inside a step. Each
+ * function belongs to a class, enum Function; permitted[] gives the kinds of instances and the phases in which
+ * functions of a class may be called. Every function asks enter() first. A call in another phase is an error: the
+ * instance goes to PHASE_ERROR, where it can be read, reset or freed.
+ */
 #include "fmi/life_cycle.h"
 
 #define IN(phase) (1u << (phase))
 
-/*
- * Sets of phases. Those of one kind are never reached by instances of the other, and what a version of FMI does not have is never
- * reached by its instances, so that one set serves all.
- */
+/* Sets of phases. One set serves both kinds and all versions of FMI: phases of the others are never reached. */
 enum {
   BEFORE = IN(PHASE_INSTANTIATED) | IN(PHASE_INITIALIZATION),
   AFTER = IN(PHASE_TERMINATED) | IN(PHASE_ERROR),
@@ -13,7 +21,7 @@ enum {
   STEPS = IN(PHASE_STEP_COMPLETE) | IN(PHASE_STEP_FAILED),
   INTERMEDIATE = IN(PHASE_INTERMEDIATE_UPDATE),
   READABLE = IN(PHASE_INITIALIZATION) | EXCHANGE | STEPS | AFTER,
-  /* What would end or replace the simulation has to wait for the end of a step. */
+  /* calls that would end or replace the simulation wait for the end of a step */
   BETWEEN_STEPS = BEFORE | EXCHANGE | STEPS | AFTER,
   NEVER = 0
 };
@@ -46,7 +54,7 @@ static const struct {
     [FUNCTION_ENTER_STEP_MODE] = {FOR_STEPS, IN(PHASE_EVENT)},
     [FUNCTION_COMPLETED_INTEGRATOR_STEP] = {FOR_EXCHANGE, IN(PHASE_CONTINUOUS_TIME)},
     [FUNCTION_SET_TIME] = {FOR_EXCHANGE,
-                           IN(PHASE_CONTINUOUS_TIME)}, /* in event mode, of FMUs without continuous time */
+                           IN(PHASE_CONTINUOUS_TIME)}, /* in event mode only in FMUs without continuous time */
     [FUNCTION_SET_CONTINUOUS_STATES] = {FOR_EXCHANGE, IN(PHASE_CONTINUOUS_TIME)},
     [FUNCTION_GET_CONTINUOUS] = {FOR_EXCHANGE, IN(PHASE_INITIALIZATION) | EXCHANGE | AFTER},
     [FUNCTION_GET_NOMINALS] = {FOR_EXCHANGE, BEFORE | EXCHANGE | AFTER},

@@ -1,10 +1,10 @@
-/* Which function of FMI may be called in which state: FMI 2.0.4, sections 3.2.3 and 4.2.4; FMI 3.0, sections 2.3, 3.2 and 4.2. */
+/* States in which functions may be called: FMI 2.0.4, sections 3.2.3 and 4.2.4; FMI 3.0, sections 2.3, 3.2 and 4.2. */
 #ifndef LIFE_CYCLE_H
 #define LIFE_CYCLE_H
 
 #include "instance/instance.h"
 
-/* What functions do, as far as it decides on when they may be called. */
+/* Classes of functions that may be called in the same states. */
 enum Function {
   FUNCTION_SET_DEBUG_LOGGING,
   FUNCTION_SET_UP,
@@ -18,7 +18,7 @@ enum Function {
   FUNCTION_FMU_STATE,
   FUNCTION_GET_PARTIAL_DERIVATIVE,
   FUNCTION_ENTER_EVENT_MODE,
-  FUNCTION_ENTER_EVENT_MODE_OF_STEPS, /* where co-simulations have one too */
+  FUNCTION_ENTER_EVENT_MODE_OF_STEPS, /* in co-simulation too */
   FUNCTION_UPDATE_DISCRETE_STATES,
   FUNCTION_ENTER_CONTINUOUS_TIME_MODE,
   FUNCTION_ENTER_STEP_MODE,
@@ -32,13 +32,13 @@ enum Function {
   FUNCTION_GET_OUTPUT_DERIVATIVES,
   FUNCTION_DO_STEP,
   FUNCTION_GET_STATUS,
-  FUNCTION_NEVER, /* of what no FMU declares to have */
+  FUNCTION_NEVER, /* for capabilities that no FMU declares */
   FUNCTION_COUNT
 };
 
 /*
- * The instance of a component, which begins with it, where the function may be called now; messages come under its name from
- * here on. NULL after logging an error where it may not, and NULL for a component that is NULL.
+ * Returns the instance of a component, of which it is the first member, if the function may be called now. name: of the
+ * function, for messages. Returns NULL, after logging an error, if it may not; NULL if component is NULL.
  */
 struct Instance *enter(void *component, enum Function function, const char *name);
 

@@ -38,7 +38,7 @@ unsigned log_wanted(bool has_logger, unsigned chosen) {
   return wanted;
 }
 
-/* CATEGORY_COUNT where there is no category of this name. */
+/* Returns the category of this name; CATEGORY_COUNT if there is none. */
 static int category_named(const char *name) {
   int category = 0;
   while (category < CATEGORY_COUNT && (name == NULL || strcmp(name, categories[category]) != 0)) category++;

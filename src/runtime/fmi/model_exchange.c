@@ -19,14 +19,14 @@ enum Status exchange_set_time(struct Instance *instance, double time) {
   return STATUS_DONE;
 }
 
-/* Whether an array of states has their number. */
+/* True if the array exists and has an element for each state. */
 static bool check_states(struct Instance *instance, const void *array, size_t count) {
   if (count == lagrangian.state_count) return check_array(instance, array, count, "the array");
   refuse_call(instance, "%zu elements; expected %zu, the number of states", count, lagrangian.state_count);
   return false;
 }
 
-/* An integrator that went too far may try a shorter step. */
+/* Discards infinite states: an integrator that went too far may try a shorter step. */
 enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count) {
   if (!check_states(instance, state, count)) return STATUS_ERROR;
   for (size_t i = 0; i < count; i++)
@@ -56,7 +56,7 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
 
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count) {
   if (!check_states(instance, nominal, count)) return STATUS_ERROR;
-  /* A compiler knows this number, and that there are no nominal values without states. */
+  /* compilers know this count, and that there are no nominal values without states */
   if (lagrangian.state_count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
   return STATUS_DONE;
 }
@@ -77,17 +77,17 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 void exchange_enter_event_mode(struct Instance *instance) {
   struct Situation *situation = instance->situation;
   if (situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
-  /* What is set from here on may jump; what was set on the way follows a continuous course. */
+  /* States set from here on may jump; those set before follow the motion. */
   if (situation->phase == PHASE_CONTINUOUS_TIME) situation->changed = CHANGED_NOTHING;
   situation->phase = PHASE_EVENT;
 }
 
-/* NULL for a system without events at known times. */
+/* Returns NULL if the system has no time events. */
 static const struct TimeLaws *laws_of_time(void) {
   return lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
 }
 
-/* Whether modes do not agree with the present state and time. */
+/* True if modes do not agree with the present state and time. */
 static bool is_event_due(struct Instance *instance) {
   const struct TimeLaws *times = laws_of_time();
   if (lagrangian.event_laws == NULL) return false;
@@ -103,12 +103,14 @@ enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
 }
 
 /*
- * The importer's integrator errs by up to the tolerance e in each step, so that after n steps the motion is off by up to n e,
- * in any coordinates. The drift d is the part of this error across the constraints; it changes the forces by a share of the
- * order of d, and so the motion along the constraints by an error of the order of d. While d < n e, this is no more than what
- * has come together along them. A projection needs an event, behind which the integrator starts at order 1 with short steps,
- * each with an error of its own: more events would cost time and accuracy. The drift grows with n^2, since errors of velocities
- * add up, so that the first steps need no event. In long runs d^2 < e keeps the terms of second order below the tolerance.
+ * True if the state must be projected onto the constraints, which takes an event.
+ *
+ * The importer's integrator errs by up to the tolerance e in each step, and so by up to n e after n steps. The drift d
+ * is the part of this error across the constraints. It changes the forces, and so the motion along the constraints, by
+ * an error of the order of d. While d < n e, this does not exceed the error along the constraints. After an event the
+ * integrator starts at order 1 with short steps, so more events would cost time and accuracy. The drift grows with n^2,
+ * since errors of velocities add up, so the first steps need no event. In long runs, d^2 < e keeps terms of second
+ * order below the tolerance.
  */
 static bool has_drifted(struct Instance *instance) {
   const struct Situation *situation = instance->situation;

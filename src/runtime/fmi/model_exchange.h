@@ -1,6 +1,6 @@
 /*
- * What an importer that integrates asks for; in FMI 3.0 events also in co-simulation. In an event modes may change, and a state
- * that drifted from the constraints is brought back.
+ * Functions for importers that integrate; events also in co-simulation of FMI 3.0. At an event modes may change, and a
+ * state that has drifted is projected onto the constraints.
  */
 #ifndef MODEL_EXCHANGE_H
 #define MODEL_EXCHANGE_H
@@ -20,19 +20,19 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 
 void exchange_enter_event_mode(struct Instance *instance);
 
-/* An error where events are due for which the discrete states were not updated. */
+/* Enters continuous-time mode; an error if an event is due and the discrete states were not updated. */
 enum Status exchange_enter_continuous_time_mode(struct Instance *instance);
 
 /*
- * Counts a step of the importer. True if an event is needed: a mode must change, or the drift from the constraints is as large
- * as the error of the whole motion.
+ * Counts a step of the importer. True if an event is needed: a mode must change, or the drift is as large as the error
+ * of the motion (model_exchange.c).
  */
 bool exchange_complete_step(struct Instance *instance);
 
-/* Brings the modes into agreement with the state, and this back to the constraints; tells whether it was moved. */
+/* Brings the modes into agreement with the state, and projects it; sets *states_changed if it moved. */
 enum Status exchange_update(struct Instance *instance, bool *states_changed);
 
-/* Finds the time of the next event that is known beforehand, behind an update. False for none. */
+/* Finds the next time event, after an update. False if there is none. */
 bool exchange_next_event(struct Instance *instance, double *time);
 
 #endif

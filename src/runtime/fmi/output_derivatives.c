@@ -1,4 +1,4 @@
-/* Derivatives of outputs: the coefficients of their Taylor series in time. */
+/* Time derivatives of outputs, k! times the coefficients of their Taylor series. */
 #include <math.h>
 
 #include "evaluation/evaluate.h"
@@ -17,7 +17,7 @@ static size_t larger(size_t a, size_t b) {
   return a > b ? a : b;
 }
 
-/* False after logging where there is no memory. Free expansion->state. */
+/* Allocates the rows; free expansion->state. False, after logging an error, without memory. */
 static bool expansion_create(struct Instance *instance, struct Expansion *expansion) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t work = larger(lagrangian.taylor.rows, lagrangian.taylor.output_rows);
@@ -35,7 +35,7 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
   return true;
 }
 
-/* d x / dt = A x + B u + c, order by order. */
+/* Expands d x / dt = A x + B u + c, order by order. */
 static void expand_linear(const struct Instance *instance, int order, const struct Expansion *expansion) {
   size_t states = lagrangian.state_count, columns = states + lagrangian.input_count + 1;
   lagrangian.linear(instance->parameter, instance->prepared, expansion->matrix);
@@ -44,7 +44,7 @@ static void expand_linear(const struct Instance *instance, int order, const stru
     for (size_t i = 0; i < states; i++) {
       const double *row = expansion->matrix + i * columns;
       double sum = k == 0 ? row[columns - 1] : 0.0;
-      for (size_t j = 0; j + 1 < columns; j++) sum += row[j] * expansion->state[j][k]; /* the inputs follow */
+      for (size_t j = 0; j + 1 < columns; j++) sum += row[j] * expansion->state[j][k]; /* then the inputs */
       expansion->state[i][k + 1] = sum / (k + 1);
     }
 }

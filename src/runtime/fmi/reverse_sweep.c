@@ -6,7 +6,10 @@
 #include "fmi/check.h"
 #include "instance/initial_state.h"
 
-/* The parts of one block of memory: by what unknowns count, those that are states apart, and the gradient of their sum. */
+/*
+ * The parts of one block of memory: the weights of derivatives, results and states, and the gradient of the weighted
+ * sum.
+ */
 struct Weights {
   double *derivative, *result, *state, *gradient;
 };

@@ -1,4 +1,4 @@
-/* Adjoint derivatives of systems whose generated code has weighted_gradient(). Other FMUs do not hold it. */
+/* Adjoint derivatives by the generated weighted_gradient(). Other FMUs do not link this. */
 #ifndef REVERSE_SWEEP_H
 #define REVERSE_SWEEP_H
 
@@ -6,11 +6,11 @@
 
 struct ReverseSweep {
   /*
-   * Whether it gives the derivatives of these unknowns. It does not before the start, where states may follow from
-   * parameters, and of outputs that depend on forces of constraints, of which there may be several with one motion.
+   * True if the sweep gives the derivatives of these unknowns. It does not before the start, where states may follow
+   * from parameters. Nor does it for outputs that depend on constraint forces, which may not be unique.
    */
   bool (*is_for)(const struct Instance *instance, const unsigned *unknown, size_t unknown_count);
-  /* As adjoint_derivative(), at a cost that does not depend on how many knowns there are. */
+  /* As adjoint_derivative(), at a cost independent of the number of knowns. */
   enum Status (*derivative)(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                             const unsigned *known, size_t known_count, const double *seed, double *value);
 };

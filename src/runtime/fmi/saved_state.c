@@ -5,14 +5,14 @@
 #include "fmi/check.h"
 #include "instance/snapshot.h"
 
-/* Gives the caller's state memory where it has none. */
+/* Allocates memory for the caller's state if it has none. */
 static bool allocate(struct Instance *instance, void **state) {
   if (*state == NULL) *state = instance->memory.allocate(1, snapshot_size());
   if (*state == NULL) refuse_call(instance, "allocateMemory returned no memory");
   return *state != NULL;
 }
 
-/* Whether the bytes can be restored; logs an error where they cannot. */
+/* True if the bytes can be restored; logs an error otherwise. */
 static bool check_state(struct Instance *instance, const void *block, size_t size) {
   const char *fault = snapshot_fault(instance, block, size);
   if (fault != NULL) refuse_call(instance, "the bytes of the state cannot be used: %s", fault);

@@ -1,7 +1,7 @@
 /*
- * The functions that versions of FMI have alike but for names. Each version includes this once, behind its struct Component
- * and what tells them apart: FMI(name) puts its prefix before a name, GetNominalsOfContinuousStates may be called where NOMINALS
- * may, and QUIET_CATEGORIES are logged without debug logging.
+ * The FMI functions that differ between versions in their names alone. Each version includes this once, after its
+ * struct Component and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates
+ * may be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
  */
 #ifndef SHARED_FUNCTIONS_H
 #define SHARED_FUNCTIONS_H

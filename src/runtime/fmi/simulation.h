@@ -1,18 +1,18 @@
-/* A simulation's beginning and end. */
+/* Start and end of a simulation. */
 #ifndef SIMULATION_H
 #define SIMULATION_H
 
 #include "instance/instance.h"
 
 struct Experiment {
-  double start_time, stop_time; /* s */
+  double start_time, stop_time; /* in s */
   double tolerance;             /* relative */
   bool has_stop_time, has_tolerance;
 };
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment);
 
-/* Ends the initialization: an error where the accelerations do not exist. */
+/* Ends initialization mode; an error if there is no start with accelerations. */
 enum Status simulation_start(struct Instance *instance);
 
 void simulation_terminate(struct Instance *instance);

@@ -13,14 +13,14 @@ static enum Status worse(enum Status first, enum Status second) {
   return first > second ? first : second;
 }
 
-/* Whether a variable has another value at the start than the one that was set. */
+/* True if the reported value of a variable may differ from the one that was set. */
 static bool follows_start(unsigned reference) {
   if (reference >= lagrangian.variable_count) return false;
   enum VariableKind kind = lagrangian.variables[reference].kind;
   return kind != VARIABLE_TIME && kind != VARIABLE_INPUT && kind != VARIABLE_PARAMETER && kind != VARIABLE_STATISTIC;
 }
 
-/* Lets the variables be read, up to reading_end(). */
+/* Starts reading, up to reading_end(), if a variable needs it. */
 static void begin_reading(struct Instance *instance, const unsigned *reference, size_t count) {
   bool any = false;
   for (size_t i = 0; i < count; i++) any |= follows_start(reference[i]);
@@ -49,7 +49,7 @@ static enum Status get_whole_values(struct Instance *instance, const unsigned *r
     const struct ScalarVariable *variable = check_reference(instance, reference[i], type);
     if (variable == NULL) return STATUS_ERROR;
     bool is_contact = variable->kind == VARIABLE_CONTACT;
-    if (is_contact) evaluate_prepare(instance); /* before the start it follows from the state */
+    if (is_contact) evaluate_prepare(instance); /* before the start the contact follows from the state */
     if (is_contact || variable->kind == VARIABLE_PARAMETER) value[i] = (int)instance->parameter[variable->index];
     else {
       int64_t statistic = instance->situation->statistics[variable->index];
@@ -68,7 +68,7 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 }
 
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value) {
-  /* What is discrete changes in event mode alone, where there is one (FMI 3.0.2, section 2.4.7). */
+  /* Discrete variables change in event mode alone, if the importer uses it (FMI 3.0.2, section 2.4.7). */
   const struct Situation *situation = instance->situation;
   const int64_t *counts = instance->uses_event_mode ? situation->reported_statistics : situation->statistics;
   for (size_t i = 0; i < count; i++) {
@@ -87,15 +87,12 @@ enum Status values_none(void *component, enum Function function, size_t count, c
   return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variable for this function");
 }
 
-/*
- * Whether the importer integrates, and so sets the states at any time: some importers do that one by one, as variables, which
- * is the same as all at once.
- */
+/* True if the importer integrates, and sets states at any time. Some importers set them one by one, as variables. */
 static bool is_exchanged(const struct Instance *instance) {
   return instance->situation->phase == PHASE_CONTINUOUS_TIME;
 }
 
-/* Whether it jumps at events by what the importer knows of it, as nothing here does. */
+/* True for a state that the importer may change at events: a sensitivity, of which the FMU does not know the jump. */
 static bool is_variation(const struct ScalarVariable *variable) {
   size_t n = lagrangian.coordinate_count, first = n - lagrangian.variation_count, state = variable->index;
   if (variable->kind != VARIABLE_STATE) return false;
@@ -106,13 +103,13 @@ static bool is_variation_at_event(const struct Instance *instance, const struct 
   return instance->situation->phase == PHASE_EVENT && is_variation(variable);
 }
 
-/* Whether it is a state that the importer may change at an event, as the FMU does not (FMI 3.0.2, section 2.3.6). */
+/* True for a state that the importer may change at an event, since the FMU does not (FMI 3.0.2, section 2.3.6). */
 static bool is_free_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
   return instance->situation->phase == PHASE_EVENT && instance->kind == KIND_MODEL_EXCHANGE &&
          variable->kind == VARIABLE_STATE && !variable->is_reinitialized;
 }
 
-/* Whether this kind of variable may be set now. */
+/* True if variables of this kind may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
@@ -139,7 +136,7 @@ static enum Status refuse_range(struct Instance *instance, const struct ScalarVa
                       is_below ? variable->minimum : variable->maximum);
 }
 
-/* An integrator that went too far may try a shorter step. */
+/* Discards an infinite state of an importer that integrates, which may try a shorter step; an error otherwise. */
 static enum Status refuse_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   static const char format[] = "the value for '%s' is %g; expected a finite number";
   bool may_try_another = variable->kind == VARIABLE_STATE && is_exchanged(instance);
@@ -161,7 +158,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   return STATUS_DONE;
 }
 
-/* A value ends what values_set_input_derivatives() said for an earlier step; what it said for the step to come holds. */
+/* Drops the derivatives that were set for an earlier step; those for the next step stay. */
 static void end_polynomial(struct Instance *instance, size_t input) {
   if (instance->situation->input_derivatives_set) return;
   for (size_t order = 0; order < INPUT_ORDER; order++)

@@ -17,7 +17,7 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
   return fmi2Error;
 }
 
-/* fmi2Discard for what the FMU does not know: a step is never pending. */
+/* Returns fmi2Discard for a status that does not exist: steps are never pending. */
 static fmi2Status unknown_status(fmi2Component c, const char *name) {
   struct Instance *instance = enter(c, FUNCTION_GET_STATUS, name);
   if (instance == NULL) return fmi2Error;
@@ -41,7 +41,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
   return fmi2OK;
 }
 
-/* Of other types there is none that could be known. */
+/* There is no status of other types. */
 #define NO_STATUS(function, type)                                                                                      \
   fmi2Status function(fmi2Component c, const fmi2StatusKind s, fmi2##type *value) {                                    \
     (void)s;                                                                                                           \

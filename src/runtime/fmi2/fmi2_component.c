@@ -1,11 +1,11 @@
-/* Creation and end of an instance, and its messages to the caller's logger (sections 2.1.4 and 2.1.5). */
+/* Creates and frees instances, and sends their messages to the caller's logger (sections 2.1.4 and 2.1.5). */
 #include "fmi2/fmi2_component.h"
 
 #include <string.h>
 
 #include "fmi/log_categories.h"
 
-/* The message is itself a printf format, and '#' introduces a variable in it (section 2.1.5). */
+/* Escapes '%', since the message is a printf format, and '#', which introduces a variable (section 2.1.5). */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
@@ -34,7 +34,7 @@ static bool can_instantiate(const struct Log *log, const char *name, fmi2Type ty
   return false;
 }
 
-/* A component with its core, name and messages; NULL, and nothing is allocated, where there is no memory. */
+/* Creates a component with its instance, name and messages. NULL without memory; then nothing is allocated. */
 static struct Component *component_create(const struct Component *description, enum Kind kind,
                                           const struct Allocator *memory) {
   size_t name_size = strlen(description->name) + 1;
@@ -64,7 +64,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   struct Log log = log_of(&description);
   struct Allocator memory = {functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
-  /* What goes wrong is sent without debug logging too, unless fmi2SetDebugLogging names categories. */
+  /* Warnings and errors are sent without debug logging too, unless fmi2SetDebugLogging names categories. */
   if (!loggingOn) description.categories = PROBLEM_CATEGORIES;
   enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
   struct Component *component = component_create(&description, kind, &memory);

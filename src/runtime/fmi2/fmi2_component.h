@@ -1,23 +1,23 @@
-/* An instance as FMI 2.0 sees it: its core, and what its caller has handed over. */
+/* An instance of FMI 2.0: the core, and the caller's callbacks. */
 #ifndef FMI2_COMPONENT_H
 #define FMI2_COMPONENT_H
 
 #include "fmi2.h"
 #include "instance/instance.h"
 
-/* What an fmi2Component points to. */
+/* An fmi2Component points to this; the instance is its first member. */
 struct Component {
   struct Instance instance;
   fmi2CallbackLogger logger;
   fmi2ComponentEnvironment environment;
   const char *name;
-  unsigned categories; /* bits of the log categories that are enabled */
+  unsigned categories; /* bits of the enabled log categories */
 };
 
-/* Where the component's messages go. */
+/* Returns the receiver of the component's messages. */
 struct Log log_of(struct Component *component);
 
-/* The status that the caller sees. */
+/* Returns the status for the caller. */
 static inline fmi2Status status_of(enum Status status) {
   static const fmi2Status of[] = {[STATUS_DONE] = fmi2OK,
                                   [STATUS_WARNING] = fmi2Warning,

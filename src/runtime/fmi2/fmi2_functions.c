@@ -1,6 +1,6 @@
 /*
- * FMI 2.0 but for values and communication steps: version, experiment, initialization, end, saved states (sections 2.1.4 to 2.1.8),
- * and model exchange (section 3.2).
+ * FMI 2.0 without values and communication steps: version, experiment, initialization, end, saved states (sections
+ * 2.1.4 to 2.1.8), and model exchange (section 3.2).
  */
 #include "fmi/life_cycle.h"
 #include "fmi2/fmi2_component.h"
@@ -14,7 +14,7 @@
 #define fmi2DeserializeFMUState fmi2DeSerializeFMUstate
 #define fmi2GetContinuousStateDerivatives fmi2GetDerivatives
 #define NOMINALS FUNCTION_GET_NOMINALS
-#define QUIET_CATEGORIES PROBLEM_CATEGORIES /* what goes wrong is sent without debug logging too */
+#define QUIET_CATEGORIES PROBLEM_CATEGORIES /* warnings and errors are sent without debug logging too */
 #include "fmi/shared_functions.h"
 
 const char *fmi2GetTypesPlatform(void) {

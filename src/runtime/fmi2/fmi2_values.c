@@ -1,11 +1,11 @@
-/* Getting and setting variables, and their derivatives (sections 2.1.7, 2.1.9 and 4.2.1). */
+/* Values of variables, and their derivatives (sections 2.1.7, 2.1.9 and 4.2.1). */
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
 #include "fmi/life_cycle.h"
 #include "fmi/values.h"
 #include "fmi2/fmi2_component.h"
 
-/* The instance where the function may be called with these arrays; NULL after logging where it may not. */
+/* Returns the instance if the function may be called with these arrays; NULL after logging an error. */
 static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,
                                           const fmi2ValueReference vr[], size_t nvr, const void *value) {
   struct Instance *instance = enter(c, function, name);
@@ -14,7 +14,7 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
   return are_right ? instance : NULL;
 }
 
-/* Of a function that may not discard (section 2.1.3), what it cannot compute is an error. */
+/* Turns fmi2Discard into an error, for functions that may not discard (section 2.1.3). */
 static fmi2Status status_without_discard(struct Instance *instance, enum Status status) {
   if (status != STATUS_DISCARD) return status_of(status);
   instance->situation->phase = PHASE_ERROR;

@@ -1,4 +1,4 @@
-/* FMI for Co-Simulation (section 4.2): communication steps and what is told within them. */
+/* FMI for Co-Simulation (section 4.2): communication steps, and intermediate update within them. */
 #include <string.h>
 
 #include "fmi/check.h"
@@ -6,12 +6,12 @@
 #include "fmi3/fmi3_component.h"
 #include "stepping/steps.h"
 
-/* Calls the importer back; returns when the step shall end in place of end. */
+/* Calls the importer back. Returns the requested end of the step; end if it stays. */
 static double call_back(struct Component *component, double time, double end) {
   bool can_return_early = component->early_return_allowed && time < end;
   fmi3Boolean requested = fmi3False;
   fmi3Float64 requested_time = time;
-  const char *function = component->instance.function; /* the importer may call others */
+  const char *function = component->instance.function; /* the importer may call other functions */
   component->intermediate_update(component->environment, time, fmi3False, fmi3True, fmi3True, can_return_early,
                                  &requested, &requested_time);
   component->instance.function = function;
@@ -24,7 +24,7 @@ static double update(void *receiver, double time, double end) {
   return call_back(receiver, time, end);
 }
 
-/* The same at the end of the step, where the instance is. */
+/* Calls back at the end of the step, in the state of the instance. */
 static void update_at_end(struct Component *component) {
   struct Situation *situation = component->instance.situation;
   if (component->intermediate_update == NULL) return;
@@ -33,7 +33,7 @@ static void update_at_end(struct Component *component) {
   if (situation->phase == PHASE_INTERMEDIATE_UPDATE) situation->phase = PHASE_STEP_COMPLETE;
 }
 
-/* Observes the steps of an instance whose importer wants to know of them. */
+/* Observes the solver's steps if the importer wants intermediate updates. */
 static void observe(struct Component *component) {
   if (component->intermediate_update == NULL) return;
   component->intermediate.update = update;
@@ -63,7 +63,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   /* The instance is as before the call (section 2.2.3); an early return would hide that the motion ends. */
   if (status == STATUS_DISCARD) instance_restore(instance, component->before);
   if (status == STATUS_DONE && instance->situation->phase == PHASE_STEP_COMPLETE) update_at_end(component);
-  /* What went wrong in the callback was logged. */
+  /* An error in the callback was logged. */
   if (instance->situation->phase == PHASE_ERROR) status = STATUS_ERROR;
   bool is_at_event = status == STATUS_DONE && instance->situation->waiting_event != 0;
   bool is_early = is_at_event && instance->situation->time < currentCommunicationPoint + communicationStepSize;

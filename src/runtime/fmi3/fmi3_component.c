@@ -1,4 +1,4 @@
-/* Creation and end of an instance, and its messages to the caller's logger (section 2.3.1). */
+/* Creates and frees instances, and sends their messages to the caller's logger (section 2.3.1). */
 #include "fmi3/fmi3_component.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "fmi3/fmi3_memory.h"
 #include "fmi3/fmi3_references.h"
 
-/* '#' introduces a variable in a message. */
+/* Escapes '#', which introduces a variable in a message. */
 static void send(void *receiver, enum Status status, const char *message) {
   const struct Component *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
@@ -25,7 +25,7 @@ static unsigned categories_of(bool logging) {
   return logging ? ALL_CATEGORIES : 0;
 }
 
-/* Checks the arguments that all kinds have. */
+/* Checks the arguments that all kinds of instances have. */
 static bool can_instantiate(const struct Log *log, const char *name, const char *token, const char *function) {
   if (name == NULL || name[strspn(name, " \t\r\n")] == '\0')
     log_write(log, STATUS_ERROR, "%s: the instance has no name; expected one", function);
@@ -36,7 +36,7 @@ static bool can_instantiate(const struct Log *log, const char *name, const char 
   return false;
 }
 
-/* Whether the variables exist and have values within a communication step. */
+/* True if the variables exist and have values within a communication step. */
 static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference *references, size_t count,
                                 const char *function) {
   if (references == NULL && count > 0) {
@@ -55,7 +55,7 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
   return true;
 }
 
-/* What a new component is made of; NULL, and nothing is allocated, where there is no memory. */
+/* Creates a component. NULL without memory; then nothing is allocated. */
 static struct Component *component_create(const struct Component *description, enum Kind kind) {
   struct Component *component = fmi3_memory.allocate(1, sizeof *component);
   void *before = fmi3_memory.allocate(1, situation_size()), *kept = fmi3_memory.allocate(1, situation_size());

@@ -1,37 +1,37 @@
-/* An instance as FMI 3.0 sees it: its core, and what its caller has handed over. */
+/* An instance of FMI 3.0: the core, and the caller's callbacks. */
 #ifndef FMI3_COMPONENT_H
 #define FMI3_COMPONENT_H
 
 #include "fmi3.h"
 #include "stepping/intermediate.h"
 
-/* For what a function makes of its arguments. */
+/* Uses of workspace for converted arguments. */
 enum WorkspaceUse { WORKSPACE_REFERENCES, WORKSPACE_KNOWNS, WORKSPACE_VALUES, WORKSPACE_COUNT };
 
-/* Memory that grows. */
+/* A block that grows on demand; size in bytes. */
 struct Workspace {
   void *block;
   size_t size;
 };
 
-/* What an fmi3Instance points to. */
+/* An fmi3Instance points to this; the instance is its first member. */
 struct Component {
   struct Instance instance;
   fmi3LogMessageCallback logger;
   fmi3InstanceEnvironment environment;
-  unsigned categories;                                /* of the log, that are enabled */
+  unsigned categories;                                /* bits of the enabled log categories */
   fmi3IntermediateUpdateCallback intermediate_update; /* NULL for none */
   struct Intermediate intermediate;
   bool early_return_allowed;
   bool has_returned_early; /* the callback asked for the end of the step */
-  void *before;            /* the situation before a communication step */
+  void *before;            /* the snapshot before a communication step */
   struct Workspace workspaces[WORKSPACE_COUNT];
 };
 
-/* Where the component's messages go. */
+/* Returns the receiver of the component's messages. */
 struct Log log_of(struct Component *component);
 
-/* The status that the caller sees. */
+/* Returns the status for the caller. */
 static inline fmi3Status status_of(enum Status status) {
   static const fmi3Status of[] = {[STATUS_DONE] = fmi3OK,
                                   [STATUS_WARNING] = fmi3Warning,

@@ -1,13 +1,13 @@
-/* Partial derivatives, derivatives of outputs by time, and dependencies (sections 2.2.9, 2.2.11 and 4.2.1). */
+/* Partial derivatives, time derivatives of outputs, and dependencies (sections 2.2.9, 2.2.11 and 4.2.1). */
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
 #include "fmi/life_cycle.h"
 #include "fmi3/fmi3_component.h"
 #include "fmi3/fmi3_references.h"
 
-/* Scalars that a partial derivative is asked of. */
+/* The scalars of a partial derivative. */
 struct Partial {
-  const unsigned *unknowns, *knowns; /* NULL after logging where the arguments are wrong */
+  const unsigned *unknowns, *knowns; /* NULL after logging wrong arguments */
 };
 
 static struct Partial enter_with_partial(fmi3Instance c, const char *name, const fmi3ValueReference unknowns[],
@@ -39,7 +39,7 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unk
   return status_of(adjoint_derivative(c, partial.unknowns, nSeed, partial.knowns, nSensitivity, seed, sensitivity));
 }
 
-/* One order for each variable, of which an array has several values. */
+/* Each variable has one order, an array has several values. */
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Int32 orders[],
                                     fmi3Float64 values[], size_t nValues) {
   struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
@@ -47,7 +47,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
   const unsigned *references = expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues});
   int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of);
   if (references == NULL || order_of == NULL) return fmi3Error;
-  /* The variable begins where its place is met. */
+  /* The next variable begins at its index. */
   for (size_t k = 0, i = 0; k < nValues; k++) {
     if (i < nvr && references[k] == place_of_reference(vr[i])) i++;
     order_of[k] = orders[i - 1];
@@ -55,7 +55,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
   return status_of(output_derivatives(instance, references, nValues, order_of, values));
 }
 
-/* modelDescription.xml tells of variables as a whole; providesPerElementDependencies is false. */
+/* Dependencies in modelDescription.xml are those of whole variables: providesPerElementDependencies is false. */
 static fmi3Status no_dependencies(fmi3Instance c, const char *name) {
   struct Instance *instance = enter(c, FUNCTION_GET_DEPENDENCIES, name);
   if (instance == NULL) return fmi3Error;

@@ -1,6 +1,6 @@
 /*
- * FMI 3.0 but for values and communication steps: version, initialization, end, saved states (sections 2.2.10 and 2.3), and events
- * and model exchange (section 3.2).
+ * FMI 3.0 without values and communication steps: version, initialization, end, saved states (sections 2.2.10 and 2.3),
+ * events and model exchange (section 3.2).
  */
 #include "fmi/life_cycle.h"
 #include "fmi3/fmi3_component.h"
@@ -36,7 +36,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
   return status_of(status);
 }
 
-/* There are no structural parameters that could be configured. */
+/* There are no structural parameters to configure. */
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) {
   enter(c, FUNCTION_NEVER, __func__);
   return fmi3Error;

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 /*
- * In a library with SUNDIALS the linker sends calls of calloc and free to sundials_memory.c, which asks the instance's
- * allocator: this one. It has to have the functions of the C library themselves.
+ * In a library with SUNDIALS, the linker sends calloc and free to sundials_memory.c, which calls the instance's
+ * allocator: this one. So it must call the functions of the C library themselves.
  */
 #ifdef MEMORY_IS_WRAPPED
 void *__real_calloc(size_t count, size_t size);

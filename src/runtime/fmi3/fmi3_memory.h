@@ -1,4 +1,4 @@
-/* The memory of instances, which FMI 3.0 leaves to the FMU: that of the C library. */
+/* Memory of instances, which FMI 3.0 leaves to the FMU: that of the C library. */
 #ifndef FMI3_MEMORY_H
 #define FMI3_MEMORY_H
 

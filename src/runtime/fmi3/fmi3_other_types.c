@@ -1,8 +1,8 @@
-/* Types of which there are no variables, and clocks (sections 2.2.6 and 2.2.8). */
+/* Types without variables, and clocks (sections 2.2.6 and 2.2.8). */
 #include "fmi/values.h"
 #include "fmi3/fmi3_component.h"
 
-/* The functions of one type. */
+/* Defines the functions of one type. */
 #define NO_VARIABLES(type, setter)                                                                                     \
   fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3##type values[],             \
                            size_t nValues) {                                                                           \
@@ -29,7 +29,7 @@ NO_VARIABLES(UInt16, FUNCTION_SET_DISCRETE)
 NO_VARIABLES(UInt32, FUNCTION_SET_DISCRETE)
 NO_VARIABLES(UInt64, FUNCTION_SET_DISCRETE)
 NO_VARIABLES(String, FUNCTION_SET_DISCRETE)
-/* Those of the type Int64 are statistics, which can be read alone. */
+/* Variables of type Int64 are statistics, which are read-only. */
 NO_SETTER(Int64, FUNCTION_SET_DISCRETE)
 
 fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, size_t valueSizes[],
@@ -50,7 +50,7 @@ fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference vr[], size_t n
   return status_of(values_none(c, FUNCTION_SET_DISCRETE, nvr, __func__));
 }
 
-/* A function for clocks, with its further parameters. */
+/* Defines a function for clocks, with its further parameters. */
 #define NO_CLOCKS(function, parameters, ...)                                                                           \
   fmi3Status function parameters {                                                                                     \
     const void *unused[] = {__VA_ARGS__};                                                                              \

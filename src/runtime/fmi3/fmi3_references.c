@@ -3,14 +3,17 @@
 #include "fmi/check.h"
 #include "fmi3/fmi3_memory.h"
 
-/* The array with the variable of this place in it; NULL for a scalar. */
+/* Returns the array that contains the variable of this index; NULL for a scalar. */
 static const struct ArrayVariable *array_with(unsigned place) {
   for (size_t i = 0; i < lagrangian.array_count; i++)
     if (place - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
   return NULL;
 }
 
-/* How many values the variables have. False after logging where a reference is of no variable, or of an element alone. */
+/*
+ * Counts the values of the variables. False, after logging an error, if a reference is unknown or that of an array's
+ * element.
+ */
 static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count) {
   *count = 0;
   for (size_t i = 0; i < nvr; i++) {

@@ -1,11 +1,11 @@
-/* Getting and setting variables of the types that there are (sections 2.2.6 and 2.4.7). */
+/* Values of variables of the types in use (sections 2.2.6 and 2.4.7). */
 #include "fmi/check.h"
 #include "fmi/life_cycle.h"
 #include "fmi/values.h"
 #include "fmi3/fmi3_component.h"
 #include "fmi3/fmi3_references.h"
 
-/* The references of scalars where the function may be called with these arrays; NULL after logging where it may not. */
+/* Returns the indices of scalars if the function may be called with these arrays; NULL after logging an error. */
 static const unsigned *enter_with_values(fmi3Instance c, enum Function function, const char *name,
                                          const fmi3ValueReference vr[], size_t nvr, const void *values,
                                          size_t nValues) {
@@ -27,14 +27,14 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
   return status_of(values_set(c, references, nValues, values));
 }
 
-/* Counts of the statistics are of the type Int64. */
+/* Statistics have the type Int64. */
 fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int64 values[], size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
   return status_of(values_get_counts(c, references, nValues, values));
 }
 
-/* Parameters of whole numbers are of the type Int32. */
+/* Integer parameters have the type Int32. */
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Int32 values[], size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;

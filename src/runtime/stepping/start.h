@@ -1,6 +1,4 @@
-/*
- * Starts of the simulation and of each step: fulfils the constraints and finds the modes for the values that were set.
- */
+/* Starts the simulation and each of its steps: fulfils the constraints, and finds the modes, for the values set. */
 #ifndef START_H
 #define START_H
 

@@ -34,7 +34,7 @@ static inline Real *at(Real *const *base, Place place) {
   return base[place >> PLACE_BITS] + (place & INDEX_MASK);
 }
 
-/* Returns 0, or the number of the coordinate in which the block is singular. */
+/* Factors a block of M. Returns 0, or 1 + the coordinate in which it is singular. */
 static int factor(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
   Real *mass = frame->base[SPACE_MASS] + block->first_mass;
@@ -62,8 +62,8 @@ static void take_least_forces(const struct Frame *frame, size_t number) {
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
 
 /*
- * Ends a case: does the same for all count instructions of a run, of so many words each, which name the result R and the
- * operands A, B and C in their spaces. Of series, these are coefficients k, and ROW_R the whole row.
+ * Ends a case: executes all count instructions of a run, each of size words. R is the result, and A, B and C are the
+ * operands, in their spaces. In series they are coefficients k; ROW_R and the like are whole rows.
  */
 #define EACH(size, ...)                                                                                                \
   for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                              \
@@ -77,7 +77,7 @@ enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
 #define ROW_B (row_b + code[2])
 #define ROW_C (row_c + code[3])
 
-/* Of the operand with this number, 0 for the result, in all instructions of a run. */
+/* Returns the space of an operand, 0 for the result, in all instructions of a run. */
 static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
@@ -130,7 +130,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
       break;
     case SOLVE: EACH(1, solve(frame, code[0]));
     case LEAST_FORCES: EACH(1, take_least_forces(frame, code[0]));
-    default: return -1; /* lagc writes no other */
+    default: return -1; /* lagc writes no other opcode */
     }
   }
 }
@@ -177,7 +177,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
     case SERIES_STATE: EACH(2, (&R)[1] = A * reciprocal[k + 1]);
     case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
-    default: return; /* lagc writes no other */
+    default: return; /* lagc writes no other opcode */
     }
   }
 }

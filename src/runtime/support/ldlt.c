@@ -1,6 +1,6 @@
 #include "ldlt.h"
 
-/* A pivot below this share of its diagonal element has lost all its digits. */
+/* A pivot below this fraction of its diagonal element has lost all its digits. */
 static const double smallest_pivot = 1e-14;
 
 static size_t factor_full(size_t n, Real *m) {

@@ -1,6 +1,7 @@
 /*
- * Matrices with a row and a column for each velocity and each state behind them, factored as L U, for implicit methods: of real or complex
- * numbers (number.h). lagc chooses what is cheaper for a system, lagrangian.implicit.lu, and an FMU links that alone.
+ * LU factorization of matrices with a row and a column for each velocity and each state behind them, for implicit
+ * methods. Elements are real or complex (number.h). lagc chooses the cheaper form for a system, lagrangian.implicit.lu,
+ * and an FMU links that one.
  */
 #ifndef LU_H
 #define LU_H
@@ -13,25 +14,27 @@ static inline size_t lu_rows(void) {
 }
 
 struct Lu {
-  /* Doubles that a matrix takes, and its factors. */
+  /* Returns the doubles that a matrix, and later its factors, takes. */
   size_t (*size)(size_t width);
-  /* Which of the matrix's numbers is the element in this row and column. */
+  /* Returns the index of the element in this row and column. */
   size_t (*place)(size_t row, size_t column);
-  /* Turns a matrix into its factors; work holds two numbers a row. False where it is singular to rounding. */
+  /* Replaces a matrix by its factors. work: two numbers a row. False if the matrix is singular to rounding. */
   bool (*factor)(size_t width, double *matrix, double *work);
-  /* Turns the right side x into the solution; work holds a number a row. */
+  /* Replaces the right side x by the solution. work: one number a row. */
   void (*solve)(size_t width, const double *factors, double *x, double *work);
 };
 
-/* By rows, with row pivots. */
+/* Dense, by rows, with partial pivoting: about n^3 / 3 multiplications. */
 extern const struct Lu lu_dense;
 
 /*
- * In lagrangian.implicit.lu_pattern, whose order is fixed: pivots are those on the diagonal. Where a pivot has lost its digits,
- * the matrix counts as singular, as it may be for a long step; for short ones, mu^2 in the diagonal dominates. With
- * dampers and springs, M (mu + damping + stiffness / mu) has a positive definite real part for each mu of Radau IIA,
- * and needs no other pivots (R. Mathias: Matrices with positive definite Hermitian part, SIAM Journal on Matrix
- * Analysis and Applications 13, 1992).
+ * Sparse, in the pattern lagrangian.implicit.lu_pattern, whose elimination order is fixed: the pivots are those on the
+ * diagonal.
+ *
+ * A matrix whose pivot has lost its digits counts as singular, as may happen for a long step; for short steps, mu^2
+ * dominates the diagonal. With dampers and springs, M (mu + damping + stiffness / mu) has a positive definite real part
+ * for each mu of Radau IIA, and needs no other pivots (R. Mathias: Matrices with positive definite Hermitian part, SIAM
+ * Journal on Matrix Analysis and Applications 13, 1992).
  */
 extern const struct Lu lu_sparse;
 

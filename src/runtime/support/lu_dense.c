@@ -2,7 +2,7 @@
 
 #include "support/lu.h"
 
-/* The pivots follow the n x n numbers. */
+/* The n pivot rows follow the n x n elements. */
 static size_t dense_size(size_t width) {
   size_t n = lu_rows();
   return width * n * n + n;
@@ -12,7 +12,7 @@ static size_t dense_place(size_t row, size_t column) {
   return row * lu_rows() + column;
 }
 
-/* sum -= a b for count numbers of sum and b */
+/* Subtracts a b from sum, for count elements of sum and b. */
 static void subtract_multiple(size_t width, size_t count, double *restrict sum, const double *a,
                               const double *restrict b) {
   if (width == REAL)
@@ -21,7 +21,7 @@ static void subtract_multiple(size_t width, size_t count, double *restrict sum, 
     for (size_t i = 0; i < count; i++) number_subtract_product(COMPLEX, sum + 2 * i, a, b + 2 * i);
 }
 
-/* The row from k on whose element in column k is largest. */
+/* Returns the row, from k on, with the largest element in column k. */
 static size_t pivot_row(size_t width, size_t n, const double *matrix, size_t k) {
   size_t best = k;
   for (size_t i = k + 1; i < n; i++)

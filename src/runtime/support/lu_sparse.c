@@ -2,10 +2,13 @@
 
 #include "support/lu.h"
 
-/* A pivot below this share of what it was before the elimination, or of what was subtracted, has lost all its digits. */
+/* A pivot has lost its digits below this fraction of its value before the elimination, or of the subtracted terms. */
 static const double smallest_pivot_share = 1e-14;
 
-/* L by rows with the inverse pivots, then U by columns: the same pattern, whose places for the diagonal stay empty. */
+/*
+ * Elements of a triangle: L by rows with inverse pivots. U by columns follows, in the same pattern; its diagonal is
+ * unused.
+ */
 static size_t element_count(void) {
   return (size_t)lagrangian.implicit.lu_pattern.start[lu_rows()];
 }
@@ -22,7 +25,7 @@ static size_t sparse_place(size_t row, size_t column) {
   return (size_t)k + (i < j ? element_count() : 0);
 }
 
-/* sum -= a[k] x[column[k]] for each k from first to end - 1 */
+/* Subtracts a[k] x[column[k]] from sum, for k from first to end - 1. */
 static void subtract_products(size_t width, int first, int end, double *sum, const double *a, const double *x) {
   const int *column = lagrangian.implicit.lu_pattern.column;
   if (width == REAL)
@@ -36,8 +39,8 @@ static void copy_number(size_t width, double *to, const double *from) {
 }
 
 /*
- * Row i of L and column i of U, from the rows and columns before: both solve a triangular system. The vectors of work
- * hold them in their places and are 0 elsewhere, before and after. False where the pivot is lost.
+ * Computes row i of L and column i of U: each solves a triangular system of the rows and columns before. row and column
+ * hold them at their full indices, and are 0 elsewhere, before and after. False if the pivot is lost.
  */
 static bool factor_row(size_t width, size_t i, double *l, double *u, double *row, double *column) {
   const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;

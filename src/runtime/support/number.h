@@ -1,4 +1,4 @@
-/* Numbers for code that is the same for real and complex ones: a width of doubles, the real and the imaginary part. */
+/* Arithmetic for code that serves real and complex elements: of width doubles, the real and the imaginary part. */
 #ifndef NUMBER_H
 #define NUMBER_H
 

@@ -6,17 +6,17 @@
 
 #include "saddle.h"
 
-/* A pivot of 1 + E^T S C below this says that the forces have no solution, or many: friction that locks. */
+/* Smallest pivot of 1 + E^T S C. Below it the forces have no solution, or many: friction that locks. */
 static const double smallest_locking_pivot = 1e-12;
 
-/* Where the parts of m behind those of the symmetric matrix are. */
+/* Offsets of the parts of m behind those of the symmetric matrix. */
 struct Oblique {
   size_t count;     /* r */
-  const int *force; /* the row of each */
+  const int *force; /* rows of the forces from which others follow */
   size_t c;         /* C */
   size_t response;  /* S C */
   size_t factor;    /* 1 + E^T S C, later its factors L U, by rows */
-  size_t pivot;     /* the row that was taken for each column */
+  size_t pivot;     /* pivot row of each column */
   size_t side;      /* SADDLE_SIDE(n) */
 };
 
@@ -40,7 +40,7 @@ static void swap_rows(double *a, size_t columns, size_t first, size_t second) {
   }
 }
 
-/* Gauss elimination of r rows a. False where the matrix is singular. */
+/* Factors the r x r matrix a by rows, with partial pivoting. False if it is singular. */
 static bool eliminate_small(size_t r, double *a, double *pivot) {
   for (size_t k = 0; k < r; k++) {
     size_t best = k;
@@ -67,14 +67,14 @@ static void solve_small(size_t r, const double *a, const double *pivot, double *
   }
 }
 
-/* With the forces of least norm, of which the others are to follow: of all they are those of contacts that are equally stiff. */
+/* Solves with least-norm constraint forces, those of equally stiff contacts, for other forces to follow from. */
 static void solve_symmetric(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                             double *x) {
   saddle_solve(n, start, column, m, x);
   saddle_least_forces(n, start, column, coordinate, m, x);
 }
 
-/* Forces that nothing follows from at present have no part. */
+/* True if a column of C is not 0: some force follows from it at present. */
 static bool has_part(size_t n, const double *column_of_c) {
   bool has = false;
   for (size_t i = 0; i < n; i++) has |= column_of_c[i] != 0.0;
@@ -100,7 +100,7 @@ size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const
 void oblique_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                    double *x) {
   struct Oblique oblique = oblique_of(n, start, coordinate);
-  double *push = x + n; /* is free, as r < n */
+  double *push = x + n; /* free, as r < n */
   solve_symmetric(n, start, column, coordinate, m, x);
   for (size_t i = 0; i < oblique.count; i++) push[i] = x[oblique.force[i]];
   solve_small(oblique.count, m + oblique.factor, m + oblique.pivot, push);

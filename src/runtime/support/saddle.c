@@ -1,3 +1,15 @@
+/*
+ * Factors and solves saddle point systems K (a, F) = b with K = (M J^T; J 0), where constraints may be redundant (M.
+ * Benzi, G. H. Golub, J. Liesen: Numerical solution of saddle point problems, Acta Numerica 14, 2005, gives an
+ * overview).
+ *
+ * K = L D L^T exists without pivoting, since each constraint comes after its coordinates. Its pivot is minus what
+ * remains of its diagonal element of J M^-1 J^T. It costs the multiplications of the sparse pattern.
+ *
+ * If nothing remains, up to rounding, the constraint is redundant: its pivot becomes infinite, and its force 0. For
+ * such a row i, L^-T e_i holds forces z with J^T z = 0. Orthogonalized, they are a basis of the null space of J^T.
+ * Subtracting from the forces their parts along the basis gives those of least Euclidean norm with the same J^T F.
+ */
 #include "saddle.h"
 
 #include <math.h>
@@ -6,7 +18,7 @@
 
 #include "ldlt.h"
 
-/* rest -= K x */
+/* Subtracts K x from rest. */
 static void subtract_product(size_t n, const size_t *start, const size_t *column, const Real *matrix, const Real *x,
                              Real *rest) {
   for (size_t i = 0; i < n; i++)
@@ -17,7 +29,7 @@ static void subtract_product(size_t n, const size_t *start, const size_t *column
     }
 }
 
-/* x = L^-T e_i, of the rows up to i. */
+/* Computes x = L^-T e_i in the rows up to i. */
 static void combine(const size_t *start, const size_t *column, const Real *m, size_t i, Real *x) {
   memset(x, 0, i * sizeof *x);
   x[i] = REAL(1.0);
@@ -25,7 +37,7 @@ static void combine(const size_t *start, const size_t *column, const Real *m, si
     for (size_t k = start[row]; k + 1 < start[row + 1]; k++) x[column[k]] -= m[k] * x[row];
 }
 
-/* w^T M w of the coordinates before row i. */
+/* Returns w^T M w of the coordinates before row i. */
 static Real square_by_mass(const size_t *start, const size_t *column, const int *coordinate, const Real *matrix,
                            size_t i, const Real *w) {
   Real sum = REAL(0.0);
@@ -36,8 +48,8 @@ static Real square_by_mass(const size_t *start, const size_t *column, const int 
 }
 
 /*
- * The pivot of constraint i with another sign, as the square of the motion w that the constraint and those before it leave
- * each other: it has the digits of w, where the pivot is a difference of squares, and w is refined.
+ * Returns minus the pivot of constraint i as w^T M w, where w is the motion that the constraints before it leave free
+ * along it. This has the digits of w, while the pivot is a difference of squares. w is refined once by its residual.
  */
 static Real hold_of(const size_t *start, const size_t *column, const int *coordinate, const Real *m, const Real *matrix,
                     size_t i, Real *w) {
@@ -50,26 +62,26 @@ static Real hold_of(const size_t *start, const size_t *column, const int *coordi
   return square_by_mass(start, column, coordinate, matrix, i, w);
 }
 
-/* Whether a constraint has a row: that of an open contact has none, and takes part in nothing. */
+/* True if a constraint has a row: that of an open contact is 0, and takes no part. */
 static Condition has_row(const size_t *start, const Real *m, size_t i) {
   Real sum = REAL(0.0);
   for (size_t k = start[i]; k + 1 < start[i + 1]; k++) sum += fabs(m[k]);
   return sum != 0.0;
 }
 
-/* Column c of the balances, see below; they stand behind the workspace. */
+/* Returns the offset of null-space vector c, which follows the workspace. */
 static size_t place_of_balance(size_t n, const size_t *start, size_t c) {
   return 2 * start[n] + 1 + 2 * n + c * (c + 1) / 2;
 }
 
-/* What a column of the balances and c + 1 forces have in common, by the square of the column's length. */
+/* Returns the component of c + 1 forces along a null-space vector, in units of the vector. */
 static Real share_along(size_t c, const Real *balance, const Real *force) {
   Real product = force[c];
   for (size_t k = 0; k < c; k++) product += balance[k] * force[k];
   return product * balance[c];
 }
 
-/* Takes from forces what they have along a column of the balances. */
+/* Subtracts from the forces their part along a null-space vector. */
 static void take_along(size_t c, const Real *balance, Real *force) {
   if (!ANYWHERE(balance[c] > 0.0)) return;
   Real share = share_along(c, balance, force);
@@ -78,9 +90,9 @@ static void take_along(size_t c, const Real *balance, Real *force) {
 }
 
 /*
- * Constraint c, which follows from others at row i where its pivot is infinite: L^-T e_i holds forces that balance each other. Less
- * what they have along the columns before, twice because of rounding, they are a column of the balances: numbers of the constraints
- * up to c, of which its own is 1 and not kept. In its place stands 1 by the square of the length, 0 where there is no column.
+ * Computes the null-space vector of constraint c, in row i, if it is redundant: L^-T e_i, orthogonalized twice against
+ * those before it because of rounding. It has an element for each constraint up to c. The element of c is 1 and is not
+ * stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
  */
 static void balance_constraint(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
                                size_t i, size_t c) {
@@ -147,7 +159,7 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const Rea
   for (size_t i = 0; i < n; i++) x[i] = WHERE(is_weak, x[i] + rest[i], x[i]);
 }
 
-/* The forces in x less what they have along all balances: the shortest with the same load. */
+/* Subtracts from the forces in x their parts along all null-space vectors. */
 static void shorten_forces(size_t n, const size_t *start, const int *coordinate, const Real *m, Real *x) {
   Real *force = x + n;
   size_t count = 0;
@@ -158,7 +170,7 @@ static void shorten_forces(size_t n, const size_t *start, const int *coordinate,
     if (coordinate[i] < 0) x[i] = force[--count];
 }
 
-/* Gives the forces in x the load J^T F of others. */
+/* Corrects the forces in x so that they have the same J^T F as others. */
 static void carry_load(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                        const Real *others, Real *x) {
   Real *missing = x + n, *load = missing + n;
@@ -183,7 +195,10 @@ static bool has_balances(size_t n, const size_t *start, const int *coordinate, c
   return has;
 }
 
-/* They balance only as well as the constraints before those that follow have hold: what that spoils is mended once. */
+/*
+ * The null-space vectors lose digits if other constraints are nearly redundant. So J^T F is restored once, and the
+ * result shortened again.
+ */
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x) {
   Real *given = x + 3 * n;
