@@ -1,3 +1,21 @@
+/*
+ * Convex hull of a mesh by incremental insertion of the farthest point, as in Quickhull. Points are rounded to a grid
+ * of STEPS steps along the largest side of the bounding box. So the sign of
+ *
+ *   det(b - a, c - a, p - a),
+ *
+ * positive if p is outside of face abc, is exact in 64-bit integers: coincident and coplanar points need no special
+ * cases.
+ *
+ * The hull begins as a tetrahedron of distant points. Each step finds the point farthest from the hull and removes the
+ * faces that see it. It connects the horizon, the boundary of these faces, to the point. The loop ends when no point is
+ * farther than the tolerance, or at MOST_CORNERS corners. Corners within the tolerance of the hull of the others are
+ * then removed; if the hull was full, the search is repeated without them. A step costs points times faces, so that the
+ * total is linear in the number of points.
+ *
+ * C. B. Barber, D. P. Dobkin, H. Huhdanpaa, The Quickhull algorithm for convex hulls, ACM Trans. Math. Softw. 22
+ * (1996).
+ */
 #include "read/meshes/hull.h"
 
 #include <math.h>
@@ -7,26 +25,29 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
-/* On this grid a determinant of three differences is below 6 * 2^60 in size, which 64 bits hold. */
+/*
+ * Steps of the grid along the largest side: a determinant of three differences is at most 6 * 2^60, which fits in 64
+ * bits. A closed triangulated surface has fewer faces than twice its corners (Euler).
+ */
 enum { STEPS = 1 << 20, MOST_FACES = 2 * MOST_CORNERS };
-static const double tolerance = 1e-5 * STEPS, tie = 2.0; /* steps */
+static const double tolerance = 1e-5 * STEPS, tie = 2.0; /* in steps */
 
 /* A point on the grid. */
 struct Site {
   int64_t at[3];
-  size_t point;     /* of the mesh */
-  bool is_needless; /* as a corner */
+  size_t point;     /* index into the mesh's points */
+  bool is_needless; /* not needed as a corner */
 };
 
-/* Seen from outside its corners run anticlockwise. */
+/* A triangle whose corners run anticlockwise seen from outside. */
 struct Face {
   const struct Site *corners[3];
-  int64_t normal[3]; /* outwards */
-  double length;     /* of that */
+  int64_t normal[3]; /* outward, not normalised */
+  double length;     /* of the normal */
 };
 
 struct Hull {
-  struct Face faces[2 * MOST_FACES]; /* with room for those that replace others */
+  struct Face faces[2 * MOST_FACES]; /* with room for new faces during a step */
   size_t face_count;
   const struct Site *corners[MOST_CORNERS];
   size_t corner_count;
@@ -60,14 +81,17 @@ static struct Face face_of(const struct Site *a, const struct Site *b, const str
   return face;
 }
 
-/* Its sign is exact: above 0 beyond the face. */
+/* Returns the determinant above: positive if the site is outside of the face. The sign is exact. */
 static int64_t height_over(const struct Face *face, const struct Site *site) {
   int64_t up[3];
   difference(site, face->corners[0], up);
   return face->normal[0] * up[0] + face->normal[1] * up[1] + face->normal[2] * up[2];
 }
 
-/* How far it is beyond the face that it is farthest from, in steps; not above 0 in the hull. */
+/*
+ * Returns the largest signed distance of the site from a face, in steps, and sets that face. The site is in the hull if
+ * it is not positive.
+ */
 static double beyond(const struct Hull *hull, const struct Site *site, const struct Face **farthest) {
   double most = -INFINITY;
   for (size_t i = 0; i < hull->face_count; i++) {
@@ -79,7 +103,7 @@ static double beyond(const struct Hull *hull, const struct Site *site, const str
   return most;
 }
 
-/* Whether one of these faces has the edge from a to b. */
+/* True if one of these faces has the directed edge from a to b. */
 static bool has_edge(const struct Face *faces, size_t count, const struct Site *a, const struct Site *b) {
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < 3; k++)
@@ -87,7 +111,10 @@ static bool has_edge(const struct Face *faces, size_t count, const struct Site *
   return false;
 }
 
-/* The faces that see the site give way to those from it to their rim. What lies in its plane does not see it. */
+/*
+ * Inserts a corner: replaces the faces that see it by triangles between it and their horizon. Coplanar faces do not see
+ * it.
+ */
 static void add_corner(struct Hull *hull, const struct Site *site) {
   struct Face seeing[2 * MOST_FACES];
   size_t seeing_count = 0, kept = 0;
@@ -103,7 +130,10 @@ static void add_corner(struct Hull *hull, const struct Site *site) {
   hull->corners[hull->corner_count++] = site;
 }
 
-/* A tetrahedron of sites that are far from each other; false where all are within the tolerance of a plane. */
+/*
+ * Sets the hull to a tetrahedron of distant sites. Returns false if all sites are nearer than `nearest` to a line or
+ * plane.
+ */
 static bool begin_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest) {
   const struct Site *corners[4] = {sites, sites, sites, sites};
   double most[4] = {0.0};
@@ -136,7 +166,10 @@ static bool begin_hull(struct Hull *hull, const struct Site *sites, size_t count
   return true;
 }
 
-/* Of those as far as the farthest, to roundings, the one that is farthest from the middle of its face: a corner of them. */
+/*
+ * Returns, of the sites within `tie` of the farthest, the one farthest from the face's corners. It is a corner of the
+ * convex hull of these sites.
+ */
 static const struct Site *choose_farthest(const struct Site **sites, size_t count, const struct Face *face,
                                           double height) {
   const struct Site *chosen = sites[0];
@@ -152,7 +185,10 @@ static const struct Site *choose_farthest(const struct Site **sites, size_t coun
   return chosen;
 }
 
-/* False where the sites are in a plane. *lack: how far the farthest that is left out lies beyond a face, in steps. */
+/*
+ * Inserts sites until none is farther than `nearest`, or the hull is full. Returns false if all sites lie in a plane.
+ * *lack: largest distance of a site from the hull's faces, in steps.
+ */
 static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest, double *lack) {
   if (!begin_hull(hull, sites, count, nearest)) return false;
   const struct Site **outside = allocate(count, sizeof(struct Site *));
@@ -177,7 +213,10 @@ static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count,
   return true;
 }
 
-/* Whether the hull of the others reaches as far, to the tolerance: a point in a face or an edge, by roundings beyond it. */
+/*
+ * True if the corner is within the tolerance of the hull of the others. Rounding makes such corners of points in faces
+ * and edges.
+ */
 static bool is_needless(const struct Hull *hull, size_t corner) {
   struct Site others[MOST_CORNERS];
   size_t count = 0;
@@ -196,7 +235,7 @@ static int compare_sites(const void *first, const void *second) {
   return compare_sizes(&a->point, &b->point);
 }
 
-/* On the grid, each site once, by the first of its points. */
+/* Rounds the points to the grid and removes duplicates. Returns the number of sites and sets the grid's step in m. */
 static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *step) {
   double least[3], side = mesh_side(mesh, least);
   *step = side > 0.0 ? side / STEPS : 1.0;
@@ -214,7 +253,7 @@ static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *st
   return count;
 }
 
-/* Takes needless corners out of the hull, and marks their sites; returns how many. */
+/* Removes the corners that are not needed from the hull and marks their sites. Returns their number. */
 static size_t drop_needless(struct Hull *hull, struct Site *sites) {
   size_t dropped = 0, i = 0;
   while (i < hull->corner_count) {
@@ -228,7 +267,7 @@ static size_t drop_needless(struct Hull *hull, struct Site *sites) {
   return dropped;
 }
 
-/* Without those that are marked; returns how many are left. */
+/* Removes marked sites; returns the number left. */
 static size_t drop_marked(struct Site *sites, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++)
@@ -243,7 +282,7 @@ bool mesh_find_corners(struct Mesh *mesh) {
   size_t count = find_sites(mesh, sites, &step), dropped = 0;
   struct Hull hull = {.corner_count = 0};
   bool is_full = false;
-  do { /* where needless corners took the room of others, again without them */
+  do { /* if needless corners filled the hull, repeat without them */
     count = drop_marked(sites, count);
     if (!grow_hull(&hull, sites, count, tolerance, &lack)) hull.corner_count = 0;
     is_full = hull.corner_count == MOST_CORNERS;

@@ -10,9 +10,10 @@
 #include "read/meshes/obj.h"
 #include "read/meshes/stl.h"
 
+/* Bytes: largest file, enough for a million triangles as text, and the unit of reading. */
 enum { LENGTH_LIMIT = 500000000, CHUNK = 1 << 16 };
 
-/* All bytes with a 0 behind them; NULL with the problem where they cannot be read. */
+/* Returns all bytes of the file followed by a terminating zero; NULL with a message in *problem on errors. */
 static char *bytes_of_file(const char *path, size_t *length, char **problem) {
   FILE *file = fopen(path, "rb");
   size_t room = CHUNK, got = 0;
@@ -39,7 +40,7 @@ static char *bytes_of_file(const char *path, size_t *length, char **problem) {
   return NULL;
 }
 
-/* Whether the path ends so, in small or capital letters. */
+/* True if the path has this ending; case is ignored. */
 static bool ends_with(const char *path, const char *ending) {
   size_t length = strlen(path), size = strlen(ending);
   bool is_same = length >= size;
@@ -47,7 +48,7 @@ static bool ends_with(const char *path, const char *ending) {
   return is_same;
 }
 
-/* Points that no triangle has are not part of the surface. */
+/* Removes points that no triangle uses: they are not part of the surface. */
 static void drop_unused_points(struct Mesh *mesh) {
   size_t *places = allocate(mesh->point_count, sizeof *places), kept = 0;
   for (size_t i = 0; i < mesh->triangle_count; i++)
@@ -63,7 +64,7 @@ static void drop_unused_points(struct Mesh *mesh) {
   release(places);
 }
 
-/* A mirror turns triangles over, which are seen from outside. */
+/* Scales the points. A reflection reverses the order of corners, which is restored so that normals stay outward. */
 static void apply_scale(struct Mesh *mesh, const double scale[3]) {
   for (size_t i = 0; i < mesh->point_count; i++)
     for (int axis = 0; axis < 3; axis++) mesh->points[i][axis] *= scale[axis];
@@ -75,7 +76,7 @@ static void apply_scale(struct Mesh *mesh, const double scale[3]) {
 }
 
 static bool has_usual_size(const struct Mesh *mesh) {
-  static const double most = 1e9, least = 1e-9; /* m */
+  static const double most = 1e9, least = 1e-9; /* m, limits of the largest coordinate */
   double largest = 0.0;
   for (size_t i = 0; i < mesh->point_count; i++)
     for (int axis = 0; axis < 3; axis++) largest = fmax(largest, fabs(mesh->points[i][axis]));

@@ -1,10 +1,10 @@
-/* Files of meshes. */
+/* Reads files of meshes. */
 #pragma once
 
 #include "model/mesh.h"
 
 /*
- * Reads an STL or OBJ file, its coordinates multiplied by the scale: m for each unit of the file. NULL with what is wrong, and was expected,
- * in *problem.
+ * Reads an STL or OBJ file and multiplies the coordinates by the scale, in m per unit of the file. Returns NULL with a
+ * message in *problem on errors.
  */
 struct Mesh *mesh_read(const char *path, const double scale[3], char **problem);

@@ -8,7 +8,7 @@
 
 enum { TRIANGLE_LIMIT = 1000000 };
 
-/* Blanks, and ends of lines that a backslash takes away. */
+/* Skips blanks and continued line ends. */
 static void skip_blanks(struct MeshLines *lines) {
   for (;;) {
     const char *behind = lines->next + 1;

@@ -1,4 +1,4 @@
-/* Files of meshes that are written as text: words in lines. */
+/* Lines and words of mesh files in text form. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,24 +6,30 @@
 
 #include "model/mesh.h"
 
-/* Where reading stands. The text ends with a 0. */
+/* The reading position in a text with a terminating zero. */
 struct MeshLines {
   const char *next;
-  long line;     /* the number of the one being read, from 1 */
-  char *problem; /* what is wrong; NULL for nothing */
+  long line;     /* number of the current line, from 1 */
+  char *problem; /* the error; NULL for none */
 };
 
-/* The next word of the line, in lower case and cut to fit; false at the line's end. A backslash continues a line. */
+/*
+ * Reads the next word of the line in lower case, truncated to the size. Returns false at the end of the line. A
+ * backslash continues a line.
+ */
 bool next_word(struct MeshLines *lines, char *word, size_t size);
 
-/* Goes to the next line; false at the end of the text. */
+/* Advances to the next line. Returns false at the end of the text. */
 bool next_line(struct MeshLines *lines);
 
-/* Appends a point of the line's next three numbers; false with the problem where they are none, or not finite. */
+/*
+ * Appends a point with the next three numbers of the line. Returns false with the problem set if they are missing or
+ * not finite.
+ */
 bool append_point_of_line(struct MeshLines *lines, struct Mesh *mesh);
 
-/* The list with room for one more. */
+/* Appends a point to the mesh. */
 void append_mesh_point(struct Mesh *mesh, const double point[3]);
 
-/* False where there are as many as can be read; *problem then says so. */
+/* Appends a triangle of indices of points. Returns false with *problem set if the mesh has too many. */
 bool append_triangle(struct Mesh *mesh, const size_t corners[3], char **problem);

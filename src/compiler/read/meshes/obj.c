@@ -6,7 +6,10 @@
 #include "base/memory.h"
 #include "read/meshes/mesh_lines.h"
 
-/* The place of the point in a corner such as 3, 3/1/2 or -1, which counts back from the last point; false for none. */
+/*
+ * Sets the index of the point in a corner such as 3, 3/1/2, or -1 for the last point. Returns false if there is no such
+ * point.
+ */
 static bool read_corner(const char *word, const struct Mesh *mesh, size_t *place) {
   char *end;
   long long number = strtoll(word, &end, 10), count = (long long)mesh->point_count;
@@ -16,7 +19,7 @@ static bool read_corner(const char *word, const struct Mesh *mesh, size_t *place
   return true;
 }
 
-/* As a fan of triangles about its first corner. */
+/* Splits a polygon into a fan of triangles about its first corner. */
 static bool read_polygon(struct MeshLines *lines, struct Mesh *mesh) {
   size_t triangle[3] = {0}, count = 0;
   char word[64];

@@ -1,9 +1,12 @@
-/* Meshes in Wavefront's OBJ: its points and polygons. */
+/* Meshes in Wavefront's OBJ format: vertices and polygons. */
 #pragma once
 
 #include <stdbool.h>
 
 #include "model/mesh.h"
 
-/* Reads the text into an empty mesh, polygons as triangles; false with what is wrong in *problem. */
+/*
+ * Reads the text into an empty mesh and splits polygons into triangles. Returns false with a message in *problem on
+ * errors.
+ */
 bool obj_read(const char *text, struct Mesh *mesh, char **problem);

@@ -13,7 +13,7 @@ static bool is_there(const char *robot, const char *path) {
   return file != NULL;
 }
 
-/* How many folders are above that of the file. */
+/* Returns the number of folders above that of the file. */
 static size_t count_folders(const char *file) {
   const char *path = canonical_path(file);
   size_t count = 0;
@@ -21,7 +21,7 @@ static size_t count_folders(const char *file) {
   return count;
 }
 
-/* What stands behind the beginning; NULL where the text begins otherwise. */
+/* Returns the text after this beginning; NULL if it begins differently. */
 static const char *behind(const char *text, const char *beginning) {
   size_t length = strlen(beginning);
   return strncmp(text, beginning, length) == 0 ? text + length : NULL;

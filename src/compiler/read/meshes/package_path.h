@@ -1,8 +1,9 @@
-/* Where the meshes of a robot are. */
+/* Paths of meshes in robot files. */
 #pragma once
 
 /*
- * The path, relative to the robot's file, of what that file names: a path of this kind, file:///PATH, or package://NAME/PATH, which is NAME/PATH
- * or PATH in the robot's folder or else the nearest one above it. NULL where there is no such file.
+ * Returns the path of a file that a robot file names, relative to the robot file; NULL if it does not exist. named: a
+ * path, file:///PATH, or package://NAME/PATH. The last is NAME/PATH or PATH in the robot's folder or the nearest folder
+ * above it.
  */
 char *path_in_package(const char *robot, const char *named);

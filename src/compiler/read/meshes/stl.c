@@ -7,10 +7,13 @@
 #include "base/memory.h"
 #include "read/meshes/mesh_lines.h"
 
-/* Bytes of the binary form: what is before the triangles, one of these, its normal, and a coordinate. */
+/*
+ * Sizes and offsets in bytes of the binary format: heading, position of the triangle count, one triangle, its normal,
+ * one number.
+ */
 enum { HEADING = 84, COUNT_AT = 80, RECORD = 50, NORMAL = 12, NUMBER = 4 };
 
-/* The least byte comes first. */
+/* Returns a 32-bit word in little-endian order. */
 static uint32_t word_at(const char *bytes) {
   uint32_t word = 0;
   for (int i = NUMBER - 1; i >= 0; i--) word = word << 8 | (unsigned char)bytes[i];
@@ -24,7 +27,7 @@ static double number_at(const char *bytes) {
   return (double)number;
 }
 
-/* The last three points as a triangle. */
+/* Appends the last three points as a triangle. */
 static bool append_facet(struct Mesh *mesh, char **problem) {
   size_t first = mesh->point_count - 3;
   return append_triangle(mesh, (size_t[]){first, first + 1, first + 2}, problem);
@@ -64,7 +67,7 @@ static bool is_one_of(const char *word, const char *const *words) {
   return words[i] != NULL;
 }
 
-/* One line; *corners counts those of the present facet. */
+/* Reads one line of the text format. *corners counts the vertices of the current facet. */
 static bool read_line(struct MeshLines *lines, const char *word, struct Mesh *mesh, size_t *corners) {
   static const char *const passed[] = {"solid", "endsolid", "facet", "outer", "endloop", NULL};
   if (strcmp(word, "vertex") == 0) {
@@ -101,7 +104,7 @@ static bool read_text(const char *text, struct Mesh *mesh, char **problem) {
   return lines.problem == NULL;
 }
 
-/* Headings of binary files may begin with solid too; their numbers then have bytes that no text has. */
+/* True if the file is STL as text. Binary files may begin with "solid" too, but contain zero bytes. */
 static bool is_text(const char *bytes, size_t length) {
   static const char solid[] = "solid";
   if (length < sizeof solid - 1 || memcmp(bytes, solid, sizeof solid - 1) != 0) return false;

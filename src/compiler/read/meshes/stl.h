@@ -1,4 +1,4 @@
-/* Meshes in STL, as text or binary. */
+/* Meshes in STL format, as text or binary. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,5 +6,8 @@
 
 #include "model/mesh.h"
 
-/* Reads the bytes, behind which stands a 0, into an empty mesh; false with what is wrong in *problem, such as "is cut short". */
+/*
+ * Reads bytes with a terminating zero into an empty mesh. Returns false with a message in *problem on errors, such as
+ * "is cut short".
+ */
 bool stl_read(const char *bytes, size_t length, struct Mesh *mesh, char **problem);

@@ -6,14 +6,14 @@
 #include "read/context/includes.h"
 #include "read/space/frames.h"
 
-/* Half of the term, as energy that the body has. */
+/* Adds half of the term to the kinetic energy. */
 static void append_energy(struct Model *model, Node term) {
   Node energy = scale(model->graph, 0.5, term);
   add_term(model, &model->energies.kinetic, energy);
   add_term(model, &model->energies.kinetic_energy, energy);
 }
 
-/* 1/2 inertia rate^2 */
+/* Adds inertia rate^2 / 2, rate being the time derivative of the position. */
 static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node inertia, Node position) {
   struct Graph *graph = model->graph;
   Node rate = total_time_derivative(scope, position);
@@ -21,7 +21,7 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   model->energies.driven |= graph_depends_on(graph, position, TIME);
 }
 
-/* Where the body of a name is: its place among the model's, and the line of its own file. */
+/* A body's index in the model, and its line in its own file. */
 struct NamedBody {
   size_t place;
   long line;
@@ -32,7 +32,7 @@ const struct Body *find_body(const struct Reader *reader, const char *name) {
   return named != NULL ? &reader->model->mechanism.bodies[named->place] : NULL;
 }
 
-/* Of several bodies of one name, which is reported, the first keeps it. */
+/* If several bodies have the same name, which is reported, it refers to the first. */
 static void append_body(struct Reader *reader, struct Body body) {
   struct Model *model = reader->model;
   struct NamedBody *named = allocate(1, sizeof *named);
@@ -44,7 +44,10 @@ static void append_body(struct Reader *reader, struct Body body) {
   model->mechanism.bodies[model->mechanism.body_count++] = body;
 }
 
-/* A component that definitions.h has read; true where it is given. */
+/*
+ * Sets the value of a component that was read as a named expression, with and without displacements. Returns true if
+ * the element has the component.
+ */
 static bool take_component(struct Reader *reader, const struct Body *body, xmlNodePtr node, const char *component,
                            struct Quantity *value, Node *displaced) {
   if (!has_attribute(node, component)) return false;
@@ -58,8 +61,9 @@ static bool take_component(struct Reader *reader, const struct Body *body, xmlNo
 }
 
 /*
- * Where mass joins or leaves, the equations depend on the momentum that it has, which a mass alone does not say:
- * d(m v)/dt = F + dm/dt w. Lagrange's equation of m(t) v^2/2 is that of w = 0, and of m(q) v^2/2 that of w = v/2.
+ * Reports an inertia that varies. Equations of motion of variable mass depend on the velocity w of the mass that joins
+ * or leaves, d(m v)/dt = F + dm/dt w, which a body does not specify. Lagrange's equations imply w = 0 for the energy
+ * m(t) v^2/2, and w = v/2 for m(q) v^2/2.
  */
 static void require_fixed(const struct Reader *reader, long line, const char *what, struct Quantity inertia,
                           const char *symbol, const char *rate) {
@@ -82,7 +86,10 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "the %s cannot depend on displacements; expected them in positions and angles", what);
 }
 
-/* A mass feels the second derivatives of the inputs that its position depends on; a mere point does not. */
+/*
+ * Reports inputs that prescribe the motion of a mass without their second derivatives. Points without mass do not need
+ * these.
+ */
 static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
   const struct Model *model = reader->model;
   struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
@@ -149,7 +156,7 @@ static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
   append_body(reader, body);
 }
 
-/* The moments and products of inertia, which are no other than symmetric. */
+/* Reads the moments and products of inertia into the symmetric tensor. */
 static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *body) {
   static const char *const names[3][3] = {{"Ixx", "Ixy", "Ixz"}, {"Ixy", "Iyy", "Iyz"}, {"Ixz", "Iyz", "Izz"}};
   for (int i = 0; i < 3; i++)
@@ -161,7 +168,7 @@ static void read_tensor(struct Reader *reader, xmlNodePtr node, struct Body *bod
     }
 }
 
-/* Where the body is and how it moves, as it was read with the definitions. */
+/* Sets the position and velocities of the body from its named expression. */
 static void place_body(struct Reader *reader, const struct SpatialPoint *point, struct Body *body) {
   const struct Model *model = reader->model;
   body->is_in_frame = true;
@@ -180,7 +187,7 @@ static void place_body(struct Reader *reader, const struct SpatialPoint *point, 
   }
 }
 
-/* Whether the direction of the frame depends on inputs whose second derivatives are not known. */
+/* Reports inputs that prescribe the rotation of the frame without their second derivatives. */
 static void require_angular_accelerations(const struct Reader *reader, const struct Body *body) {
   const struct Matrix *rotation = &reader->model->mechanism.frames[body->frame].pose.rotation;
   struct Body turned = *body;
@@ -200,11 +207,11 @@ static void add_spatial_energy(struct Model *model, const struct Body *body) {
                               graph_depends_on(graph, body->angular_velocity.along[i], TIME);
 }
 
-/* A particle, body or point in a frame. */
+/* Reads a particle, body or point in a frame. */
 static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   struct Body body = {.name = name_of_body(reader, node), .line = line_of(node)};
   struct SpatialPoint point;
-  if (body.name == NULL) return; /* reported */
+  if (body.name == NULL) return; /* the error has been reported */
   const struct Body *other = report_same_name(reader, &body);
   if (!is_element(node, "point")) read_mass(reader, node, &body);
   if (is_element(node, "body")) read_tensor(reader, node, &body);
@@ -217,7 +224,7 @@ static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   append_body(reader, body);
 }
 
-/* A planar body has a position and an angle, one in a frame has neither. */
+/* True if a body has either an angle and an inertia, or a frame and a tensor; reports an error otherwise. */
 static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
   static const char *const moments[] = {"Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
   bool is_in_frame = has_attribute(node, "in"), has_moments = false;

@@ -1,16 +1,22 @@
-/* <particle> and <body>, planar ones and those in frames, and <point>. */
+/* <particle>, <body> and <point>, in the plane or in frames. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Enters a body, particle or point into the model, with its energy and its places; of a <frame>, the places. */
+/*
+ * Adds a body, particle or point to the model, with its kinetic energy and its components. Of a <frame>, adds the
+ * components.
+ */
 void read_body(struct Reader *reader, xmlNodePtr node);
 
-/* Notes the number of a body or particle among those of its file. */
+/* Assigns a body or particle its number within its file. */
 void number_body(struct Reader *reader, xmlNodePtr node);
 
-/* The own name of a body, particle, point or frame, or one by the number of a body or particle. */
+/*
+ * Returns the full name of a body, particle, point or frame. Unnamed bodies and particles get a name with their number.
+ * NULL after an error.
+ */
 char *name_of_body(struct Reader *reader, xmlNodePtr node);
 
-/* NULL where there is none of this name. */
+/* Returns the body of this name; NULL for none. */
 const struct Body *find_body(const struct Reader *reader, const char *name);

@@ -8,7 +8,7 @@
 
 enum { X, Y, Z };
 
-/* One factor for all axes, or three between blanks; 0 where the attribute is missing. */
+/* Reads one factor for all axes, or three separated by blanks; 0 if the attribute is missing. */
 static struct Vector read_factors(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit) {
   struct Vector factors = {{ZERO, ZERO, ZERO}};
   char *text = attribute(node, name), *rest = NULL;
@@ -33,7 +33,7 @@ static bool is_zero(struct Vector vector) {
   return vector.along[X] == ZERO && vector.along[Y] == ZERO && vector.along[Z] == ZERO;
 }
 
-/* The sum of factor value^2/2 along the axes. */
+/* Returns the sum of factor value^2 / 2 over the axes. */
 static Node half_of_squares(struct Graph *graph, struct Vector factors, struct Vector values) {
   Node sum = ZERO;
   for (int i = 0; i < 3; i++) {
@@ -49,7 +49,10 @@ static struct Vector stretch_of(struct Graph *graph, const struct Side *from, co
   return stretch;
 }
 
-/* 2 sin(angle/2) along the axis of the turn, which needs no angle: twice the vector of the turn's quaternion. */
+/*
+ * Returns 2 sin(angle/2) times the unit axis of the relative rotation R: twice the vector part of its unit quaternion,
+ * (R[k][j] - R[j][k]) / sqrt(1 + trace R) for cyclic i, j, k. It is smooth but for half turns.
+ */
 static struct Vector twist_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
   struct Vector twist;
   Node trace = ONE;
@@ -63,7 +66,7 @@ static struct Vector twist_of(struct Graph *graph, const struct Side *from, cons
   return twist;
 }
 
-/* How fast `to` turns against `from`, along the axes of `from`. */
+/* Returns the angular velocity of `to` relative to `from`, along the axes of `from`. */
 static struct Vector spin_of(struct Reader *reader, const struct Side *from, const struct Side *to) {
   struct Graph *graph = reader->model->graph;
   const struct ReferenceFrame *frames = reader->model->mechanism.frames;

@@ -1,7 +1,7 @@
-/* <bushing>: springs and dampers along, and about, the axes of the frame that `from` names or is in. */
+/* <bushing>: springs and dampers along and about the axes of the frame of `from`. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Adds its energy to the potential, and its damping to the dissipation. */
+/* Adds the energy of a bushing to the potential, and its damping to the dissipation. */
 void read_bushing(struct Reader *reader, xmlNodePtr node);

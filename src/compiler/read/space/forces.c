@@ -10,12 +10,12 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-/* A search through all names is for messages that are shown. */
+/* True if further messages are printed. Otherwise searching for similar names is a waste of time. */
 static bool are_shown(const struct Reader *reader) {
   return reader->diagnostics->errors < ERROR_LIMIT;
 }
 
-/* "did you mean 'theta'?" where the name is similar to a known one, else what was expected. */
+/* Returns "did you mean 'theta'?" for a similar name, or the expected kind of name. */
 static char *meant_coordinate(const struct Reader *reader, const char *name) {
   const struct Model *model = reader->model;
   struct Similar similar = {.wanted = name};
@@ -77,7 +77,7 @@ static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const ch
   report_at(reader, node, "there is no %s '%s' for this %s; %s", what, name, (const char *)node->name, meant);
 }
 
-/* The components along the axes of the frame that the attribute in names, of a force or torque. */
+/* Reads the components of a force or torque along the axes of the frame that attribute `in` names. */
 static struct Vector read_components(struct Reader *reader, xmlNodePtr node, const char *unit) {
   struct Vector vector = {{ZERO, ZERO, ZERO}};
   for (int axis = 0; axis < 3; axis++) {
@@ -89,7 +89,7 @@ static struct Vector read_components(struct Reader *reader, xmlNodePtr node, con
   return vector;
 }
 
-/* How the frame is turned where nothing is displaced. */
+/* Returns the rotation matrix of a frame at zero displacements. */
 static struct Matrix rotation_of(struct Reader *reader, long line, const struct ReferenceFrame *frame) {
   return matrix_without_displacements(reader, line, frame->name, frame->pose.rotation);
 }
@@ -127,7 +127,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
   }
 }
 
-/* What turns by itself, without velocities and rates of inputs: by time alone. */
+/* Returns the part of an angular velocity that is prescribed by time, at zero velocities and rates of inputs. */
 static struct Vector driven_part(const struct Model *model, struct Vector velocity) {
   struct Graph *graph = model->graph;
   Node *at_rest = allocate(graph->symbol_count, sizeof *at_rest);
@@ -140,7 +140,10 @@ static struct Vector driven_part(const struct Model *model, struct Vector veloci
   return velocity;
 }
 
-/* A torque T contributes Q_i = T . d omega / d v_i; its power is T . omega. Both along the axes of what it turns. */
+/*
+ * Adds the generalized forces Q_i = T . d omega / d v_i of a torque T, and its power T . omega. Both vectors are along
+ * the axes of the frame that the torque acts on.
+ */
 static void add_torque(struct Reader *reader, long line, struct Vector torque, struct Vector displaced) {
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
@@ -174,7 +177,7 @@ void read_torque(struct Reader *reader, xmlNodePtr node) {
   }
 }
 
-/* Whether the name was given in the file being read, not in one that it includes or is included by. */
+/* True if the name was defined in the current file, not in a file that it includes or is included by. */
 static bool is_of_file(const struct Reader *reader, const char *name) {
   const char *prefix = reader->source->prefix;
   return strncmp(name, prefix, strlen(prefix)) == 0 && strchr(name + strlen(prefix), '.') == NULL;

@@ -29,7 +29,7 @@ static const char *const *components_of(xmlNodePtr node) {
   return is_element(node, "particle") ? particle_components : body_components;
 }
 
-/* The time derivatives of the components. */
+/* Returns the time derivatives of the components. */
 static struct Vector derivative_of(struct Scope *scope, struct Vector vector) {
   for (int i = 0; i < 3; i++) vector.along[i] = total_time_derivative(scope, vector.along[i]);
   return vector;
@@ -68,7 +68,10 @@ void declare_frame(struct Reader *reader, xmlNodePtr node) {
   append_variable(&reader->model->constraints, norm);
 }
 
-/* The names of definitions that nobody can write: of a frame, and of a point or body, as a whole. */
+/*
+ * Returns the name under which a whole frame, or a whole point or body, is collected. Its blank keeps it apart from
+ * names of authors.
+ */
 static char *whole_name(bool is_frame, const char *name) {
   return format_text("%s %s", is_frame ? "frame" : "point", name);
 }
@@ -89,13 +92,13 @@ void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   if (!is_base(reader, node, name)) collect(reader, node, whole_name(true, name), "");
 }
 
-/* Whether a frame, or else a point or body in a frame, of this name was collected. */
+/* True if a frame, or a point or body in a frame, of this name was collected. */
 static bool is_collected(const struct Reader *reader, bool is_frame, const char *name) {
   char *whole = whole_name(is_frame, name);
   return definitions_contain(reader->definitions, whole);
 }
 
-/* Whether either was; reports it. */
+/* True after reporting that either exists. */
 static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
   bool taken = is_collected(reader, true, name) || is_collected(reader, false, name);
   if (taken)
@@ -111,14 +114,14 @@ void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name) {
     collect(reader, node, format_text("%s.%s", name, components[i]), components[i]);
 }
 
-/* The full name of the frame that the element is in; "base" where it does not say; NULL after an error. */
+/* Returns the full name of the frame that an attribute names, "base" if it is missing; NULL after an error. */
 static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
   char *text = attribute(node, attribute_name);
   bool is_in_base = text == NULL || strcmp(text, "base") == 0;
   return is_in_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
 }
 
-/* What was collected and is no frame has failed, which is told. */
+/* Reports a name that is not a frame. A frame that was collected had an error, which has been reported. */
 static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Similar similar = {.wanted = name};
   if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
@@ -141,7 +144,7 @@ const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePt
   return frame;
 }
 
-/* The frame that an element is in, for which the present definition waits where it is not read yet: NULL then. */
+/* Returns the frame that an element is in. NULL after an error, or if the current definition waits for it. */
 static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr node) {
   char *name = frame_name(reader, node, "in");
   if (name == NULL) return NULL;
@@ -152,7 +155,7 @@ static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr 
   return place != NULL ? &reader->model->mechanism.frames[*place] : NULL;
 }
 
-/* A length along each axis in the attributes x, y and z, and its time derivative. */
+/* Reads a length along each axis from the attributes x, y and z, and its time derivative. */
 static void read_offset(struct Reader *reader, xmlNodePtr node, struct Vector *offset, struct Vector *rate) {
   for (int i = 0; i < 3; i++) {
     struct Quantity length = {.node = ZERO};
@@ -170,7 +173,7 @@ static void translate(struct Reader *reader, xmlNodePtr node, struct Pose *pose)
   pose_translate(reader->model->graph, pose, offset, rate);
 }
 
-/* A component of a planar body, for which the present definition waits where it is not read yet. */
+/* Returns a component of a planar body. The current definition waits for one that has not been read. */
 static Node planar_component(struct Reader *reader, xmlNodePtr node, const char *body, const char *component) {
   if (!has_attribute(node, component)) return ZERO;
   char *name = format_text("%s.%s", body, component);
@@ -185,7 +188,7 @@ static void append_step(struct Graph *graph, struct ReferenceFrame *frame, const
   pose_follow(graph, &frame->pose, step);
 }
 
-/* Its origin is the centre of mass. */
+/* Appends the translation to the centre of mass and the rotation by the angle. */
 static void append_steps_of_planar_body(struct Reader *reader, xmlNodePtr node, const char *name,
                                         struct ReferenceFrame *frame) {
   struct Graph *graph = reader->model->graph;
@@ -199,7 +202,7 @@ static void append_steps_of_planar_body(struct Reader *reader, xmlNodePtr node, 
   append_step(graph, frame, &turn);
 }
 
-/* Adds what moves and turns the frame, which has the pose of its parent. */
+/* Appends the translations and rotations of a frame that begins with the pose of its parent. */
 static void read_steps(struct Reader *reader, xmlNodePtr node, const char *name, struct ReferenceFrame *frame) {
   struct Graph *graph = reader->model->graph;
   if (frame->is_of_body) append_steps_of_planar_body(reader, node, name, frame);
@@ -267,7 +270,7 @@ static struct Vector acceleration_of(struct Scope *scope, const struct Pose *pos
   return vector_add(graph, derivative_of(scope, velocity), turning);
 }
 
-/* What a component such as "vx" or "omegaX" is of. */
+/* Returns the vector that a component such as "vx" or "omegaX" belongs to. */
 static struct Vector vector_of(struct Scope *scope, const struct Pose *pose, const struct SpatialPoint *point,
                                const char *component) {
   struct Graph *graph = scope->graph;
@@ -289,7 +292,7 @@ static const char *unit_of_component(const char *component) {
 
 static Node read_component(struct Reader *reader, const char *name, const char *component) {
   struct SpatialPoint point;
-  if (!find_spatial_point(reader, name, &point)) return ZERO; /* reported */
+  if (!find_spatial_point(reader, name, &point)) return ZERO; /* the error has been reported */
   const struct Pose *pose = &reader->model->mechanism.frames[point.frame].pose;
   if (component[0] == 'R') return pose->rotation.row[component[1] - '1'].along[component[2] - '1'];
   char axis = component[strlen(component) - 1];
@@ -332,7 +335,7 @@ void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
   for (size_t i = 0; components[i] != NULL; i++) {
     char *full_name = format_text("%s.%s", name, components[i]);
     const struct Quantity *value = scope_find(reader->scope, full_name);
-    if (value == NULL || components[i][0] == 'w') continue; /* in expressions alone: omegaX, ... tell it already */
+    if (value == NULL || components[i][0] == 'w') continue; /* for expressions only; omegaX, ... are the same vector */
     struct Variable place = {.name = full_name,
                              .description = description_of(name, components[i]),
                              .unit = copy_text(unit_of_component(components[i])),
@@ -347,7 +350,10 @@ static bool is_inside(const struct Model *model, size_t frame, size_t outer) {
   return frame == outer;
 }
 
-/* Of the size of the moments of inertia that the quaternion turns, so that M stays well conditioned. */
+/*
+ * Returns the mean of the moments of inertia that the quaternion rotates. An inertia of this size keeps M well
+ * conditioned.
+ */
 static Node inertia_of_norm(const struct Model *model, size_t frame) {
   struct Graph *graph = model->graph;
   Node sum = ZERO;

@@ -1,56 +1,60 @@
 /*
- * <frame>, <point>, and bodies and particles that are placed in frames. Their components, such as arm.x, are named
- * expressions; each waits for what it is part of, and that for the frame that it is in.
+ * <frame>, <point>, and bodies and particles in frames. A frame is its parent frame, translated and rotated step by
+ * step. Components such as arm.x are named expressions. They wait for their frame or point, and that waits for its
+ * parent frame.
  */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* A point, or the centre of mass of a body, in a frame; all of it as functions of displacements too. */
+/* A point in a frame, or the centre of mass of a body, as functions of displacements. */
 struct SpatialPoint {
-  bool is_body;           /* which turns, so that it may stand for its frame */
-  size_t frame;           /* among the model's */
-  struct Vector offset;   /* along the frame's axes */
-  struct Vector position; /* along the base's */
-  struct Vector velocity; /* along the frame's */
+  bool is_body;           /* of a body, whose name may also stand for its frame */
+  size_t frame;           /* index into the model's frames */
+  struct Vector offset;   /* m, along the frame's axes */
+  struct Vector position; /* m, along the base's axes */
+  struct Vector velocity; /* m/s, along the frame's axes */
 };
 
-/* The base, in which all frames are; before anything is read. */
+/* Creates the base, the root of all frames; called before any element is read. */
 void frames_begin(struct Reader *reader);
 
-/* Whether the element is a <frame> or <point>, or a body or particle in a frame. */
+/* True for a <frame> or <point>, and for a body or particle in a frame. */
 bool is_spatial(xmlNodePtr node);
 
-/* Checks the steps of a <frame>, and declares the constraint of its quaternion. */
+/* Checks the steps of a <frame>, and declares the norm constraint of its quaternion. */
 void declare_frame(struct Reader *reader, xmlNodePtr node);
 
-/* Adds what the element names to the definitions; name: its own. A planar body gives a frame that turns with it. */
+/*
+ * Collect the named expressions of an element. name: its full name. collect_frame() is for the frame of a planar body,
+ * which rotates with it.
+ */
 void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name);
 void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /*
- * Reads a named expression of such an element: the whole of it where attribute is "", else one component. name: that of
- * the expression.
+ * Reads a named expression of such an element: all of its pose if attribute is "", else one component. name: of the
+ * expression.
  */
 struct Quantity read_spatial(struct Reader *reader, xmlNodePtr node, const char *name, const char *attribute);
 
-/* Enters the components of an element into the model's places. */
+/* Appends the components of an element to the model as variables. */
 void append_places(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* What was read under the name: a point, body or particle in a frame, or the origin of a frame; false for none. */
+/* Finds a point, a body or particle in a frame, or the origin of a frame by its name. Returns false for none. */
 bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point);
 
-/* Whether the present definition waits for the frame, point or body in a frame of this name, which is not read yet. */
+/* True if the current definition waits for the frame, point or body of this name, which has not been read. */
 bool waits_for_place(struct Reader *reader, const char *name);
 
-/* The frame of this name, also that of a planar body, or of one that is placed in a frame; NULL where there is none. */
+/* Returns the frame of this name, also of a planar body or of a body in a frame; NULL for none. */
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name);
 
 /*
- * The frame that an attribute names, along whose axes something is given; the base where it names none, NULL after
- * reporting that there is none.
+ * Returns the frame that an attribute names, the base if the attribute is missing. NULL after reporting that there is
+ * no such frame.
  */
 const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Of a <frame> with a quaternion, when all bodies are known: the inertia of its norm, see model.h. */
+/* Adds the regularizing inertia of a quaternion's norm, see struct Stillness; called when all bodies are known. */
 void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node);

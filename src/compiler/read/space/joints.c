@@ -14,14 +14,14 @@
 #include "read/space/vanishing.h"
 
 /*
- * What a joint holds: the place of `to` along the axes of `from`, the directions of its axes, the thread of a screw, and of
- * what rolls the velocity of its lowest point and the height of that.
+ * Quantities that a joint constrains: the position of `to` along the axes of `from`; the directions of its axes; for a
+ * screw the thread; for rolling the velocity of the lowest point, and its height.
  */
 enum Held { ALONG_X, ALONG_Y, ALONG_Z, ABOUT_X, ABOUT_Y, ABOUT_Z, CROSS, THREAD, SLIP_X, SLIP_Y, HEIGHT, NOTHING };
 
 struct JointType {
   const char *name;
-  enum Held held[7]; /* up to the first NOTHING */
+  enum Held held[7]; /* ended by NOTHING */
 };
 
 static const struct JointType types[] = {
@@ -37,7 +37,10 @@ static const struct JointType types[] = {
     {"rolling", {SLIP_X, SLIP_Y, HEIGHT, NOTHING}},
 };
 
-/* The beginnings of the names of what is held and of its force or torque, its unit, and the axis that it is along or about, which ends the names. */
+/*
+ * Per quantity: the prefixes of its name and of the name of its force, its unit, and its axis, whose letter ends both
+ * names.
+ */
 static const struct HeldWords {
   const char *name, *force, *unit;
   int axis;
@@ -54,20 +57,20 @@ static bool is_of_force(enum Held held) {
   return words[held].force[0] == 'f';
 }
 
-/* Whether the constraint's force is along or about an axis of `from` up to a factor alone, see share_of(). */
+/* True if the constraint's force is along or about an axis of `from` only up to a factor, see share_of(). */
 static bool has_share(enum Held held) {
   return !is_of_force(held) || held == THREAD;
 }
 
 static const char *const sides[] = {"from", "to"};
 
-/* By how many places the axes are exchanged in a circle, so that z, of which the types tell, is the one that the joint names. */
+/* Returns the cyclic shift of the axes that moves z, the axis of the types above, to the axis that the joint names. */
 static int shift_of(xmlNodePtr node) {
   char *axis = attribute(node, "axis");
   return axis != NULL ? *axis - 'x' + 1 : 0;
 }
 
-/* The axis of `from` that it is along or about. */
+/* Returns the axis of `from` that the quantity is along or about. */
 static int axis_of(xmlNodePtr node, enum Held held) {
   return (words[held].axis + shift_of(node)) % 3;
 }
@@ -83,14 +86,14 @@ static char *force_name_of(const char *joint, xmlNodePtr node, enum Held held) {
   return format_text("%s.%s%c", joint, words[held].force, "XYZ"[axis_of(node, held)]);
 }
 
-/* The side with its axes exchanged. */
+/* Shifts the axes of an end cyclically. */
 static void exchange_axes(struct Side *side, int shift) {
   const struct Matrix given = side->rotation;
   for (int row = 0; row < 3; row++)
     for (int axis = 0; axis < 3; axis++) side->rotation.row[row].along[axis] = given.row[row].along[(axis + shift) % 3];
 }
 
-/* What rolls may hold less, where its coordinates hold the rest: the attribute names the axes. */
+/* True unless the attribute `holds` leaves out the axis. Rolling joints may leave axes to their coordinates. */
 static bool is_held(xmlNodePtr node, enum Held held) {
   char *axes_held = attribute(node, "holds");
   return axes_held == NULL || strchr(axes_held, *axes[words[held].axis]) != NULL;
@@ -99,7 +102,7 @@ static bool is_held(xmlNodePtr node, enum Held held) {
 static const struct JointType *type_of(xmlNodePtr node) {
   for (size_t i = 0; i < sizeof types / sizeof *types; i++)
     if (attribute_is(node, "type", types[i].name)) return &types[i];
-  return NULL; /* the schema refuses it */
+  return NULL; /* rejected by the schema */
 }
 
 static char *description_of(xmlNodePtr node, const char *joint, enum Held held) {
@@ -110,7 +113,7 @@ static char *description_of(xmlNodePtr node, const char *joint, enum Held held) 
                      from);
 }
 
-/* Types with an axis of their own, which is z where they name none. */
+/* Reports an axis for a type that has none. */
 static void check_axis(struct Reader *reader, xmlNodePtr node) {
   static const char *const with_axis[] = {"pin", "revolute", "cylindrical", "prismatic", "planar", "screw"};
   bool has_axis = false;
@@ -121,7 +124,7 @@ static void check_axis(struct Reader *reader, xmlNodePtr node) {
               attribute(node, "type"));
 }
 
-/* An attribute that one type needs, or may have, and no other has. */
+/* Reports an attribute that the type lacks but needs, or that belongs to another type only. */
 static void check_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *type,
                             bool is_needed) {
   if (attribute_is(node, "type", type) && is_needed && !has_attribute(node, name))
@@ -156,8 +159,8 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
 }
 
 /*
- * Is 0 while it is held. Signs are such that it grows as `to` moves along, or turns about, the axis of `from`, so that the
- * force is what `to` does to `from`.
+ * Returns the expression that the constraint keeps at 0. It grows as `to` moves along, or rotates about, the axis of
+ * `from`. So its force is the one that `to` exerts on `from`.
  */
 static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
                           const struct Side *to) {
@@ -178,8 +181,8 @@ static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held
 }
 
 /*
- * How much of the constraint's force is along or about the axis of `from`. Axes that are held together may point against
- * each other, which turns the sign; a universal joint's torque is about what is across both of its own axes.
+ * Returns the fraction of the constraint's force along or about the axis of `from`. Antiparallel axes change its sign;
+ * the torque of a universal joint is perpendicular to both of its axes.
  */
 static Node share_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
                      const struct Side *to) {
@@ -203,7 +206,7 @@ void collect_joint(struct Reader *reader, xmlNodePtr node) {
                       &(struct NamedExpression){node, "force", reader->source, NULL});
 }
 
-/* What the type holds by the force of this name. */
+/* Returns the quantity whose force has this name. */
 static enum Held held_by(xmlNodePtr node, const char *force_name) {
   char *joint = format_text("%.*s", (int)(strrchr(force_name, '.') - force_name), force_name);
   const enum Held *held = type_of(node)->held;
@@ -226,7 +229,7 @@ struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const c
                            .dimension = constraint_force_dimension(constraint)};
 }
 
-/* Whether nothing moves what a constraint of the joint holds, and it is held where it is. */
+/* True if the constraint is satisfied identically, so that it constrains nothing. */
 static bool is_idle(const struct Graph *graph, const struct Variable *constraint, const struct Side *from,
                     const struct Side *to) {
   const struct Vector places[] = {from->position, to->position};
@@ -235,8 +238,9 @@ static bool is_idle(const struct Graph *graph, const struct Variable *constraint
 }
 
 /*
- * What nothing moves bears nothing: of all forces that keep the motion, a force of 0 is the smallest. Only a joint that holds nothing else
- * is refused, one that does not fit, and what rolls, whose weight the coordinates would bear in secret.
+ * Sets constraints that are satisfied identically to 0, so that they have no force: the solution of least norm. Reports
+ * constraints that cannot be satisfied, joints that constrain nothing at all, and idle constraints of rolling joints,
+ * whose load coordinates would carry unnoticed.
  */
 static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variable *first, size_t count,
                            const struct Side *from, const struct Side *to) {
@@ -265,8 +269,9 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
 }
 
 /*
- * A half turn about an axis fulfils what a fixed joint holds, too. Warns of a start that is nearer to that than to the pose,
- * where the axes agree: there the real part of the quaternion between the two is smaller than another one.
+ * Half turns about an axis also satisfy the constraints of a fixed joint. Warns of a start nearer to a half turn about
+ * axis i. There the real part of the relative quaternion is smaller than its i-th part: 2 (q0^2 - qi^2) = R[j][j] +
+ * R[k][k] < 0.
  */
 static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
   struct Graph *graph = reader->model->graph;

@@ -1,19 +1,19 @@
 /*
- * <joint>: constraints between two frames, points or bodies. What they hold, and their forces, are along the axes of the
- * frame that `from` names or is in.
+ * <joint>: constraints between two frames, points or bodies. The constrained components and their forces are along the
+ * axes of the frame of `from`.
  */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Declares the constraints of the joint: their forces are NAME.forceX, ..., NAME.torqueX, .... */
+/* Declares the constraints of the joint. Their forces are NAME.forceX, ..., NAME.torqueX, .... */
 void declare_joint(struct Reader *reader, xmlNodePtr node);
 
-/* Collects the forces and torques that are a share of a constraint's force, which the axes of both sides tell. */
+/* Collects the forces and torques that are fractions of a constraint's force, depending on the axes of both ends. */
 void collect_joint(struct Reader *reader, xmlNodePtr node);
 
-/* One of these by its name. */
+/* Reads one of these by its name. */
 struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Gives them their expressions, when all frames are known. */
+/* Reads the expressions of the joint's constraints, when all frames are known. */
 void read_joint(struct Reader *reader, xmlNodePtr node);

@@ -7,16 +7,16 @@
 
 enum { X, Y, Z };
 
-/* A length of parameters that is not 0. */
+/* Reads a nonzero length of parameters. */
 static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity length = {.node = ZERO};
-  if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ONE; /* reported */
+  if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ONE; /* the error has been reported */
   require_unit(reader, line_of_attribute(node, name), name, length, unit_of("m"));
   if (length.node == ZERO) report_at(reader, node, "the %s of <joint> is 0; expected a length", name);
   return length.node == ZERO ? ONE : length.node;
 }
 
-/* The lead, and the sine and cosine of 2 pi z/pitch - angle; those of the angle are products of axes. */
+/* lead: pitch/(2 pi). sine, cosine: of 2 pi z/pitch - angle, by the addition theorems from products of axes. */
 struct Thread {
   Node lead, sine, cosine;
 };
@@ -35,7 +35,7 @@ static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const s
   };
 }
 
-/* pitch/(2 pi) sin(2 pi z/pitch - angle): it needs no angle, which jumps after a turn. */
+/* Returns lead sin(2 pi z/pitch - angle), which is smooth, unlike the angle itself. */
 Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
   struct Thread thread = read_thread(reader, node, from, to);
   return multiply(reader->model->graph, thread.lead, thread.sine);
@@ -55,7 +55,7 @@ static bool is_sphere(xmlNodePtr node) {
   return attribute_is(node, "shape", "sphere");
 }
 
-/* The product of the plane's normal and the wheel's axis, and the sine of the angle between them. */
+/* Cosine and sine of the angle between the plane's normal and the wheel's axis. */
 struct Tilt {
   Node cosine, sine;
 };
@@ -73,7 +73,7 @@ Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, 
   return subtract(graph, centre, multiply(graph, radius, tilt_of(graph, from, to).sine));
 }
 
-/* From the centre to the lowest point: down, and of a wheel as far as that is across its axis. */
+/* Returns the vector from the centre to the lowest point: downward, and for a wheel perpendicular to its axis. */
 static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct Side *from,
                               const struct Side *to) {
   struct Vector up = axis_of_side(from, Z);
@@ -84,7 +84,7 @@ static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius,
   return vector_scale(graph, divide(graph, radius, tilt.sine), across);
 }
 
-/* The velocity, along the base's axes, of what is at a lever from the side's place and turns with it. */
+/* Returns the velocity along the base's axes of the point at `lever` from the end, which rotates with it. */
 static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side, struct Vector lever) {
   struct Graph *graph = reader->model->graph;
   struct Vector spin = angular_velocity_of_side(reader, node, side), velocity;

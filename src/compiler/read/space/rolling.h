@@ -1,19 +1,22 @@
-/* Constraints of <joint>s in which turning goes with moving: a screw's thread, and what rolls on a plane. */
+/* Constraints of <joint>s that couple rotation and translation: screws, and rolling on a plane. */
 #pragma once
 
 #include "read/space/sides.h"
 
-/* In m; 0 where `to` has moved along the z axis of `from` by the pitch for each turn. */
+/*
+ * Returns the constraint of a screw in m: it is 0 if `to` has advanced along the z axis of `from` by the pitch per
+ * revolution.
+ */
 Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to);
 
-/* Its slope along z where it is 0: 1, or -1 half a turn from where the x axes meet. */
+/* Returns its derivative along z where it is 0: 1, or -1 half a revolution from aligned x axes. */
 Node slope_of_thread(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to);
 
-/* Whether `to` turns, so that it may roll; reports where it does not. */
+/* True if `to` rotates, so that it can roll; reports an error otherwise. */
 bool can_roll(struct Reader *reader, xmlNodePtr node, const struct Side *to);
 
-/* How high the lowest point of a wheel or sphere is above the plane z = 0 of `from`. */
+/* Returns the height of the lowest point of a wheel or sphere above the plane z = 0 of `from`, in m. */
 Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to);
 
-/* How fast what is there of `to` slips over what is there of `from`, along an axis of `from`. */
+/* Returns the velocity of that point of `to` relative to `from`, along an axis of `from`, in m/s. */
 Node slip_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to, int axis);

@@ -6,7 +6,7 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-/* What was meant by a name that nothing has. */
+/* Returns a remedy for an unknown name: the most similar one, or the expected kinds. */
 static const char *meant_side(const struct Reader *reader, const char *name) {
   struct Similar similar = {.wanted = name};
   similar_consider_all(&similar, reader->bodies);
@@ -17,7 +17,7 @@ static const char *meant_side(const struct Reader *reader, const char *name) {
                               : "expected a <frame>, <body>, <point> or <particle>, or base";
 }
 
-/* The full name of what the attribute names; NULL after reporting that it is none. */
+/* Returns the full name in an attribute; NULL after reporting an error. */
 static char *side_name(struct Reader *reader, xmlNodePtr node, const char *name) {
   return attribute_is(node, name, "base") ? copy_text("base") : reference_attribute(reader, node, name);
 }

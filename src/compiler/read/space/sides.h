@@ -1,32 +1,38 @@
-/* What an element between two places joins: anything in a frame with the frame's axes. */
+/* The ends of a joint, spring, bushing or the like: a point, body or frame, with the axes of its frame. */
 #pragma once
 
 #include "read/context/attributes.h"
 
 struct Side {
-  struct Vector position; /* along the base's axes */
+  struct Vector position; /* m, along the base's axes */
   struct Matrix rotation;
-  bool has_axes; /* of its own: no particle in the plane, which has the base's */
-  size_t frame;  /* among the model's, whose axes these are */
+  bool has_axes; /* false for a particle in the plane, which has the base's axes */
+  size_t frame;  /* index into the model's frames of the frame with these axes */
 };
 
-/* What the attribute names, as a function of displacements too; false after reporting that there is no such thing. */
+/*
+ * Reads the end that an attribute names, as a function of displacements. Returns false after reporting that there is
+ * none.
+ */
 bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
-/* The same where nothing is displaced. */
+/* Like read_displaced_side(), at zero displacements. */
 bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
-/* The same while definitions are read, of what is in a frame; else the base's axes. False while its place is waited for. */
+/*
+ * Like read_side(), while definitions are parsed. Anything that is not in a frame gets the base's axes. Returns false
+ * if the current definition waits for it.
+ */
 bool read_side_early(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
-/* Its angular velocity along the base's axes. */
+/* Returns the angular velocity of an end along the base's axes. */
 struct Vector angular_velocity_of_side(struct Reader *reader, xmlNodePtr node, const struct Side *side);
 
-/* One of its axes: 0 for x, .... */
+/* Returns an axis as a unit vector along the base's axes: 0 for x, .... */
 struct Vector axis_of_side(const struct Side *side, int axis);
 
-/* The product of an axis of one side and one of the other, 0 where they are perpendicular. */
+/* Returns the scalar product of an axis of one end and an axis of the other. */
 Node product_of_axes(struct Graph *graph, const struct Side *from, int first, const struct Side *to, int second);
 
-/* Where `to` is along an axis of `from`. */
+/* Returns the position of `to` relative to `from` along an axis of `from`, in m. */
 Node place_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis);

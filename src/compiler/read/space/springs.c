@@ -13,7 +13,7 @@ enum { COMPONENT_COUNT = sizeof components / sizeof *components };
 
 struct Spring {
   Node stiffness, damping;
-  Node stretch; /* beyond the length without force */
+  Node stretch; /* elongation from the unstressed length */
   Node length;
 };
 
@@ -70,7 +70,7 @@ static void append_components(struct Reader *reader, xmlNodePtr node, const char
   }
 }
 
-/* factor value^2 / 2 */
+/* Returns factor value^2 / 2. */
 static Node half_of_square(struct Graph *graph, Node factor, Node value) {
   return scale(graph, 0.5, multiply(graph, factor, power_number(graph, value, 2.0)));
 }

@@ -3,11 +3,11 @@
 
 #include "read/context/attributes.h"
 
-/* Adds NAME.length and NAME.force to the definitions, where it has a name. */
+/* Collects NAME.length and NAME.force of a spring with a name. */
 void collect_spring(struct Reader *reader, xmlNodePtr node);
 
-/* One of the two: the length in m, or the force in N, positive in tension. */
+/* Reads one of the two: the length in m, or the force in N, positive in tension. */
 struct Quantity read_spring_value(struct Reader *reader, xmlNodePtr node, const char *component);
 
-/* Adds its energy k (l - l0)^2/2 to the potential, and c der(l)^2/2 to the dissipation. */
+/* Adds k (l - l0)^2 / 2 to the potential and c (dl/dt)^2 / 2 to the dissipation. */
 void read_spring(struct Reader *reader, xmlNodePtr node);

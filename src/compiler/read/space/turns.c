@@ -16,7 +16,7 @@ xmlNodePtr quaternion_of(xmlNodePtr frame) {
 
 static const char blanks[] = " \t\r\n";
 
-/* The count expressions in an attribute, which blanks separate. */
+/* Parses `count` expressions, separated by blanks, in an attribute. */
 static void read_expressions(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds, size_t count,
                              Node *nodes) {
   char *text = attribute(node, name), *what = format_text("%s of <rotate>", name), *rest = NULL;
@@ -26,7 +26,7 @@ static void read_expressions(struct Reader *reader, xmlNodePtr node, const char 
     nodes[i] = parse_expression(reader->scope, part, place).node;
 }
 
-/* Whether the attribute is one of the letters x, y and z. */
+/* True if the text is one of the letters x, y and z. */
 static bool is_letter(const char *text) {
   return strlen(text) == 1 && *text >= 'x' && *text <= 'z';
 }
@@ -48,7 +48,7 @@ static bool read_axis(struct Reader *reader, xmlNodePtr node, struct Vector *axi
   return true;
 }
 
-/* Whole numbers beyond a turn, which are degrees; turns such as 2*pi are none. */
+/* Warns of integers above 6 rad, which are probably degrees. Expressions such as 2*pi are no integers. */
 static void warn_of_degrees(struct Reader *reader, xmlNodePtr node, struct Quantity angle) {
   const struct Graph *graph = reader->model->graph;
   if (!angle.literal || !graph_is_constant(graph, angle.node)) return;
@@ -69,7 +69,7 @@ static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *p
   pose_turn(reader->model->graph, pose, axis, angle.node, total_time_derivative(reader->scope, angle.node));
 }
 
-/* The constraint that holds the norm was declared with the frame. */
+/* Sets the norm constraint of a quaternion, q . q - 1 = 0, which was declared with the frame. */
 static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
@@ -114,7 +114,7 @@ void check_turn(struct Reader *reader, xmlNodePtr node) {
 }
 
 void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
-  if (reader->diagnostics->errors > 0) return; /* check_turn() may have found it wrong */
+  if (reader->diagnostics->errors > 0) return; /* check_turn() may have reported an error */
   if (has_attribute(node, "quaternion")) turn_by_quaternion(reader, node, pose);
   else turn_by_angle(reader, node, pose);
 }

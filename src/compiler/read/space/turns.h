@@ -1,13 +1,13 @@
-/* <rotate>: how a frame is turned, by an angle about an axis or by a quaternion. */
+/* <rotate>: rotations of a frame by an angle about an axis, or by a quaternion. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* The <rotate> with a quaternion among the steps of a <frame>; NULL where there is none. */
+/* Returns the <rotate> with a quaternion in a <frame>; NULL for none. */
 xmlNodePtr quaternion_of(xmlNodePtr frame);
 
-/* Reports a <rotate> whose attributes do not fit together. */
+/* Reports a <rotate> with an invalid combination of attributes. */
 void check_turn(struct Reader *reader, xmlNodePtr node);
 
-/* Turns the pose as a <rotate> says. */
+/* Rotates the pose by a <rotate>. */
 void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose);

@@ -6,9 +6,10 @@
 
 enum { SAMPLES = 3 };
 
+/* Relative bound of a zero: some thousand roundings. */
 static const double digits = 1e-12;
 
-/* Between 0 and 1, where most functions have values. */
+/* Returns a value between 0.05 and 0.95, where most functions are defined, different for each sample and symbol. */
 static double sample_of(size_t sample, size_t symbol) {
   return 0.5 + 0.45 * sin(1.0 + 2.7 * (double)(sample + 1) * (double)(symbol + 1));
 }

@@ -1,3 +1,29 @@
+/*
+ * Piecewise cubic Hermite interpolation. On the interval i of width h[i] and secant slope D[i], the slopes b at its
+ * ends give
+ *
+ *   c[i] = (3 D[i] - 2 b[i] - b[i+1]) / h[i],   d[i] = (b[i] + b[i+1] - 2 D[i]) / h[i]^2.
+ *
+ * The methods differ in their slopes at the points:
+ *
+ * LINEAR: b[i] = D[i], and c = d = 0.
+ *
+ * MONOTONE (PCHIP): b[i] is the weighted harmonic mean of D[i-1] and D[i], with weights 2 h[i] + h[i-1] and h[i] + 2
+ * h[i-1], or 0 if their signs differ. At the ends a parabola through three points gives the slope, limited so that the
+ * curve stays monotone.
+ *
+ * SPLINE: the second derivative is continuous,
+ *
+ *   h[i] b[i-1] + 2 (h[i-1] + h[i]) b[i] + h[i-1] b[i+1] = 3 (h[i] D[i-1] + h[i-1] D[i]),
+ *
+ * and with the not-a-knot condition the first two intervals share one cubic, as do the last two. Gaussian elimination
+ * solves the tridiagonal system without pivoting, as all pivots are positive. The cost is linear in the number of
+ * points.
+ *
+ * F. N. Fritsch, J. Butland, A method for constructing local monotone piecewise cubic interpolants, SIAM J. Sci. Stat.
+ * Comput. 5 (1984).
+ * C. de Boor, A Practical Guide to Splines, revised edition, 2001, chapter IV.
+ */
 #include "read/tables/curve.h"
 
 #include <math.h>
@@ -8,7 +34,6 @@ static double width(const struct Curve *curve, size_t i) {
   return curve->x[i + 1] - curve->x[i];
 }
 
-/* Of the straight line from the point i to the next. */
 static double secant(const struct Curve *curve, size_t i) {
   return (curve->y[i + 1] - curve->y[i]) / width(curve, i);
 }
@@ -18,7 +43,10 @@ static void linear_slopes(struct Curve *curve) {
   curve->b[curve->count - 1] = secant(curve, curve->count - 2);
 }
 
-/* The slope at an end of three points, by their parabola as far as that keeps the curve monotone. */
+/*
+ * Returns the slope at an end from the widths and secant slopes of the two nearest intervals. A slope of the wrong sign
+ * becomes 0, and one that would overshoot is limited to three times the secant slope.
+ */
 static double end_slope(double near, double far, double near_secant, double far_secant) {
   double slope = ((2 * near + far) * near_secant - near * far_secant) / (near + far);
   if (slope * near_secant <= 0) return 0;
@@ -26,7 +54,6 @@ static double end_slope(double near, double far, double near_secant, double far_
   return slope;
 }
 
-/* F. N. Fritsch, J. Butland: A method for constructing local monotone piecewise cubic interpolants, 1984. */
 static void monotone_slopes(struct Curve *curve) {
   size_t last = curve->count - 1;
   if (last == 1) {
@@ -44,12 +71,12 @@ static void monotone_slopes(struct Curve *curve) {
       end_slope(width(curve, last - 1), width(curve, last - 2), secant(curve, last - 1), secant(curve, last - 2));
 }
 
-/* One equation for the slopes at three neighbouring points: below b_(i-1) + diagonal b_i + above b_(i+1) = right. */
+/* An equation for three neighbouring slopes: below b[i-1] + diagonal b[i] + above b[i+1] = right. */
 struct Row {
   double below, diagonal, above, right;
 };
 
-/* The first and the last row where two intervals share one cubic, from the end inwards. */
+/* Returns the not-a-knot condition at an end, in the order from the end inwards. */
 static struct Row shared_cubic(double near, double far, double near_secant, double far_secant) {
   double both = near + far;
   return (struct Row){.diagonal = far,
@@ -59,7 +86,7 @@ static struct Row shared_cubic(double near, double far, double near_secant, doub
 
 static struct Row row_of(const struct Curve *curve, size_t i) {
   size_t last = curve->count - 1;
-  if (curve->count == 3 && i == 0) return (struct Row){0, 1, 1, 2 * secant(curve, 0)}; /* a parabola */
+  if (curve->count == 3 && i == 0) return (struct Row){0, 1, 1, 2 * secant(curve, 0)}; /* three points: one parabola */
   if (curve->count == 3 && i == 2) return (struct Row){1, 1, 0, 2 * secant(curve, 1)};
   if (i == 0) return shared_cubic(width(curve, 0), width(curve, 1), secant(curve, 0), secant(curve, 1));
   if (i == last) {

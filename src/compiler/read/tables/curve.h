@@ -1,22 +1,25 @@
-/* Curves through points: cubic polynomials between neighbours, which are continuous with their first derivative. */
+/* Interpolation of points by piecewise polynomials, linear or cubic. See curve.c for the methods. */
 #pragma once
 
 #include <stddef.h>
 
 enum Interpolation {
-  LINEAR,   /* straight lines, whose slopes jump at the points */
-  MONOTONE, /* rises and falls where the points do: slopes of Fritsch and Butland, as in PCHIP */
-  SPLINE    /* with a continuous second derivative; the first two intervals share one cubic, as do the last two */
+  LINEAR,   /* straight lines, whose slope jumps at the points */
+  MONOTONE, /* monotone between the points where these are: PCHIP */
+  SPLINE    /* cubic spline with not-a-knot ends: continuous second derivative */
 };
 
-/* y + s (b + s (c + s d)) with s = x - x[i] between the points i and i + 1; at the last point b is the slope. */
+/*
+ * y = y[i] + s (b[i] + s (c[i] + s d[i])) with s = x - x[i] between the points i and i + 1. At the last point b is the
+ * slope.
+ */
 struct Curve {
   double *x, *y, *b, *c, *d;
   size_t count;
 };
 
-/* Fills b alone, which is there already. */
+/* Sets the slopes b, which the caller has allocated. */
 void curve_slopes(struct Curve *curve, enum Interpolation interpolation);
 
-/* Fills b, c and d from x, which ascends strictly, and y of at least two points. */
+/* Allocates and sets b, c and d. x ascends strictly; there are at least two points. */
 void curve_interpolate(struct Curve *curve, enum Interpolation interpolation);

@@ -9,7 +9,7 @@ static Node way_from(struct Graph *graph, Node x, double knot) {
   return subtract(graph, x, graph_constant(graph, knot));
 }
 
-/* Positive from the knot on, the knot itself included. */
+/* Returns a node that is positive for x >= knot. */
 static Node from_knot_on(struct Scope *scope, Node x, double knot) {
   struct Graph *graph = scope->graph;
   Node before = negate(graph, branch_of(scope, way_from(graph, x, knot), needed_by, scope->table_line));

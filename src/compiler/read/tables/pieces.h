@@ -1,16 +1,16 @@
 /*
- * Functions by pieces, each of which is smooth, see branches.h. At a point where two pieces meet, that counts into which
- * the motion goes.
+ * Piecewise functions of tables, with a mode for each knot, see pieces_of_functions.h. A mode of 0, on the knot,
+ * selects the piece to its right; way_before() excludes the knot.
  */
 #pragma once
 
 #include "read/names/scope.h"
 
-/* x - from inside of an interval, 0 before and to - from behind it. */
+/* Returns x clamped to the interval, minus from. */
 Node way_in(struct Scope *scope, Node x, double from, double to);
 
-/* x - start where that is negative, else 0. */
+/* Returns min(x - start, 0). */
 Node way_before(struct Scope *scope, Node x, double start);
 
-/* x - end where that is positive, else 0. */
+/* Returns max(x - end, 0). */
 Node way_behind(struct Scope *scope, Node x, double end);

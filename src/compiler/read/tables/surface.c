@@ -1,10 +1,23 @@
+/*
+ * Tensor-product Hermite interpolation. With the values f, the slopes f_x and f_y and the mixed derivatives f_xy at the
+ * knots,
+ *
+ *   F(x, y) = sum over i, k of f V_i(x) V_k(y) + f_x S_i(x) V_k(y) + f_y V_i(x) S_k(y) + f_xy S_i(x) S_k(y).
+ *
+ * The cardinal functions V_i and S_i are piecewise cubic with zero values and slopes at all knots, except V_i = 1 and
+ * S_i' = 1 at knot i. In bilinear surfaces S is 0 inside the grid and V is piecewise linear. Slopes are those of
+ * curve.h along grid lines, so that F and its first derivatives are continuous in bicubic surfaces. The expression has
+ * a size proportional to the number of values.
+ *
+ * C. de Boor, Bicubic spline interpolation, J. Math. and Phys. 41 (1962).
+ */
 #include "read/tables/surface.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/tables/pieces.h"
 
-/* The slopes of the curves through count lines of length values each. */
+/* Sets the slopes of `count` parallel grid lines with `length` knots each. The steps are distances in the arrays. */
 static void slopes_of_lines(const double *knots, size_t length, size_t count, size_t step_in_line, size_t step_of_lines,
                             enum Interpolation interpolation, const double *values, double *slopes) {
   double *y = allocate(length, sizeof *y), *b = allocate(length, sizeof *b);
@@ -16,7 +29,10 @@ static void slopes_of_lines(const double *knots, size_t length, size_t count, si
   }
 }
 
-/* The derivative by both is the mean of the slopes of slopes, which for straight lines and splines are the same. */
+/*
+ * The mixed derivative is the mean of both orders of differentiation. They agree for linear methods, LINEAR and SPLINE,
+ * but not for MONOTONE.
+ */
 void surface_interpolate(struct Surface *surface, enum Interpolation interpolation) {
   size_t columns = surface->columns, rows = surface->rows, count = columns * rows;
   double *other = allocate(count, sizeof *other);
@@ -31,13 +47,16 @@ void surface_interpolate(struct Surface *surface, enum Interpolation interpolati
   for (size_t i = 0; i < count; i++) surface->along_both[i] = (surface->along_both[i] + other[i]) / 2;
 }
 
-/* For each knot the function that is 1 there, and the one whose derivative is 1 there; 0 with its slope at the others. */
+/* The cardinal functions V and S of each knot at a given argument. */
 struct Cardinals {
   Node *value, *slope;
   size_t count;
 };
 
-/* The part of an interval of width h in those of its ends, where t is the share of it that lies behind: Hermite's cubics. */
+/*
+ * Adds an interval of width h to the cardinal functions of its two knots. t is the clamped coordinate, 0 before the
+ * interval and 1 after it.
+ */
 static void add_interval(struct Graph *graph, struct Cardinals *cardinals, size_t i, Node t, double h, bool is_linear) {
   Node rest = subtract(graph, ONE, t), rise = t;
   if (!is_linear) {
@@ -70,7 +89,7 @@ static struct Cardinals cardinals_at(struct Scope *scope, const double *knots, s
   return cardinals;
 }
 
-/* What one column, with its values and their slopes along y, adds up to at y. */
+/* Returns a column's contribution at y, given its values and their derivatives with respect to y. */
 static Node column_at(struct Graph *graph, const struct Cardinals *along_y, const double *values, const double *slopes,
                       size_t step) {
   Node sum = ZERO;

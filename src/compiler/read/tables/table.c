@@ -15,7 +15,10 @@ static Node polynomial(struct Graph *graph, const struct Curve *curve, size_t i,
   return multiply(graph, s, inner);
 }
 
-/* The first value and what each interval adds to it: its cubic of the way in it. */
+/*
+ * Returns the first value plus, for each interval, its cubic at the clamped coordinate. Each completed interval then
+ * contributes its full increment.
+ */
 static Node curve_at(struct Scope *scope, const struct Curve *curve, bool is_constant_outside, Node x) {
   struct Graph *graph = scope->graph;
   size_t last = curve->count - 1;

@@ -1,4 +1,4 @@
-/* Functions of one or two variables that are given by points. */
+/* Tables: functions of one or two arguments that interpolate given points. */
 #pragma once
 
 #include "read/tables/curve.h"
@@ -6,14 +6,14 @@
 
 struct Table {
   bool has_two_arguments;
-  struct Curve curve;     /* of one */
-  struct Surface surface; /* of two */
+  struct Curve curve;     /* if there is one argument */
+  struct Surface surface; /* if there are two */
   bool is_constant_outside;
   struct Dimension arguments[2], value;
 };
 
-/* The table of this full name; NULL where there is none. */
+/* Returns the table of this full name; NULL for none. */
 const struct Table *table_named(const struct Scope *scope, const char *full_name);
 
-/* The table at its one or two arguments, an expression of pieces.h; line: where it is used. */
+/* Returns the table at its one or two arguments as an expression of pieces.h. line: of its use, for messages. */
 Node table_at(struct Scope *scope, const struct Table *table, const Node arguments[2], long line);
