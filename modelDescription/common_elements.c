@@ -13,7 +13,7 @@ static bool contains(const char *const *names, size_t count, const char *name) {
   return false;
 }
 
-/* Those that variables of the unit are shown in, each once. */
+/* Writes the display units of variables with this unit, each once. */
 static void write_display_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count,
                                 const char *unit) {
   const char **written = allocate(variable_count, sizeof *written);
@@ -28,7 +28,7 @@ static void write_display_units(xmlTextWriterPtr writer, const struct Interface 
     display_unit_parse(variable->display_unit, &dimension, &factor);
     xmlTextWriterStartElement(writer, BAD_CAST "DisplayUnit");
     write_attribute(writer, "name", variable->display_unit);
-    write_number(writer, "factor", 1.0 / factor); /* of the value in the unit */
+    write_number(writer, "factor", 1.0 / factor); /* display value = factor * value in the unit */
     xmlTextWriterEndElement(writer);
   }
 }
@@ -51,7 +51,7 @@ static void write_unit(xmlTextWriterPtr writer, const struct Interface *interfac
   xmlTextWriterEndElement(writer);
 }
 
-/* Each unit once, in the order of the variables. A system has few of them, however many variables. */
+/* Writes each unit once, in the order of the variables. Searches linearly, as a system has few units. */
 void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count) {
   const char **written = allocate(variable_count, sizeof *written);
   size_t count = 0;
@@ -99,12 +99,12 @@ bool has_start(const struct ScalarVariable *entry) {
          entry->kind == VARIABLE_MODE;
 }
 
-/* Changes at events and communication points alone. */
+/* True if the variable changes only at events and communication points. */
 static bool is_discrete(const struct ScalarVariable *entry) {
   return entry->kind == VARIABLE_STATISTIC || entry->kind == VARIABLE_MODE || entry->kind == VARIABLE_CONTACT;
 }
 
-/* Causality, variability and initial by the tables of FMI 2.0.4, section 2.2.7, and FMI 3.0, section 2.4.7.4. */
+/* Follows the tables of FMI 2.0.4, section 2.2.7, and FMI 3.0, section 2.4.7.4. */
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable) {
   const struct ScalarVariable *entry = &variable->entry;
   static const char *const causalities[] = {
@@ -131,7 +131,7 @@ void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariabl
     write_attribute(writer, "initial", starts_nearby(variable) ? "approx" : initials[entry->kind]);
 }
 
-/* der(der(x)) is no structured name (section 2.2.9), where a second derivative is der(x,2). */
+/* der(der(x)) is not a structured name (FMI 2.0.4, section 2.2.9), which requires der(x,2). */
 const char *naming_convention(const struct Model *model) {
   for (size_t i = 1; i < model->inputs.count; i++)
     if (is_input_rate(model, i) && is_input_rate(model, i - 1)) return "flat";

@@ -1,25 +1,26 @@
-/* What model descriptions of all versions of FMI say alike. */
+/* Elements and attributes that the model descriptions of FMI 2.0 and 3.0 share. */
 #pragma once
 
 #include <libxml/xmlwriter.h>
 
 #include "interface/interface.h"
 
-/* The element UnitDefinitions, where so many of the first variables have units. */
+/* Writes UnitDefinitions with the units of the first variable_count variables; nothing if they have none. */
 void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count);
 
 void write_log_categories(xmlTextWriterPtr writer);
 
-/* The element DefaultExperiment. */
+/* Writes DefaultExperiment. */
 void write_experiment(xmlTextWriterPtr writer, const struct Model *model);
 
-/* Whether the description gives a start value. */
+/* True if the description has a start value of the variable. */
 bool has_start(const struct ScalarVariable *entry);
 
-/* The attributes causality, variability and initial. */
+/* Writes the attributes causality, variability and initial. */
 void write_classification(xmlTextWriterPtr writer, const struct InterfaceVariable *variable);
 
+/* Returns the value of variableNamingConvention. */
 const char *naming_convention(const struct Model *model);
 
-/* What is said of the system as a whole, and the tool, as attributes. */
+/* Writes the attributes of the system's origin and of the generating tool. */
 void write_origin(xmlTextWriterPtr writer, const struct Model *model);

@@ -16,7 +16,7 @@ bool fmi3_build_description_write(xmlBufferPtr buffer, const struct Program *pro
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "name", "%s.c", name);
   xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);
-  /* The mathematics of C. */
+  /* the C math library */
   xmlTextWriterStartElement(writer, BAD_CAST "Library");
   write_attribute(writer, "name", "m");
   write_attribute(writer, "external", "true");

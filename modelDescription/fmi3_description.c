@@ -25,7 +25,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   const struct Model *model = program->model;
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_abilities(writer, model);
-  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  /* after a step the FMU reports a drift from the constraints, and modes that must change */
   if (model->constraints.count > 0 || program->equations->switching != NULL)
     write_attribute(writer, "needsCompletedIntegratorStep", "true");
   xmlTextWriterEndElement(writer);
@@ -37,14 +37,14 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   write_attribute(writer, "providesIntermediateUpdate", "true");
   if (program->equations->switching != NULL) write_attribute(writer, "hasEventMode", "true");
   if (program->equations->method != NULL) {
-    /* Where a solver comes to a part of a step alone, and where the importer asks for it. */
+    /* the solver may finish only a part of a step, and the importer may ask for that */
     write_attribute(writer, "mightReturnEarlyFromDoStep", "true");
     write_attribute(writer, "canReturnEarlyAfterIntermediateUpdate", "true");
   }
   xmlTextWriterEndElement(writer);
 }
 
-/* The elements of an array, or the scalar. */
+/* Returns the number of elements of an array; 1 for a scalar. */
 static size_t element_count(const struct InterfaceVariable *variable) {
   return variable->array_count > 0 ? variable->array_count : 1;
 }
@@ -78,7 +78,7 @@ static void write_numbers(xmlTextWriterPtr writer, const struct Interface *inter
                                       interface_find(interface, VARIABLE_STATE, entry->index) + FIRST_REFERENCE);
 }
 
-/* A statistic may count further than an Int32. */
+/* Returns the element of the variable's type. Counts of steps may exceed an Int32. */
 static const char *type_name(const struct ScalarVariable *entry) {
   static const char *const names[] = {[TYPE_REAL] = "Float64", [TYPE_INTEGER] = "Int32", [TYPE_BOOLEAN] = "Boolean"};
   return entry->kind == VARIABLE_STATISTIC ? "Int64" : names[entry->type];

@@ -9,7 +9,7 @@
 #include "interface/arrays.h"
 #include "xml_output.h"
 
-/* What a flange is made of, by the unit of its coordinate, in the names of Modelica's connector and of its adaptors to signals. */
+/* A flange, by the unit of its coordinate, with the names of Modelica's connector and adaptors to signals. */
 struct Flange {
   const char *unit, *position, *velocity, *force, *kind, *description;
 };
@@ -25,9 +25,10 @@ static const struct Flange *flange_of(const struct Variable *coordinate) {
   return NULL;
 }
 
+/* Instead of an index: no input, and several. */
 enum { NONE = -1, SEVERAL = -2 };
 
-/* Which input is the force along each coordinate, and along no other: its place, NONE or SEVERAL. */
+/* Returns, for each coordinate, the index of the input that is the force along it alone; or NONE or SEVERAL. */
 static int *find_forces(const struct Model *model) {
   size_t inputs = model->inputs.count, coordinates = model->coordinates.count;
   int *coordinate_of = allocate(inputs + 1, sizeof *coordinate_of), *force = allocate(coordinates + 1, sizeof *force);
@@ -55,16 +56,16 @@ static void write_member(xmlTextWriterPtr writer, const struct InterfaceVariable
   xmlTextWriterEndElement(writer);
 }
 
-/* The variables of a terminal: scalars, or arrays of as many elements, which are as many flanges. */
+/* The variables of a terminal: scalars, or arrays with an element for each of several flanges. */
 struct Members {
-  const struct InterfaceVariable *position, *velocity, *force; /* NULL where there is no terminal */
+  const struct InterfaceVariable *position, *velocity, *force; /* NULL without a terminal */
 };
 
 static bool are_of_one_size(const struct InterfaceVariable *a, const struct InterfaceVariable *b) {
   return a->array_count == b->array_count && !b->is_further_element;
 }
 
-/* The members of the terminal of a coordinate, or of the array that begins with it; force as find_forces() tells. */
+/* Returns the terminal of a coordinate, or of the array that begins with it. force: from find_forces(). */
 static struct Members members_of(const struct Program *program, const int *force, size_t coordinate) {
   const struct Interface *interface = program->interface;
   const struct Members none = {NULL, NULL, NULL};
@@ -79,12 +80,12 @@ static struct Members members_of(const struct Program *program, const int *force
   return are_of_one_size(position, members.velocity) && are_of_one_size(position, members.force) ? members : none;
 }
 
-/* The right edge of the icon, along which the terminals are. */
+/* The right edge of the icon, with the terminals side by side. */
 struct Edge {
   size_t count, place;
 };
 
-/* A flange is half outside of the icon. */
+/* Writes the position of a flange, half of which is outside the icon. */
 static void write_place(xmlTextWriterPtr writer, const struct Edge *edge) {
   double half = fmin(10.0, 80.0 / (double)edge->count);
   double height = 100.0 - 200.0 * ((double)edge->place + 0.5) / (double)edge->count;
@@ -99,8 +100,8 @@ static void write_place(xmlTextWriterPtr writer, const struct Edge *edge) {
 }
 
 /*
- * A force on a flange flows into the system: those of connected flanges add up to 0. A bus, since Modelica's connector has no velocity,
- * which dampers need from what moves them.
+ * Writes a terminal. Forces are inflows: those of connected flanges add up to 0. The matching rule is bus, since
+ * Modelica's connector has no velocity, which an external damper needs.
  */
 static void write_terminal(xmlTextWriterPtr writer, const struct Program *program, const int *force, size_t coordinate,
                            const struct Edge *edge) {
@@ -111,7 +112,7 @@ static void write_terminal(xmlTextWriterPtr writer, const struct Program *progra
   write_attribute(writer, "name", name);
   write_attribute(writer, "matchingRule", "bus");
   if (members.position->array_count < 2)
-    write_attribute(writer, "terminalKind", flange->kind); /* several are no connector */
+    write_attribute(writer, "terminalKind", flange->kind); /* an array of flanges is not one connector */
   write_attribute(writer, "description", description != NULL ? description : flange->description);
   write_member(writer, members.position, flange->position, "signal");
   write_member(writer, members.velocity, flange->velocity, "signal");
@@ -125,7 +126,7 @@ static bool has_terminal(const struct Program *program, const int *force, size_t
          members_of(program, force, coordinate).position != NULL;
 }
 
-/* terminalsAndIcons/icon.png fills the whole of the system's picture. */
+/* Writes the coordinate system and the icon, which fills it. */
 static void write_icon(xmlTextWriterPtr writer) {
   static const char *const corners[] = {"x1", "y1", "x2", "y2"};
   static const char *const elements[] = {"CoordinateSystem", "Icon"};

@@ -1,4 +1,4 @@
-/* documentation/licenses/license.txt, where readers of an FMU's licences begin (FMI 3.0, section 2.5.1). */
+/* Writes documentation/licenses/license.txt, the entry point to an FMU's licences (FMI 3.0, section 2.5.1). */
 #ifndef LICENSES_H
 #define LICENSES_H
 
@@ -6,7 +6,7 @@
 
 #include "program/program.h"
 
-/* The licence of what is in the FMU, and the names of the files beside it that have those of libraries in it. */
+/* Writes the licence of the FMU, and the names of the files with the licences of linked libraries. */
 void licenses_write(FILE *file, const struct Program *program);
 
 #endif

@@ -10,7 +10,7 @@
 #include "scene.h"
 #include "xml_output.h"
 
-/* FMUs without SUNDIALS are complete in C, as one file that the build makes of system.c and the runtime. */
+/* Writes SourceFiles. FMUs without SUNDIALS contain all their sources, as one C file. */
 static void write_sources(xmlTextWriterPtr writer, const struct Program *program) {
   const struct Method *method = program->equations->method;
   if (method != NULL && method->uses_library) return;
@@ -28,7 +28,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
                                              "providesDirectionalDerivative"};
   xmlTextWriterStartElement(writer, BAD_CAST "ModelExchange");
   write_attribute(writer, "modelIdentifier", model->name);
-  /* A step is asked for whether its state has drifted from the constraints, or a mode must change. */
+  /* after a step the FMU reports a drift from the constraints, and modes that must change */
   if (model->constraints.count == 0 && program->equations->switching == NULL)
     write_attribute(writer, "completedIntegratorStepNotNeeded", "true");
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
@@ -38,7 +38,7 @@ static void write_interfaces(xmlTextWriterPtr writer, const struct Program *prog
   write_attribute(writer, "modelIdentifier", model->name);
   write_attribute(writer, "canHandleVariableCommunicationStepSize", "true");
   if (model->inputs.count > 0) write_attribute(writer, "canInterpolateInputs", "true");
-  /* Every system has outputs: its coordinates, or those that it names. */
+  /* every system has outputs: those declared, or its coordinates */
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "maxOutputDerivativeOrder", "%d",
                                     interface->output_derivative_order);
   for (size_t i = 0; i < 3; i++) write_attribute(writer, state_access[i], "true");
@@ -64,7 +64,7 @@ static void write_real(xmlTextWriterPtr writer, const struct Interface *interfac
   xmlTextWriterEndElement(writer);
 }
 
-/* A statistic has no start value. */
+/* Statistics have no start value. */
 static void write_integer(xmlTextWriterPtr writer, const struct ScalarVariable *entry) {
   xmlTextWriterStartElement(writer, BAD_CAST "Integer");
   if (!isnan(entry->minimum)) write_number(writer, "min", entry->minimum);

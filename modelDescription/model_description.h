@@ -5,5 +5,5 @@
 
 #include "program/program.h"
 
-/* Appends the file's text to buffer. Returns false where libxml2 reports an error. */
+/* Appends the file to buffer. Returns false if libxml2 reports an error. */
 bool model_description_write(xmlBufferPtr buffer, const struct Program *program, const char *guid);

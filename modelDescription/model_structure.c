@@ -7,12 +7,12 @@
 #include "interface/dependencies.h"
 #include "xml_output.h"
 
-/* How a version of FMI writes it. */
+/* The form of ModelStructure in a version of FMI. Kinds: outputs, derivatives, initial unknowns, event indicators. */
 struct StructureForm {
-  const char *groups[4];   /* around the unknowns of each kind; NULL for nothing */
-  const char *elements[4]; /* for each unknown; NULL for a kind that it does not list */
+  const char *groups[4];   /* element around the unknowns of each kind; NULL for none */
+  const char *elements[4]; /* element of an unknown of each kind; NULL for a kind that is not listed */
   const char *key;         /* the attribute that names a variable */
-  size_t first_key;        /* of the first variable */
+  size_t first_key;        /* key of the first variable */
   bool has_arrays;
 };
 
@@ -32,32 +32,32 @@ struct Structure {
   const struct Interface *interface;
   const struct Graph *graph;
   struct Dependencies *dependencies;
-  size_t *place_of; /* of the variable of each symbol: 1 + its place among the variables; 0 where it is no known */
-  size_t *places;   /* workspace: of what one unknown depends on */
-  enum Dependency *of_place; /* workspace: how it does */
+  size_t *place_of;          /* for each symbol: 1 + the index of its variable; 0 if it is not a known */
+  size_t *places;            /* workspace: indices of the knowns that one unknown depends on */
+  enum Dependency *of_place; /* workspace, for each variable: the kind of dependency */
 };
 
-/* Symbols that an unknown may depend on. Among initial unknowns, parameters are knowns too. */
+/* True if unknowns may depend on the variable. Initial unknowns also depend on parameters. */
 static bool is_known(const struct ScalarVariable *entry, bool initial) {
   return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_INPUT ||
          (entry->kind == VARIABLE_STATE && !(initial && has_following_start(entry))) ||
          (initial && entry->kind == VARIABLE_PARAMETER);
 }
 
-/* Factors are of Real variables alone. */
+/* Returns dependenciesKind; factors exist for Real variables only. */
 static const char *kind_name(enum Dependency dependency, enum VariableType type, bool initial) {
   if (type != TYPE_REAL) return "dependent";
   if (dependency == CONSTANT_FACTOR) return "constant";
   return dependency == TUNABLE_FACTOR && !initial ? "tunable" : "dependent";
 }
 
-/* The place of the array that the variable is an element of, or of itself. */
+/* Returns the index of the array that the variable is an element of, or of the variable itself. */
 static size_t place_of_whole(const struct Structure *structure, size_t place) {
   while (structure->form->has_arrays && structure->interface->variables[place].is_further_element) place--;
   return place;
 }
 
-/* Adds what one scalar depends on; returns the number of places. */
+/* Adds the dependencies of one scalar. Returns the number of indices in places. */
 static size_t add_places(const struct Structure *structure, size_t count, Node node, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
   dependencies_find(structure->dependencies, node, initial);
@@ -72,7 +72,7 @@ static size_t add_places(const struct Structure *structure, size_t count, Node n
   return count;
 }
 
-/* The places of all knowns of initialization, ascending, as those that are depended on; returns their number. */
+/* Adds all knowns of initialization as dependencies, ascending. Returns their number. */
 static size_t find_all_places(const struct Structure *structure) {
   const struct Interface *interface = structure->interface;
   size_t count = 0, variable_count = structure->form->has_arrays ? interface->count : interface->count_in_fmi2;
@@ -88,8 +88,8 @@ static size_t find_all_places(const struct Structure *structure) {
 }
 
 /*
- * The places of the knowns that the unknown, with all its elements, depends on, ascending; returns their number. Where
- * constraints move the start values, all that is computed initially depends on all of them.
+ * Finds the knowns that the unknown, with all its elements, depends on, ascending. Returns their number. With
+ * constraints, which move start values, initial unknowns depend on all knowns.
  */
 static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
   if (initial && structure->dependencies->equations->constraints->count > 0) return find_all_places(structure);
@@ -114,13 +114,13 @@ static void write_dependencies(const struct Structure *structure, size_t count, 
 }
 
 /*
- * A derivative of a large coupled system depends on nearly all states, so that the lists of all of them would grow as
- * their square. Without a list it depends on all knowns (section 2.2.8). Outputs keep theirs: importers find algebraic
- * loops by them.
+ * Longest list of dependencies, except for outputs. In a large coupled system each derivative depends on nearly all
+ * states, and the lists would grow quadratically. Without a list, an unknown depends on all knowns (FMI 2.0.4, section
+ * 2.2.8). Importers need the lists of outputs to find algebraic loops.
  */
 enum { DEPENDENCY_LIMIT = 1000 };
 
-/* The element for one unknown. */
+/* Writes the element of one unknown. */
 static void write_unknown(const struct Structure *structure, const char *element, size_t unknown, bool initial) {
   size_t count = find_places(structure, unknown, initial);
   xmlTextWriterStartElement(structure->writer, BAD_CAST element);
@@ -144,7 +144,7 @@ static bool is_indicator(const struct InterfaceVariable *variable) {
   return variable->entry.kind == VARIABLE_INDICATOR;
 }
 
-/* What initialisation computes; other states have the initial value that was set. */
+/* True if initialization computes the variable; other states keep the initial value that was set. */
 static bool is_computed_initially(const struct InterfaceVariable *variable) {
   return is_unknown(&variable->entry) && (variable->entry.kind != VARIABLE_STATE || starts_nearby(variable));
 }

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "xml_output.h"
 
-/* No variable has such a name by chance: a part of a system that is called SI would have to have one called so. */
+/* Prefix of type names, which must differ from names of variables. */
 #define PREFIX "SI."
 
 struct QuantityOfUnit {

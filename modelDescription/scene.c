@@ -11,7 +11,7 @@
 #include "scene/surfaces.h"
 #include "xml_output.h"
 
-/* To ten digits, which are the same wherever lagc runs. */
+/* Writes ten digits, which are the same on all platforms. */
 static void write_rounded(xmlTextWriterPtr writer, const char *name, double value) {
   char text[32];
   snprintf(text, sizeof text, "%.10g", fabs(value) < 1e-12 ? 0.0 : value);
@@ -30,7 +30,7 @@ static void write_frame_of(xmlTextWriterPtr writer, const struct Model *model, s
 static void write_frames(xmlTextWriterPtr writer, const struct Model *model) {
   for (size_t i = BASE_FRAME + 1; i < model->mechanism.frame_count; i++) {
     const struct ReferenceFrame *frame = &model->mechanism.frames[i];
-    if (frame->is_of_body) continue; /* seen as that */
+    if (frame->is_of_body) continue; /* drawn as a body */
     xmlTextWriterStartElement(writer, BAD_CAST "frame");
     write_attribute(writer, "name", frame->name);
     write_frame_of(writer, model, frame->parent);
@@ -63,7 +63,7 @@ static void write_body(xmlTextWriterPtr writer, const struct Model *model, const
   xmlTextWriterEndElement(writer);
 }
 
-/* The place of the first shape that draws the mesh. */
+/* Returns the index of the first visible shape with this mesh. */
 static size_t first_with(const struct Mechanism *mechanism, const struct Mesh *mesh) {
   size_t i = 0;
   while (mechanism->shapes[i].mesh != mesh || mechanism->shapes[i].is_hidden) i++;
@@ -85,7 +85,7 @@ static void write_mesh(xmlTextWriterPtr writer, const struct Model *model, const
   xmlTextWriterEndElement(writer);
 }
 
-/* What it is part of is the base where nothing is named. */
+/* Writes a shape; without an attribute "in" it belongs to the base. */
 static void write_shape(xmlTextWriterPtr writer, const struct Model *model, const struct ContactShape *shape) {
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"}, *const angles[] = {"roll", "pitch", "yaw"};
   const struct Graph *graph = model->graph;
@@ -106,7 +106,7 @@ static void write_shape(xmlTextWriterPtr writer, const struct Model *model, cons
   xmlTextWriterEndElement(writer);
 }
 
-/* Those that are drawn, and before the first one that has it each mesh. */
+/* Writes the visible shapes, and each mesh before the first shape that uses it. */
 static void write_shapes(xmlTextWriterPtr writer, const struct Model *model) {
   const struct Mechanism *mechanism = &model->mechanism;
   for (size_t i = 0; i < mechanism->shape_count; i++) {
@@ -144,7 +144,7 @@ static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, co
   xmlTextWriterEndElement(writer);
 }
 
-/* By its formula, or as it is. */
+/* Writes a coordinate by its formula, or as a number if that is NULL. */
 static void write_place(xmlTextWriterPtr writer, const char *name, double place, const char *formula) {
   if (formula != NULL) write_attribute(writer, name, formula);
   else write_rounded(writer, name, place);

@@ -1,22 +1,24 @@
 /*
- * Writes <scene>: what there is to see of a system, for programs that draw it from the FMU's variables (scripts/live_page).
- * It stands in what FMI leaves to the tool: VendorAnnotations of FMI 2.0, Annotations of FMI 3.0.
+ * Writes <scene>: the geometry of a system, for programs that draw it from the FMU's variables (scripts/live_page). It
+ * is in VendorAnnotations of FMI 2.0 and in Annotations of FMI 3.0.
  *
- *   <gravity x="" y="" z="-g"/>                           where it was given
- *   <frame name="arm" in="base"/>                         at arm.x, arm.y, arm.z, turned by arm.R11 to arm.R33
- *   <particle name="bob" mass="m" in="arm"/>              at bob.x, bob.y, bob.z, as far as there are such variables
- *   <body name="rod" mass="rho*a" in="arm" Izz=""/>       likewise, with the moments of inertia along the frame's axes
- *   <body name="crank" mass="rho*a" inertia=""/>          in the plane, turned by crank.angle; may be a frame for others
+ *   <gravity x="" y="" z="-g"/>                           if it was given
+ *   <frame name="arm" in="base"/>                         at arm.x, arm.y, arm.z, rotated by arm.R11 to arm.R33
+ *   <particle name="bob" mass="m" in="arm"/>              at bob.x, bob.y, bob.z, if there are such variables
+ *   <body name="rod" mass="rho*a" in="arm" Izz=""/>       also with moments of inertia along the frame's axes
+ *   <body name="crank" mass="rho*a" inertia=""/>          planar, rotated by crank.angle; may be a frame of others
  *   <point name="tip" in="arm"/>
- *   <rod from="" to="bob" force="rod.force" factor="1"/>  whose length stays the same, from the origin without from=""; factor times
- *                                                         the force presses them apart, in N
- *   <joint of="crank" x="" y="" with="coupler" withX="" withY=""/>  a place that a body in the plane shares with another thing, in m
- *                                                         along its axes; force1, x1, y1, force2, x2, y2: its force, in N
- *   <surface of="ball" x="" y="" z="" nx="" ny="" nz=""/> a plane that a thing hits, with the normal outwards; stop="true" where a
- *                                                         coordinate has a limit there
+ *   <rod from="" to="bob" force="rod.force" factor="1"/>  of constant length; from="" is the origin; factor times force
+ *                                                         is its compressive force, in N
+ *   <joint of="crank" x="" y="" with="coupler" withX="" withY=""/>  a point that a planar body shares with another
+ *                                                         object, in m along its axes; force1, x1, y1, force2, x2,
+ *                                                         y2: its force, in N
+ *   <surface of="ball" x="" y="" z="" nx="" ny="" nz=""/> a plane that an object hits, with the outward normal;
+ *                                                         stop="true" at the limit of a coordinate
  *
- * All but names are formulas of parameters, in m, kg, kg.m2 and m/s2; but factors, forces and surfaces, and places of joints that are no
- * sums of multiples of parameters, are numbers at their start values. Without in="..." a thing is in the base.
+ * All values except names are formulas of parameters, in m, kg, kg.m2 and m/s2. Exceptions, as numbers at the start
+ * values: factors, forces, surfaces, and coordinates of joints that are not linear in the parameters. Without in="..."
+ * an object is in the base.
  */
 #pragma once
 
@@ -24,7 +26,7 @@
 
 #include "model/model.h"
 
-/* Whether there is something to see. */
+/* True if the system has bodies or frames. */
 bool has_scene(const struct Model *model);
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model);

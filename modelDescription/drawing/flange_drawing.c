@@ -1,6 +1,6 @@
 #include "flange_drawing.h"
 
-/* Corners of a regular polygon that looks like a circle, by the sines of multiples of 15 degrees, which all machines round alike. */
+/* Sines of multiples of 15 degrees, as constants so that all platforms round alike. The circle is a polygon. */
 static const double sines[] = {
     0.0, 0.25881904510252074, 0.5, 0.70710678118654757, 0.86602540378443860, 0.96592582628906831, 1.0};
 enum { QUARTER = 6, CORNERS = 4 * QUARTER };

@@ -1,10 +1,10 @@
-/* The picture of a mechanical flange, by which diagrams show where a terminal is connected. */
+/* The symbol of a mechanical flange, which diagrams show at a terminal. */
 #ifndef FLANGE_DRAWING_H
 #define FLANGE_DRAWING_H
 
 #include "shapes.h"
 
-/* A disk that fills the picture, in pixels of one of PICTURE_SIZE. */
+/* Returns a disk that fills a picture of PICTURE_SIZE, in pixels. */
 struct Drawing flange_drawing(void);
 
 #endif

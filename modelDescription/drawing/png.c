@@ -1,3 +1,8 @@
+/*
+ * A rasterizer and a PNG writer (ISO/IEC 15948). The coverage of a pixel by a shape follows from the signed distance
+ * of its centre to the edge, clamped to one pixel, which gives smooth edges. Each shape costs its bounding box times
+ * its lines. The image is stored without compression (RFC 1950, RFC 1951), as the FMU's archive compresses it.
+ */
 #include "png.h"
 
 #include <math.h>
@@ -6,11 +11,11 @@
 
 #include "base/memory.h"
 
-enum { SIDE = 128, ROW = 1 + 3 * SIDE, IMAGE = SIDE * ROW }; /* each row begins with the number of its filter, 0 */
+enum { SIDE = 128, ROW = 1 + 3 * SIDE, IMAGE = SIDE * ROW }; /* each row begins with its filter type 0 */
 
 /* --- Pixels -------------------------------------------------------------------------------------------------------- */
 
-/* From a spot to the line between two others, or to the first where they are one. */
+/* Returns the distance from a point to a segment, which may be a point. */
 static double distance_to_line(struct Spot spot, struct Spot from, struct Spot to) {
   double right = to.right - from.right, up = to.up - from.up, length = right * right + up * up;
   double along = length > 0.0 ? ((spot.right - from.right) * right + (spot.up - from.up) * up) / length : 0.0;
@@ -18,7 +23,7 @@ static double distance_to_line(struct Spot spot, struct Spot from, struct Spot t
   return hypot(spot.right - from.right - along * right, spot.up - from.up - along * up);
 }
 
-/* To the nearest of a shape's lines; of a polygon the last one leads back to its beginning. */
+/* Returns the distance to the nearest segment of a shape; a polygon is closed. is_inside: for convex polygons. */
 static double distance_to_shape(const struct Shape *shape, struct Spot spot, bool *is_inside) {
   double distance = INFINITY;
   bool has_left = false, has_right = false;
@@ -34,7 +39,7 @@ static double distance_to_shape(const struct Shape *shape, struct Spot spot, boo
   return distance;
 }
 
-/* How much of a pixel the shape covers, as far as the distance from its edge tells. */
+/* Returns the share of a pixel that the shape covers, times its opacity. */
 static double coverage(const struct Shape *shape, struct Spot spot) {
   const double scale = (double)SIDE / PICTURE_SIZE;
   const struct LookStyle *style = &looks[shape->look];
@@ -52,7 +57,7 @@ static double clip(double place) {
   return fmin(fmax(place, 0.0), SIDE);
 }
 
-/* Looks only where it may be. */
+/* Paints a shape, within its bounding box. */
 static void paint_shape(unsigned char *image, const struct Shape *shape) {
   const double scale = (double)SIDE / PICTURE_SIZE, width = looks[shape->look].width + 2.0;
   struct Rectangle all = rectangle_of(&(struct Drawing){(struct Shape *)shape, 1});
@@ -104,7 +109,7 @@ static void append_chunk(unsigned char *file, size_t *length, const char *type, 
   append_number(file, length, crc32_of(file + start, *length - start));
 }
 
-/* As zlib stores what it does not compress, in one block: the FMU's archive compresses it. */
+/* Stores the image as one uncompressed block in zlib format. Returns the length. */
 static size_t store(const unsigned char *image, unsigned char *stored) {
   const unsigned char head[] = {0x78, 0x01, 0x01, IMAGE & 0xff, IMAGE >> 8, ~IMAGE & 0xff, ~IMAGE >> 8 & 0xff};
   size_t length = 0;
@@ -116,7 +121,8 @@ static size_t store(const unsigned char *image, unsigned char *stored) {
 
 unsigned char *png_of(const struct Drawing *drawing, size_t *length) {
   static const unsigned char signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  static const unsigned char header[] = {0, 0, 0, SIDE, 0, 0, 0, SIDE, 8, 2, 0, 0, 0}; /* 8 bits of red, green, blue */
+  /* 8 bits each of red, green and blue */
+  static const unsigned char header[] = {0, 0, 0, SIDE, 0, 0, 0, SIDE, 8, 2, 0, 0, 0};
   unsigned char *image = allocate(IMAGE, 1), *stored = allocate(IMAGE + 32, 1), *file = allocate(IMAGE + 128, 1);
   memset(image, 0xff, IMAGE);
   for (int row = 0; row < SIDE; row++) image[row * ROW] = 0;

@@ -1,10 +1,10 @@
-/* A drawing as PNG, of 128 pixels a side on white paper. */
+/* Converts a drawing to PNG, 128 x 128 pixels on white. */
 #ifndef PNG_H
 #define PNG_H
 
 #include "shapes.h"
 
-/* The bytes of the file; *length becomes their number. */
+/* Returns the bytes of the file, and their number in *length. */
 unsigned char *png_of(const struct Drawing *drawing, size_t *length);
 
 #endif

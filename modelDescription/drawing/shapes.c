@@ -61,7 +61,11 @@ static double turn(struct Spot a, struct Spot b, struct Spot c) {
   return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
 }
 
-/* One side of Andrew's chain, in the order of the points or backwards, behind what is there. */
+/*
+ * Appends one chain of the hull, forwards or backwards, by Andrew's monotone chain algorithm: points that do not turn
+ * left are removed. O(n log n) with the sort. A. M. Andrew: Another efficient algorithm for convex hulls in two
+ * dimensions, 1979.
+ */
 static size_t append_side(const struct Spot *points, size_t count, bool backwards, struct Spot *hull, size_t length) {
   size_t first = length;
   for (size_t i = 0; i < count; i++) {
@@ -69,7 +73,7 @@ static size_t append_side(const struct Spot *points, size_t count, bool backward
     while (length >= first + 2 && !(turn(hull[length - 2], hull[length - 1], point) > 0.0)) length--;
     hull[length++] = point;
   }
-  return length - 1; /* its last point begins the other side */
+  return length - 1; /* its last point begins the other chain */
 }
 
 size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull) {

@@ -1,4 +1,4 @@
-/* What a drawing is made of: lines, dots and filled polygons on the paper, in the order in which they are drawn. */
+/* The shapes of a drawing: lines, dots and filled polygons, in drawing order. */
 #ifndef SHAPES_H
 #define SHAPES_H
 
@@ -7,12 +7,12 @@
 
 enum Look { GROUND, AXIS, SOLID, EDGE, LINK, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
 
-/* How a look is drawn in a picture whose sides are PICTURE_SIZE; the classes are those of page.css and of the icon's style. */
+/* The style of a look in a picture of PICTURE_SIZE; name is a class of page.css and of the icon's style. */
 struct LookStyle {
   const char *name;
-  double width;            /* of lines, and the diameter of dots */
-  double opacity;          /* of filled polygons; lines and dots hide what is behind them */
-  unsigned char colour[3]; /* on white paper */
+  double width;            /* line width or diameter of dots, in pixels */
+  double opacity;          /* of filled polygons; lines and dots are opaque */
+  unsigned char colour[3]; /* red, green, blue on white */
 };
 
 enum { PICTURE_SIZE = 160 };
@@ -23,10 +23,10 @@ struct Spot {
   double right, up;
 };
 
-/* One point: a dot. */
+/* A dot if it has one point. */
 struct Shape {
   enum Look look;
-  bool is_filled; /* a convex polygon, else a line through the points */
+  bool is_filled; /* a convex polygon, else a polyline */
   struct Spot *points;
   size_t count;
 };
@@ -39,17 +39,17 @@ struct Drawing {
 void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count);
 void append_line(struct Drawing *drawing, enum Look look, struct Spot from, struct Spot to);
 
-/* The smallest rectangle that holds all points; its least corner is beyond its greatest where there are none. */
+/* The bounding box of all points; least is greater than most without points. */
 struct Rectangle {
   struct Spot least, most;
 };
 
 struct Rectangle rectangle_of(const struct Drawing *drawing);
 
-/* Puts it into the middle of a picture of PICTURE_SIZE, in pixels to the right and down; false where it has no size. */
+/* Scales and centres the drawing in PICTURE_SIZE pixels, to the right and down. Returns false if it has no extent. */
 bool fit_drawing(struct Drawing *drawing);
 
-/* The convex hull of points, which are sorted here; returns its number of points, which come first in hull[2 count]. */
+/* Finds the convex hull; sorts points. Returns its number of points, which come first in hull[2 count]. */
 size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull);
 
 #endif

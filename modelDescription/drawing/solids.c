@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both ends of a cylinder */
+enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both end circles of a cylinder */
 
-/* A body's place, the directions of its axes, and half of its sides along them. */
+/* A body's centre, the directions of its axes, and half of its size along each, in m. */
 struct Solid {
   double middle[3], axis[3][3], half[3];
 };
@@ -27,7 +27,7 @@ static struct Spot corner(const struct View *view, const struct Solid *solid, co
   return seen(view, position);
 }
 
-/* The axis of a body of revolution, that of two equal moments of inertia; -1 for none. */
+/* Returns the axis of symmetry, whose two other moments of inertia are equal to 0.1 %; -1 for none. */
 static int axis_of_revolution(const double moment[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double first = moment[(axis + 1) % 3], second = moment[(axis + 2) % 3];
@@ -36,7 +36,10 @@ static int axis_of_revolution(const double moment[3]) {
   return -1;
 }
 
-/* A cylinder of radius r and length h has the moments m r^2/2 and m (3 r^2 + h^2)/12; a box m (b^2 + c^2)/12. */
+/*
+ * Finds the size from the moments of inertia: m r^2/2 and m (3 r^2 + h^2)/12 of a cylinder of radius r and length h
+ * about its axis and across, m (b^2 + c^2)/12 of a box.
+ */
 static void set_sides(struct Solid *solid, const double moment[3], double mass, int axis) {
   for (int i = 0; i < 3; i++) {
     double across = moment[(i + 1) % 3] + moment[(i + 2) % 3] - moment[i];
@@ -98,7 +101,7 @@ void append_solid(struct Drawing *drawing, const struct View *view, const struct
     }
   }
   if (!(mass > 0.0) || !isfinite(sum) || !(moment[0] + moment[1] + moment[2] > 0.0)) return;
-  if (moment[0] == 0.0 && moment[1] == 0.0) { /* in the plane: a bar, as for want of a better shape */
+  if (moment[0] == 0.0 && moment[1] == 0.0) { /* planar: drawn as a bar */
     solid.half[0] = sqrt(3.0 * moment[2] / mass);
     append_line(drawing, BAR, corner(view, &solid, (double[]){-1, 0, 0}), corner(view, &solid, (double[]){1, 0, 0}));
     return;

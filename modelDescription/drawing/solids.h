@@ -1,21 +1,22 @@
-/* Rigid bodies in space as uniform cylinders, disks and boxes of their mass and moments of inertia. */
+/* Draws rigid bodies in space as uniform cylinders or boxes with the same mass and moments of inertia. */
 #ifndef SOLIDS_H
 #define SOLIDS_H
 
 #include "model/model.h"
 #include "shapes.h"
 
-/* Two directions in space that the paper's axes show. */
+/* A parallel projection: the directions in space along the axes of the picture, of length 1. */
 struct View {
   double right[3], up[3];
 };
 
+/* Returns the projection of a position. */
 struct Spot seen(const struct View *view, const double position[3]);
 
-/* Whether it has a tensor of inertia, and so an extent in space. */
+/* True if the body has an inertia tensor, and so an extent in space. */
 bool is_solid(const struct Body *body);
 
-/* Nothing without mass and moments of inertia. */
+/* Appends a body; nothing if its mass or inertia vanishes. values: of all nodes. */
 void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
                   const double *values);
 

@@ -41,14 +41,14 @@ static void write_style(xmlTextWriterPtr writer) {
   for (int i = 0; i < LOOK_COUNT; i++) {
     int first = 0;
     while (strcmp(looks[first].name, looks[i].name) != 0) first++;
-    if (first < i) continue; /* looks that share a class have its colour */
+    if (first < i) continue; /* looks of one class share its colour */
     xmlTextWriterWriteFormatString(writer, " .%s { color: #%02x%02x%02x }", looks[i].name, looks[i].colour[0],
                                    looks[i].colour[1], looks[i].colour[2]);
   }
   xmlTextWriterEndElement(writer);
 }
 
-/* Behind the <svg>'s own attributes: what is between top and bottom. */
+/* Writes the part between top and bottom, after the attributes of <svg>. */
 static void write_drawing(xmlTextWriterPtr writer, const struct Drawing *drawing, double top, double bottom,
                           bool with_style) {
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "viewBox", "0 %.1f %d %.1f", top, PICTURE_SIZE, bottom - top);
@@ -57,7 +57,7 @@ static void write_drawing(xmlTextWriterPtr writer, const struct Drawing *drawing
 }
 
 void write_sketch(xmlTextWriterPtr writer, const struct Drawing *drawing) {
-  const double room = 8.0; /* for dots and lines, which are wider than their points */
+  const double room = 8.0; /* margin for dots and lines, which are wider than their points */
   struct Rectangle all = rectangle_of(drawing);
   xmlTextWriterStartElement(writer, BAD_CAST "svg");
   write_attribute(writer, "class", "sketch");

@@ -1,4 +1,4 @@
-/* A drawing as SVG. */
+/* Writes a drawing as SVG. */
 #ifndef SVG_H
 #define SVG_H
 
@@ -6,10 +6,10 @@
 
 #include "shapes.h"
 
-/* An <svg> in a page, whose style gives the classes of the looks their colours. */
+/* Writes an <svg> element; the page's style colours the classes of the looks. */
 void write_sketch(xmlTextWriterPtr writer, const struct Drawing *drawing);
 
-/* A file of its own, on white paper. False where libxml2 reports an error. */
+/* Writes an SVG file on white. Returns false if libxml2 reports an error. */
 bool write_icon(xmlBufferPtr buffer, const struct Drawing *drawing);
 
 #endif

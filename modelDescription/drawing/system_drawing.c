@@ -8,19 +8,20 @@
 #include "scene/surfaces.h"
 #include "solids.h"
 
+/* Objects up to which unconnected ones get a line from the origin, and up to which particles are large dots. */
 enum { MOST_WAYS = 8, MOST_DOTS = 60 };
 
-/* What of the system can be seen, where it starts. */
+/* The visible parts of the system at its start values. */
 struct Sight {
   struct Samples samples;
   struct Links links;
   struct Surfaces surfaces;
-  double *values; /* of all nodes */
+  double *values; /* of all nodes, in SI units */
   struct View view;
   bool is_in_space;
 };
 
-/* In the plane x to the right and y upwards; in space from above and aside, where gravity points down. */
+/* Returns the view: planar systems with x to the right and y up; others oblique from above, with gravity downwards. */
 static struct View view_of(const struct Model *model, bool is_in_space) {
   const double azimuth = -1.1, elevation = 0.35;
   struct View view = {{1, 0, 0}, {0, 1, 0}};
@@ -44,7 +45,7 @@ static struct Spot spot_of(const struct Sight *sight, size_t thing) {
   return seen(&sight->view, (double[]){values[position[0]], values[position[1]], values[position[2]]});
 }
 
-/* A place on a body in the plane, or beside something that does not turn. */
+/* Returns the position of a point given in the axes of a planar body, or relative to another object. */
 static struct Spot spot_on(const struct Sight *sight, size_t thing, double x, double y) {
   const struct Thing *body = &sight->samples.things[thing];
   double angle = body->is_planar ? sight->values[body->angle] : 0.0;
@@ -52,7 +53,7 @@ static struct Spot spot_on(const struct Sight *sight, size_t thing, double x, do
   return (struct Spot){spot.right + x * cos(angle) - y * sin(angle), spot.up + x * sin(angle) + y * cos(angle)};
 }
 
-/* A uniform bar of mass m and length l has the moment of inertia m l^2/12. */
+/* Appends a planar body as a uniform bar of its moment of inertia m l^2/12. */
 static void append_bar(struct Drawing *drawing, const struct Body *body, struct Spot middle, const double *values) {
   double half = sqrt(3.0 * values[body->inertia.node] / values[body->mass.node]), angle = values[body->angle.node];
   double right = half * cos(angle), up = half * sin(angle);
@@ -61,14 +62,14 @@ static void append_bar(struct Drawing *drawing, const struct Body *body, struct 
                 (struct Spot){middle.right + right, middle.up + up});
 }
 
-/* Where the surface would be met from a spot. */
+/* Returns the projection of a point onto the surface. */
 static struct Spot foot_of(const struct Surface *surface, struct Spot spot) {
   double height =
       (spot.right - surface->point[0]) * surface->normal[0] + (spot.up - surface->point[1]) * surface->normal[1];
   return (struct Spot){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
 }
 
-/* A line with hatches behind it, as long as what stands on it, or as a stop. */
+/* Appends a hatched line, as long as the objects above it; short for a stop. */
 static void append_surface(struct Drawing *drawing, const struct Surface *surface, double size) {
   enum { HATCHES = 12 };
   double half = surface->is_stop ? 0.12 * size : 0.4 * size;
@@ -93,7 +94,7 @@ static void append_surface(struct Drawing *drawing, const struct Surface *surfac
               (struct Spot){surface->point[0] + high * along[0], surface->point[1] + high * along[1]});
 }
 
-/* A piece of a plane in space, about its place. */
+/* Appends a square of a plane in space around its point. */
 static void append_plane(struct Drawing *drawing, const struct View *view, const struct Surface *surface, double size) {
   double first[3] = {0.0, 0.0, 0.0}, second[3], corner[3];
   struct Spot corners[5];
@@ -119,7 +120,7 @@ static bool is_particle(const struct Thing *thing) {
   return thing->body != NULL && !thing->is_planar && !is_solid(thing->body);
 }
 
-/* Whether a rod or a joint leads to it. */
+/* True if a rod or a joint connects the object, or if it is not a particle. */
 static bool is_held(const struct Sight *sight, size_t thing) {
   const struct Links *links = &sight->links;
   bool held = !is_particle(&sight->samples.things[thing]);
@@ -128,7 +129,7 @@ static bool is_held(const struct Sight *sight, size_t thing) {
   return held;
 }
 
-/* The directions of the base, and the way from the origin to what nothing holds. */
+/* Appends the base's axes, and lines from the origin to unconnected objects. */
 static void append_axes(struct Drawing *drawing, const struct Sight *sight, double size) {
   struct Spot origin = {0.0, 0.0};
   for (int axis = 0; axis < (sight->is_in_space ? 3 : 2); axis++) {
@@ -140,7 +141,7 @@ static void append_axes(struct Drawing *drawing, const struct Sight *sight, doub
     if (!is_held(sight, i)) append_line(drawing, AXIS, origin, spot_of(sight, i));
 }
 
-/* What is behind the points: solids, rods and bars; a body reaches to its joints, wherever its middle is. */
+/* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */
 static void append_bodies(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
   const struct Links *links = &sight->links;
@@ -161,7 +162,7 @@ static void append_pivot(struct Drawing *drawing, struct Spot spot) {
   append_shape(drawing, HOLE, true, &spot, 1);
 }
 
-/* The origin last, since it is what the rest hangs on. */
+/* Appends dots and joints; the origin last, on top. */
 static void append_points(struct Drawing *drawing, const struct Sight *sight) {
   const struct Samples *samples = &sight->samples;
   for (size_t i = samples->thing_count; i-- > 1;) {
@@ -177,7 +178,7 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
   append_pivot(drawing, spot_of(sight, 0));
 }
 
-/* Planes that several contacts share are drawn once. */
+/* True if no earlier contact has the same plane. */
 static bool is_first(const struct Surfaces *surfaces, size_t surface) {
   const struct Surface *last = &surfaces->items[surface];
   bool is_new = true;
@@ -192,7 +193,7 @@ static bool is_first(const struct Surfaces *surfaces, size_t surface) {
   return is_new;
 }
 
-/* The surface where its thing would meet it from its start, from which a plane's point may be far. */
+/* Returns the surface with its point nearest to the object's start position. */
 static struct Surface met_surface(const struct Sight *sight, size_t surface) {
   struct Surface met = sight->surfaces.items[surface];
   const Node *position = sight->samples.things[met.thing].position;
@@ -253,7 +254,7 @@ static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
   return is_seen && fit_drawing(drawing);
 }
 
-/* Arrows to the block or away from it, one a variable as far as they can be told apart. */
+/* Appends arrows at the block, one for each variable up to MOST_SIGNALS. */
 static void append_signals(struct Drawing *drawing, size_t count, double from) {
   enum { MOST_SIGNALS = 6 };
   size_t shown = count < MOST_SIGNALS ? count : MOST_SIGNALS;

@@ -1,4 +1,4 @@
-/* Writes documentation/index.html: the Lagrangian, the derived equations and the variables, of large systems in part. */
+/* Writes documentation/index.html: Lagrangian, equations and variables, abridged for large systems. */
 #ifndef DOCUMENTATION_H
 #define DOCUMENTATION_H
 

@@ -1,3 +1,12 @@
+/*
+ * A recursive descent parser for the grammar
+ *
+ *     sum = ["-"] product {("+" | "-") product}      power = primary ["^" ["-"] primary]
+ *     product = power {("*" | "/") power}            argument = sum [">" sum]
+ *     primary = number | name ["(" argument {"," argument} ")"] | "(" sum ")" | "..."
+ *
+ * where "..." stands for omitted terms. Reads each character once; the recursion is as deep as the parentheses.
+ */
 #include "formula_tree.h"
 
 #include <ctype.h>
@@ -8,7 +17,7 @@
 #include "base/memory.h"
 #include "letters.h"
 
-/* Where the text is read. The functions below go on after what they read, and set wrong where they cannot. */
+/* The position in the text. Parsing functions advance it, and set wrong on a syntax error. */
 struct Text {
   const char *at;
   bool wrong;
@@ -45,7 +54,7 @@ static bool take(struct Text *text, const char *word) {
   return there;
 }
 
-/* if(a > 0, b, c) has a condition for its first argument. */
+/* Parses an argument, which is a condition in if(a > 0, b, c). */
 static struct Formula *read_argument(struct Text *text) {
   struct Formula *argument = read_sum(text);
   return take(text, ">") ? pair(CONDITION, argument, read_sum(text)) : argument;
@@ -55,7 +64,7 @@ static struct Formula *read_word(struct Text *text) {
   size_t length = 0;
   while (isalnum((unsigned char)text->at[length]) || strchr("_.[]", text->at[length] == '\0' ? ' ' : text->at[length]))
     length++;
-  while (length > 3 && memcmp(text->at + length - 3, "...", 3) == 0) length -= 3; /* a formula that was cut off */
+  while (length > 3 && memcmp(text->at + length - 3, "...", 3) == 0) length -= 3; /* the dots of an abridged formula */
   struct Formula *formula = leaf(NAME, format_text("%.*s", (int)length, text->at));
   text->at += length;
   if (!take(text, "(")) return formula;
@@ -98,7 +107,7 @@ static struct Formula *read_power(struct Text *text) {
   return pair(RAISED, base, is_negative ? negative(exponent) : exponent);
 }
 
-/* Adds a part to a sum or product, or begins one. */
+/* Appends a part to a sum or product, or creates one. */
 static struct Formula *join(enum FormulaKind kind, struct Formula *whole, struct Formula *part) {
   if (whole->kind != kind) return pair(kind, whole, part);
   append(whole, part);
@@ -135,7 +144,7 @@ static struct Formula *read_sum(struct Text *text) {
   return whole;
 }
 
-/* Of the formula and all in it. Signs, blanks around them and parentheses count as letters. */
+/* Estimates the widths of a formula and its parts. Signs with their spaces, and parentheses, count as letters. */
 static void measure(struct Formula *formula) {
   double sum = 0.0, largest = 0.0;
   formula->is_tall = formula->kind == FRACTION;
@@ -152,7 +161,7 @@ static void measure(struct Formula *formula) {
   case ELLIPSIS: formula->width = 2.0; break;
   case APPLICATION: formula->width = (double)strlen(formula->word) + 2.0 + sum + count - 1.0; break;
   case CONDITION: formula->width = sum + 3.0; break;
-  case SUM: formula->width = sum + 2.0 * (count - 1.0) + 2.0; break; /* as if in parentheses */
+  case SUM: formula->width = sum + 2.0 * (count - 1.0) + 2.0; break; /* with parentheses */
   case NEGATIVE: formula->width = sum + 1.0; break;
   case PRODUCT: formula->width = sum + 0.3 * (count - 1.0); break;
   case FRACTION: formula->width = largest + 0.5; break;

@@ -1,4 +1,4 @@
-/* A formula in the infix form of algebra/formula.h as a tree, which knows about how wide it is when it is typeset. */
+/* Parses a formula in the infix form of algebra/formula.h into a tree with estimated widths. */
 #ifndef FORMULA_TREE_H
 #define FORMULA_TREE_H
 
@@ -9,17 +9,17 @@ enum FormulaKind { NUMBER, NAME, ELLIPSIS, APPLICATION, CONDITION, SUM, NEGATIVE
 
 struct Formula {
   enum FormulaKind kind;
-  char *word; /* the number, the name, or the function that is applied */
+  char *word; /* the number, the name, or the name of the function */
   struct Formula **parts;
   size_t count;
-  double width; /* in letters */
-  bool is_tall; /* has a fraction in it */
+  double width; /* estimated, in letters */
+  bool is_tall; /* contains a fraction */
 };
 
-/* The left and the right side of "left = right"; false, and nothing to free, where the text is none of this form. */
+/* Parses both sides of "left = right". Returns false if the text is not of this form. */
 bool formula_read(const char *equation, struct Formula *sides[2]);
 
-/* A name, or the derivative of one. */
+/* Parses a name, or the derivative of one. */
 struct Formula *formula_of_name(const char *name);
 
 #endif

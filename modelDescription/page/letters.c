@@ -11,9 +11,10 @@ static const char *const greek[][2] = {{"alpha", "α"}, {"beta", "β"},  {"gamma
                                        {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"},
                                        {"Sigma", "Σ"}, {"Phi", "Φ"},   {"Psi", "Ψ"},   {"Omega", "Ω"}};
 
+/* Indices of a name that are shown. */
 enum { INDEX_LIMIT = 4 };
 
-/* A piece of a name. */
+/* A part of a name. */
 struct Span {
   const char *text;
   size_t length;
@@ -25,7 +26,7 @@ struct Letters {
   size_t index_count;
 };
 
-/* The letter of a Greek name, or NULL. */
+/* Returns the letter of a Greek name; NULL for other names. */
 static const char *greek_letter(struct Span name) {
   for (size_t i = 0; i < sizeof greek / sizeof *greek; i++)
     if (strlen(greek[i][0]) == name.length && memcmp(greek[i][0], name.text, name.length) == 0) return greek[i][1];
@@ -37,7 +38,7 @@ static void add_index(struct Letters *letters, const char *text, size_t length) 
     letters->indices[letters->index_count++] = (struct Span){text, length};
 }
 
-/* x_end, omegaCoupler. */
+/* Splits names such as x_end and omegaCoupler into base and index. */
 static void split_word(struct Letters *letters) {
   struct Span *base = &letters->base;
   const char *text = base->text;

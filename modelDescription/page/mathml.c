@@ -1,3 +1,9 @@
+/*
+ * Line breaking. Browsers do not break inside <math>, so that a wide formula becomes several <math> elements with
+ * <wbr/> between them. A subformula up to `narrow` letters wide is set as a whole (typeset.c); a wider one is split at
+ * its operator, and its operands recursively. Wide fractions and powers are rewritten on one line, as a <math> element
+ * cannot contain a break. Each node is visited once.
+ */
 #include "mathml.h"
 
 #include <stdbool.h>
@@ -10,10 +16,10 @@
 
 #define MATH "<math display=\"inline\" displaystyle=\"true\">"
 
-/* What is narrower, in letters, is not broken: it fits on a telephone. */
+/* Width in letters up to which a formula is not broken: it fits on a phone. */
 static const double narrow = 20.0;
 
-/* Nobody reads longer ones. */
+/* Length in characters above which an equation is shown as text only. */
 enum { LENGTH_LIMIT = 3000 };
 
 static void write_in_pieces(FILE *file, const struct Formula *formula);
@@ -38,7 +44,7 @@ static void write_sum_in_pieces(FILE *file, const struct Formula *formula) {
 }
 
 static void write_product_in_pieces(FILE *file, const struct Formula *formula) {
-  double width = 0.0; /* of the piece that is being written */
+  double width = 0.0; /* of the present <math> element */
   for (size_t i = 0; i < formula->count; i++) {
     const struct Formula *factor = formula->parts[i];
     if (i > 0) typeset_times(file, factor);
@@ -52,7 +58,7 @@ static void write_product_in_pieces(FILE *file, const struct Formula *formula) {
   }
 }
 
-/* A wide numerator stands behind the fraction; a wide denominator behind a slash. */
+/* Writes a wide numerator behind the fraction, a wide denominator behind a slash. */
 static void write_fraction_in_pieces(FILE *file, const struct Formula *formula) {
   const struct Formula *above = formula->parts[0], *below = formula->parts[1];
   if (below->width <= narrow) {
@@ -98,7 +104,7 @@ static void write_raised_in_pieces(FILE *file, const struct Formula *formula) {
   fputs("</mrow></msup>", file);
 }
 
-/* A name of so many letters. */
+/* Writes a long name in parts. */
 static void write_name_in_pieces(FILE *file, const char *name) {
   size_t length = strlen(name), most = (size_t)narrow;
   for (size_t i = 0; i < length; i += most) {

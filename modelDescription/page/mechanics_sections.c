@@ -1,6 +1,6 @@
 #include "mechanics_sections.h"
 
-/* Which law totalEnergy obeys (see energies.h). */
+/* Returns the balance of energy that totalEnergy obeys, see energies.h. */
 static const char *balance_of(const struct Model *model, bool autonomous) {
   if (model->given.constraint != NULL)
     return "A constraint moves in a given way: its force does work, so that totalEnergy is not constant even without "

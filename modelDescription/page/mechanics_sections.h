@@ -1,4 +1,4 @@
-/* The sections on energies, constraints, equations of motion and forces, of a system with coordinates. */
+/* Writes the sections on energies, constraints, equations of motion and forces, of a system with coordinates. */
 #ifndef MECHANICS_SECTIONS_H
 #define MECHANICS_SECTIONS_H
 

@@ -20,7 +20,7 @@ void page_heading(struct Page *page, const char *heading) {
   xmlTextWriterEndElement(page->writer);
 }
 
-/* Folded, since the formula above says the same, or since it is too long to read. */
+/* Writes a folded text: a copy of the formula above, or a formula that is too long to typeset. */
 static void write_text(const struct Page *page, const char *summary, const char *text) {
   xmlTextWriterStartElement(page->writer, BAD_CAST "details");
   page_element(page, "summary", summary);
@@ -28,7 +28,7 @@ static void write_text(const struct Page *page, const char *summary, const char 
   xmlTextWriterEndElement(page->writer);
 }
 
-/* The right side: the name of a definition where it is just that. */
+/* Returns the right side; the name of a definition if it is equal to one. */
 static char *right_side(const struct Page *page, const char *left, Node right) {
   const struct NodeNames *names = &page->summary->names;
   const char *name = right < names->count ? names->of[right] : NULL;

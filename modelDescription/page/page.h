@@ -1,4 +1,4 @@
-/* The page that is being written, and what its sections are made of. */
+/* The page under construction, and the elements of its sections. */
 #ifndef PAGE_H
 #define PAGE_H
 
@@ -16,20 +16,20 @@ struct Page {
   const struct Interface *interface;
   const struct Summary *summary;
   const struct Drawing *drawing;
-  const char **headings; /* of the sections so far, for the contents */
+  const char **headings; /* of the sections so far, for the table of contents */
   size_t heading_count;
 };
 
-/* The heading of a section, which the contents will name. */
+/* Writes a heading, which the table of contents will list. */
 void page_heading(struct Page *page, const char *heading);
 
-/* An element with nothing but text in it. */
+/* Writes an element that contains only text. */
 void page_element(const struct Page *page, const char *name, const char *text);
 
-/* left = expression, typeset, and as text to copy. */
+/* Writes left = right, typeset and as text to copy. */
 void page_equation(const struct Page *page, const char *left, Node right);
 
-/* Says how many of the things of a kind the page leaves out. */
+/* Writes how many objects of a kind the page omits; nothing if none. */
 void page_rest(const struct Page *page, size_t count, size_t shown, const char *things);
 
 #endif

@@ -12,7 +12,7 @@ static bool is_one_of(const char *word, const char *const *words) {
   return false;
 }
 
-/* sin x, as books write it where x is a mere letter. */
+/* True for sin x and the like, whose argument is a name. */
 static bool stands_without_parentheses(const struct Formula *formula) {
   static const char *const functions[] = {"sin", "cos", "tan", "sinh", "cosh", "tanh", NULL};
   const struct Formula *base = formula->kind == RAISED ? formula->parts[0] : formula;
@@ -40,7 +40,10 @@ static void write_fenced(FILE *file, const struct Formula *formula, bool is_fenc
   if (is_fenced) typeset_parenthesis(file, ")", formula->is_tall);
 }
 
-/* 4/3 for 1.33333333333333: thirds and the like come of integrals, and are told by many digits. */
+/*
+ * Writes 4/3 for 1.33333333333333. Integrals give such ratios; a number of at least DIGITS characters that is a
+ * multiple of 1/3 .. 1/LARGEST to 1e-13 is taken for one.
+ */
 static bool write_ratio(FILE *file, const char *word) {
   enum { DIGITS = 14, LARGEST = 45 };
   double value = strtod(word, NULL);
@@ -54,7 +57,7 @@ static bool write_ratio(FILE *file, const char *word) {
   return false;
 }
 
-/* 4e-05 is 4 times a power of ten. */
+/* Writes 4e-05 as 4 times a power of ten. */
 static void write_number(FILE *file, const char *word) {
   if (write_ratio(file, word)) return;
   const char *exponent = strchr(word, 'e');
@@ -77,7 +80,7 @@ void typeset_function(FILE *file, const char *function) {
   fprintf(file, "<mi mathvariant=\"normal\">%s</mi>", function);
 }
 
-/* How often a name is differentiated; 0 where the formula is no derivative of a name, which *name is set to. */
+/* Returns the number of derivatives of a name, in *name; 0 if the formula is not such a derivative. */
 static int dots_of(const struct Formula *formula, const char **name) {
   int dots = 0;
   while (formula->kind == APPLICATION && strcmp(formula->word, "der") == 0) {
@@ -111,7 +114,7 @@ static void write_application(FILE *file, const struct Formula *formula) {
   }
 }
 
-/* sin x, sin² x */
+/* Writes sin x or sin² x. */
 static void write_without_parentheses(FILE *file, const struct Formula *formula) {
   bool is_power = formula->kind == RAISED;
   const struct Formula *function = is_power ? formula->parts[0] : formula;
@@ -133,7 +136,7 @@ void typeset_times(FILE *file, const struct Formula *next) {
   else fputs("<mo>&#x2062;</mo><mspace width=\"0.17em\"></mspace>", file);
 }
 
-/* Where the factors that stand without parentheses begin: nothing else may follow these. */
+/* Returns the index of the first trailing factor without parentheses; other factors must not follow these. */
 static size_t first_bare(const struct Formula *product) {
   size_t bare = product->count;
   while (bare > 0 && stands_without_parentheses(product->parts[bare - 1])) bare--;

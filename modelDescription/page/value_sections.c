@@ -2,7 +2,7 @@
 
 #include "base/memory.h"
 
-/* The author's own names, which the formulas use where they can. */
+/* Writes the author's names for expressions, which formulas use where possible. */
 void write_definitions(struct Page *page) {
   const struct VariableList *definitions = &page->model->definitions;
   const struct NodeNames *names = &page->summary->names;
@@ -25,7 +25,7 @@ void write_calculated(struct Page *page) {
   page_rest(page, calculated->count, shown, "parameters");
 }
 
-/* Start values that follow from parameters. */
+/* Writes start values that are expressions. */
 void write_starts(struct Page *page) {
   const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities,
                                               &page->model->states};
@@ -40,7 +40,7 @@ void write_starts(struct Page *page) {
   page_rest(page, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
 }
 
-/* The power of the work stands with the mechanics. */
+/* Writes the rates of the states; the power of the work is in the mechanics section. */
 void write_rates(struct Page *page) {
   const struct VariableList *states = &page->model->states;
   size_t shown = 0;

@@ -1,4 +1,4 @@
-/* The sections on what the author gave as formulas of their own. Each writes nothing where there are none. */
+/* Write the sections on formulas that the author gave. Each writes nothing if there are none. */
 #ifndef VALUE_SECTIONS_H
 #define VALUE_SECTIONS_H
 

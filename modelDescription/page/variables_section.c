@@ -8,7 +8,7 @@
 #include "mathml.h"
 #include "xml_output.h"
 
-/* How the formulas above show it. */
+/* Writes the name as formulas show it. */
 static void write_symbol(const struct Page *page, const char *name) {
   char *math = mathml_of_name(name);
   xmlTextWriterStartElement(page->writer, BAD_CAST "td");
@@ -39,9 +39,10 @@ static void write_row(const struct Page *page, const struct InterfaceVariable *v
   xmlTextWriterEndElement(page->writer);
 }
 
+/* Rows of the table; pages with more load slowly. */
 enum { ROW_LIMIT = 1000 };
 
-/* The script of the page looks for what is typed here. */
+/* Writes the search field, which the page's script uses. */
 static void write_search(const struct Page *page) {
   xmlTextWriterStartElement(page->writer, BAD_CAST "input");
   write_attribute(page->writer, "type", "search");

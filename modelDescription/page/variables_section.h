@@ -1,4 +1,4 @@
-/* The table of all variables, or of very many of them. */
+/* Writes the table of variables, up to ROW_LIMIT rows. */
 #ifndef VARIABLES_SECTION_H
 #define VARIABLES_SECTION_H
 

@@ -1,3 +1,15 @@
+/*
+ * Newton's method for the underdetermined system g(q) = 0, with the step of least norm:
+ *
+ *     dq = -J^T (J J^T)^-1 g,   J = dg/dq.
+ *
+ * It converges quadratically near a regular point, and stops at
+ * g
+ *  < 1e-13, or after a step from
+ * g
+ *  < 1e-11; otherwise it fails after MOST_STEPS. A step costs O(n^2 m + n^3) with n constraints and m coordinates. P.
+ *  Deuflhard: Newton Methods for Nonlinear Problems, 2004.
+ */
 #include "configurations.h"
 
 #include <math.h>
@@ -7,9 +19,10 @@
 #include "algebra/node_list.h"
 #include "base/memory.h"
 
+/* Coordinates up to which constraints are taken into account: all their derivatives are formed. */
 enum { MOST_COORDINATES = 200 };
 
-/* What contacts and frictions hold is not at every time. */
+/* True if the constraint belongs to a contact or friction, and so holds at times only. */
 static bool belongs_to_switch(const struct Switches *switches, size_t constraint) {
   bool belongs = false;
   for (size_t i = 0; i < switches->contact_count; i++) belongs |= switches->contacts[i].constraint == constraint;
@@ -61,8 +74,8 @@ static bool can_move(const struct Model *model, size_t coordinate) {
 }
 
 /*
- * Solves matrix x = x of n rows, by Gauss; the matrix is lost. Rows that follow from others, as in closed chains with a constraint too
- * many, leave 0 in the solution.
+ * Solves matrix x = x of n rows in place, by Gauss-Jordan elimination with row pivoting; overwrites the matrix.
+ * Redundant rows, as in overconstrained closed chains, get the solution 0.
  */
 static void solve_small(size_t n, double *matrix, double *x) {
   size_t *pivot = allocate(n + 1, sizeof *pivot);
@@ -90,7 +103,11 @@ static void solve_small(size_t n, double *matrix, double *x) {
   release(pivot);
 }
 
-/* One step of Newton's method, the shortest: J J^T p = g, q less J^T p. Returns the largest |g| before it. */
+/*
+ * Subtracts J^T (J J^T)^-1 g from the coordinates that can move. Returns the largest
+ * g
+ *  before the step.
+ */
 static double step(const struct Configurations *levels, const double *values, double *symbols) {
   const struct Model *model = levels->model;
   size_t n = levels->count, coordinates = model->coordinates.count;

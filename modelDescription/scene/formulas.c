@@ -1,3 +1,8 @@
+/*
+ * Coordinates of joints as linear combinations of parameters, found by sampling. Changing one parameter at a time
+ * gives the coefficient of each, by a difference quotient; TRIALS changes of all parameters at once confirm or reject
+ * that the coordinate is linear. Costs (parameters + TRIALS) searches for all joints.
+ */
 #include "formulas.h"
 
 #include <math.h>
@@ -5,17 +10,19 @@
 
 #include "base/memory.h"
 
+/* Largest number of parameters, for the cost; changes that confirm linearity. */
 enum { MOST_PARAMETERS = 40, TRIALS = 2 };
 
+/* Coefficients below this are rounding errors. */
 static const double NO_MULTIPLE = 1e-9;
 
-/* What is added to the parameters: to one of them, or to all, in each trial otherwise. */
+/* Returns the change of a parameter: a tenth of its value; 0 for integers. */
 static double change_of(const struct Model *model, size_t parameter) {
   double start = model->parameters.items[parameter].start;
   return model->parameters.items[parameter].type != TYPE_REAL ? 0.0 : start != 0.0 ? 0.1 * start : 0.1;
 }
 
-/* The places of all joints with the parameters changed, PLACES a joint; NULL where a joint has none then. */
+/* Returns the coordinates of all joints with changed parameters; NULL if a joint does not exist then. */
 static double *places_with(const struct Model *model, const struct Links *links, const double *changes) {
   struct Samples samples = take_samples(model, false, changes);
   double *places = allocate(PLACES * links->joint_count, sizeof *places);
@@ -28,7 +35,7 @@ static double *places_with(const struct Model *model, const struct Links *links,
   return places;
 }
 
-/* The multiples of each parameter in each place, a row a place; false where they cannot be told. */
+/* Finds the coefficient of each parameter in each coordinate, a row each. Returns false if a joint vanishes. */
 static bool find_multiples(const struct Model *model, const struct Links *links, double *multiples) {
   size_t count = model->parameters.count;
   for (size_t p = 0; p < count; p++) {
@@ -43,7 +50,7 @@ static bool find_multiples(const struct Model *model, const struct Links *links,
   return true;
 }
 
-/* Whether a place is where the multiples say when all parameters change. */
+/* True if the coefficients predict the coordinate, to 1e-7, when all parameters change. */
 static bool is_sum(const double *multiples, const double *changes, size_t count, double start, double place) {
   double expected = start, size = fabs(start) + fabs(place);
   for (size_t p = 0; p < count; p++) expected += multiples[p] * changes[p];

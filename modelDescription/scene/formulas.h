@@ -1,10 +1,10 @@
-/* How the places of joints follow from parameters, so that they can be drawn where parameters are others. */
+/* Formulas of the positions of joints in terms of parameters, so that drawings follow changed parameters. */
 #pragma once
 
 #include "links.h"
 
 /*
- * A formula of parameters for each place of each joint, PLACES a joint, such as "0.5*l"; NULL for a place that stays as it is, or
- * is no sum of multiples of parameters.
+ * Returns a formula for each of the PLACES coordinates of each joint, such as "0.5*l"; NULL for a coordinate that does
+ * not change, or is not linear in the parameters.
  */
 char **joint_formulas(const struct Model *model, const struct Links *links);

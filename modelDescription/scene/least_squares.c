@@ -1,9 +1,17 @@
+/*
+ * Least squares min
+ * A x - b
+ *  by modified Gram-Schmidt: A = Q R with b as a further column, then back substitution in R x = Q^T b. A column that
+ *  loses all but SMALL of its length is dependent. The rest of b is the residual. Costs O(rows columns^2). G. Golub,
+ *  C. Van Loan: Matrix Computations, section 5.2.
+ */
 #include "least_squares.h"
 
 #include <math.h>
 
 #include "base/memory.h"
 
+/* Share of its length below which a column is linearly dependent, or a residual zero. */
 static const double SMALL = 1e-9;
 
 struct LeastSquares least_squares_create(size_t rows, size_t columns) {
@@ -21,13 +29,13 @@ static double product(const struct LeastSquares *system, size_t first, size_t se
   return sum;
 }
 
-/* Takes factor times one column from another. */
+/* Subtracts factor times one column from another. */
 static void subtract(const struct LeastSquares *system, size_t from, double factor, size_t column) {
   for (size_t row = 0; row < system->rows; row++)
     least_squares_row(system, row)[from] -= factor * least_squares_row(system, row)[column];
 }
 
-/* By Gram and Schmidt: each column is made orthogonal to those before it, and the right side to all. */
+/* Orthogonalizes each column against those before it, and the right side against all. */
 bool least_squares_solve(struct LeastSquares *system, size_t needed, double *solution) {
   size_t n = system->columns;
   double *upper = allocate((n + 1) * (n + 1), sizeof *upper), *size = allocate(n + 1, sizeof *size);

@@ -1,3 +1,15 @@
+/*
+ * Finds rods and joints by sampling instead of symbolic proofs. At samples.count configurations that need not fulfil
+ * the constraints g(q) = 0, a rod between two objects at distance d is an identity
+ *
+ *     d(q)^p = l^p + sum over k of mu_k g_k(q),   p = 2 or 1,
+ *
+ * for all q: on the constraints, the distance is l. Likewise, a joint is a point that is fixed both to a planar body and
+ * to another object, up to multiples of the constraints. Both tests are linear in their unknowns. With about twice as
+ * many equations, a residual of 0 to nine digits at unrelated q accepts the identity, as in probabilistic identity
+ * tests (J. T. Schwartz: Fast probabilistic algorithms for verification of polynomial identities, 1980). Costs O(c^3)
+ * for each pair of objects with c constraints; large systems test neighbours only.
+ */
 #include "links.h"
 
 #include <math.h>
@@ -6,8 +18,10 @@
 #include "base/memory.h"
 #include "least_squares.h"
 
-enum { MOST_THINGS = 60 }; /* of more than that, each is compared with the base and its neighbours alone */
+/* above this, objects are compared with the base and their neighbours only, since pairs grow quadratically */
+enum { MOST_THINGS = 60 };
 
+/* Coefficients of constraints below NO_FORCE are rounding errors; rods shorter than NO_LENGTH, in m, are not drawn. */
 static const double NO_FORCE = 1e-6, NO_LENGTH = 1e-9;
 
 static double distance(const struct Samples *samples, size_t sample, size_t first, size_t second) {
@@ -32,14 +46,16 @@ static bool moves(const struct Samples *samples, size_t thing) {
   return false;
 }
 
-/* The norm of a quaternion, with which all distances of a body would change: its force is along none of them. */
+/*
+ * True if the constraint is the norm of a quaternion, which scales all distances in a body but has no force along any.
+ */
 static bool is_norm(const struct Model *model, size_t constraint) {
   for (size_t i = 0; i < model->mechanism.stillness_count; i++)
     if (model->mechanism.stillnesses[i].constraint == model->constraints.items[constraint].node) return true;
   return false;
 }
 
-/* Whether distance^power is a number and multiples of constraints. */
+/* True if distance^power is a constant plus multiples of constraints. */
 static bool is_rod(const struct Samples *samples, int power, struct Rod *rod) {
   size_t columns = 1 + samples->constraint_count;
   struct LeastSquares system = least_squares_create(samples->count, columns);
@@ -75,7 +91,10 @@ static size_t group_of(const size_t *groups, size_t thing) {
   return thing;
 }
 
-/* The shortest that hold all together, and all that a constraint holds; none between things that are at the same place. */
+/*
+ * Keeps the shortest rods that connect everything (a minimum spanning forest by Kruskal's algorithm), and all rods of
+ * constraints; removes those of length 0.
+ */
 static void keep_shortest(struct Links *links, size_t thing_count) {
   size_t *groups = allocate(thing_count, sizeof *groups), kept = 0;
   for (size_t i = 0; i < thing_count; i++) groups[i] = i;
@@ -98,7 +117,10 @@ static void try_rod(struct Links *links, const struct Samples *samples, size_t f
   links->rods[links->rod_count++] = rod;
 }
 
-/* The unknowns of a joint: its place on each of the two, then the constraints' multiples along x and y. */
+/*
+ * Fills the equations of a joint. Unknowns: its position on each of the two objects, then the coefficients of the
+ * constraints along x and y.
+ */
 static void fill_joint(const struct Samples *samples, const struct Joint *joint, struct LeastSquares *system) {
   for (size_t k = 0; k < samples->count; k++)
     for (int axis = 0; axis < 2; axis++) {
@@ -117,7 +139,10 @@ static void fill_joint(const struct Samples *samples, const struct Joint *joint,
     }
 }
 
-/* Where r + sum of A c = 0 with the forces l that push against the constraints c, the one on the first is F = A^-T l. */
+/*
+ * With r + A c = 0 for the distance r of both points and two constraints c, constraint forces l do the work l^T A^-1
+ * dr, so that the force on the first object is F = A^-T l. Without exactly two constraints there is no force.
+ */
 static void set_forces(const struct Samples *samples, const double *multiples, struct Joint *joint) {
   double a[FORCES][2] = {{0}};
   size_t count = 0;
@@ -145,7 +170,7 @@ bool find_joint(const struct Samples *samples, struct Joint *joint) {
   if (!least_squares_solve(&system, PLACES, solution)) return false;
   for (int i = 0; i < PLACES; i++) joint->place[i] = solution[i];
   bool is_loose = joint->with != 0 && !samples->things[joint->with].is_planar && hypot(solution[2], solution[3]) > 1e-9;
-  if (is_loose) return false; /* a particle has no place but its own */
+  if (is_loose) return false; /* a particle has no other points */
   set_forces(samples, solution + PLACES, joint);
   return true;
 }
@@ -157,7 +182,7 @@ static void try_joint(struct Links *links, const struct Samples *samples, size_t
   links->joints[links->joint_count++] = joint;
 }
 
-/* What is in a frame is held by that alone. */
+/* True if the pair is tested. Objects in a frame are connected with that alone. */
 static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
   const struct Thing *a = &samples->things[first], *b = &samples->things[second];
   if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);

@@ -1,27 +1,27 @@
-/* What holds things together: rods and joints, whether a formula or a constraint keeps them. */
+/* Finds rods and joints between objects, kept by formulas or by constraints. */
 #pragma once
 
 #include "samples.h"
 
 enum { FORCES = 2, PLACES = 4 };
 
-/* Two things whose distance stays the same; one constraint's force, times the factor, presses them apart. */
+/* Two objects at constant distance. Its compressive force, in N, is factor times the force of the constraint. */
 struct Rod {
-  size_t from, to; /* among the things; from may be the base */
+  size_t from, to; /* indices of objects; from may be the base */
   double length;
-  size_t constraint; /* among the model's, where has_force */
+  size_t constraint; /* index in the model, if has_force */
   bool has_force;
   double factor;
 };
 
-/* A place of a body in the plane that it shares with another thing; forces of constraints push the body there. */
+/* A point that a planar body shares with another object, and the constraint forces on the body there. */
 struct Joint {
   size_t of, with;
-  double place
-      [PLACES]; /* m: x and y along the body's axes, and x and y along those of the other, if it is a body in the plane too, or from its place */
+  /* m: x, y along the body's axes; then x, y along those of the other planar body, or from another object */
+  double place[PLACES];
   size_t force_count;
-  size_t constraints[FORCES]; /* among the model's */
-  double along[FORCES][2];    /* N along x and y for each unit of the constraint's force */
+  size_t constraints[FORCES]; /* indices in the model */
+  double along[FORCES][2];    /* N along x and y for a constraint force of 1 */
 };
 
 struct Links {
@@ -31,7 +31,8 @@ struct Links {
   size_t joint_count;
 };
 
-/* Finds the place that a body in the plane and another thing share, and what forces push there; false where there is none. */
+/* Finds the shared point of joint->of, a planar body, and joint->with, and its forces. False if there is none. */
 bool find_joint(const struct Samples *samples, struct Joint *joint);
 
+/* Finds all rods and joints. */
 struct Links find_links(const struct Samples *samples);

@@ -1,3 +1,9 @@
+/*
+ * Vertex clustering: all points in a cell of a cubic grid become the first of them, and triangles with fewer than
+ * three distinct corners vanish. The grid starts at 16-bit resolution and is coarsened by 0.7 until at most MOST_DRAWN
+ * triangles are left; it ends, as one cell leaves none. A pass costs O(n log n) for n points. J. Rossignac, P. Borrel:
+ * Multi-resolution 3D approximations for rendering complex scenes, 1993.
+ */
 #include "scene/packed_mesh.h"
 
 #include <math.h>
@@ -8,9 +14,10 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
+/* Largest 16-bit coordinate; cells on a side of the first coarser grid. */
 enum { STEPS = 65535, COARSE = 512 };
 
-/* A point's cell on a grid, and its place in the mesh. */
+/* A point and its cell in the grid. */
 struct Cell {
   uint64_t key;
   size_t point;
@@ -26,7 +33,7 @@ static uint64_t number_of(const struct PackedMesh *packed, const struct Mesh *me
   return (uint64_t)llround((mesh->points[point][axis] - packed->least[axis]) / packed->step);
 }
 
-/* Puts what is left of the points, sorted[], into cells, of which a side has so many; returns how many are left. */
+/* Merges the points in sorted[] by cells of a grid with so many cells a side. Returns the number of points left. */
 static size_t merge_points(const struct PackedMesh *packed, const struct Mesh *mesh, uint64_t cells,
                            struct Cell *sorted, size_t count, size_t *merged) {
   size_t kept = 0;
@@ -43,13 +50,13 @@ static size_t merge_points(const struct PackedMesh *packed, const struct Mesh *m
   return kept;
 }
 
-/* The point that it has become, by one merging after another. */
+/* Returns the point that this one was merged into, with path compression. */
 static size_t merged_into(size_t *merged, size_t point) {
   while (merged[point] != point) point = merged[point] = merged[merged[point]];
   return point;
 }
 
-/* Whether the triangle has three corners still. */
+/* True if the triangle still has three distinct corners. */
 static bool is_left(const struct Mesh *mesh, size_t triangle, size_t *merged, size_t corners[3]) {
   for (int k = 0; k < 3; k++) corners[k] = merged_into(merged, mesh->triangles[triangle][k]);
   return corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
@@ -61,7 +68,7 @@ static size_t count_left(const struct Mesh *mesh, size_t *merged) {
   return count;
 }
 
-/* A list of numbers of 16 bits. */
+/* A list of 16-bit numbers. */
 struct Numbers {
   unsigned char *bytes;
   size_t length;
@@ -74,7 +81,7 @@ static void append_number(struct Numbers *numbers, uint64_t number) {
   }
 }
 
-/* In base64 without padding: the numbers come in threes, which are 6 bytes. */
+/* Encodes in base64; there is no padding, as the numbers come in groups of 6 bytes. */
 static char *text_of_numbers(const struct Numbers *numbers) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   char *text = allocate(numbers->length / 3 * 4 + 1, 1), *next = text;
@@ -85,7 +92,7 @@ static char *text_of_numbers(const struct Numbers *numbers) {
   return text;
 }
 
-/* Points are numbered as triangles name them. */
+/* Encodes the mesh; points are numbered in the order of their first use. */
 static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, size_t *merged) {
   struct Numbers points = {NULL, 0}, triangles = {NULL, 0};
   size_t *numbers = allocate(mesh->point_count, sizeof *numbers), count = 0, corners[3];

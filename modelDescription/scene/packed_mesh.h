@@ -1,17 +1,17 @@
-/* Meshes as pages draw them: coarse enough to be small, and as text. */
+/* Meshes for pages: simplified, and encoded as text. */
 #pragma once
 
 #include "model/mesh.h"
 
-/* A mesh is drawn by at most so many triangles, which are less than 130 kB. */
+/* Triangles of a simplified mesh, which take less than 130 kB. */
 enum { MOST_DRAWN = 4000 };
 
-/* Base64 of unsigned numbers of 16 bits, the least byte first: three of each point, and three of each triangle. */
+/* Base64 of unsigned 16-bit numbers, low byte first: three for each point, and three for each triangle. */
 struct PackedMesh {
-  char *points;          /* a coordinate is that of the least corner, plus the number times the step */
-  char *triangles;       /* places of points */
+  char *points;          /* coordinate = least + number * step */
+  char *triangles;       /* indices of points */
   double least[3], step; /* m */
 };
 
-/* Points that come into one cell of a grid become the first of them; the grid is the finest with few enough triangles. */
+/* Simplifies a mesh by clustering its points in cells of a grid, the finest one that leaves few enough triangles. */
 struct PackedMesh pack_mesh(const struct Mesh *mesh);

@@ -6,9 +6,13 @@
 #include "base/memory.h"
 #include "configurations.h"
 
+/*
+ * Index of the base; number of samples without constraints, which overdetermine every test; constraints up to which
+ * they are taken into account, as the cost of a test grows with their third power.
+ */
 enum { BASE = 0, FEWEST = 8, MOST_CONSTRAINTS = 16 };
 
-/* The node of NAME.x, NAME.y or NAME.z; ZERO where there is none. */
+/* Returns the node of NAME.x, NAME.y or NAME.z; ZERO for none. */
 static Node component(const struct Model *model, const char *name, const char *axis) {
   char *full = format_text("%s.%s", name, axis);
   for (size_t i = 0; i < model->mechanism.places.count; i++)
@@ -16,7 +20,7 @@ static Node component(const struct Model *model, const char *name, const char *a
   return ZERO;
 }
 
-/* A body that is in no frame gives its components itself, where it has them; NULL for none. */
+/* Appends an object with its position. A body outside frames has its own components, where given. */
 static void append_thing(struct Samples *samples, struct Thing thing) {
   const struct Body *body = thing.body;
   bool is_free = body != NULL && !body->is_in_frame;
@@ -27,7 +31,7 @@ static void append_thing(struct Samples *samples, struct Thing thing) {
   samples->things[samples->thing_count++] = thing;
 }
 
-/* The place of a frame among the things, which may be a body; that of the base for it. */
+/* Returns the index of the object of a frame, which may be a body; 0 for the base. */
 static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
   size_t thing = samples->thing_count;
   while (frame != BASE && --thing > 0)
@@ -65,7 +69,7 @@ static void find_constraints(struct Samples *samples) {
   if (samples->constraint_count > MOST_CONSTRAINTS) samples->constraint_count = 0;
 }
 
-/* Each sample otherwise, the first one at the start. */
+/* Returns a different offset for each sample and symbol, 0 for the first sample. */
 static double moved(size_t sample, size_t symbol) {
   return sample == 0 ? 0.0 : 0.4 * sin(1.0 + 2.7 * (double)sample * (double)(symbol + 1));
 }
@@ -86,7 +90,7 @@ static Node later(Node first, Node second) {
   return first > second ? first : second;
 }
 
-/* The last node that is looked at: the equations that were derived from it are many times as many. */
+/* Returns the last node that is evaluated; the equations derived from it are far more. */
 static Node last_node(const struct Samples *samples) {
   const struct Model *model = samples->model;
   Node last = ZERO;

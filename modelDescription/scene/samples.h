@@ -1,33 +1,37 @@
-/* Where the things of a system are, and how large its constraints are, with its coordinates moved about: what links and surfaces are told by. */
+/*
+ * Samples of a system: positions of its objects and values of its constraints in several configurations, from which
+ * links and surfaces are recognized.
+ */
 #pragma once
 
 #include "model/model.h"
 
-/* What has a place: the base, a frame, a body, a particle or a point. */
+/* An object with a position: the base, a frame, a body, a particle or a point. */
 struct Thing {
-  const char *name;        /* NULL of the base */
-  const struct Body *body; /* NULL of the base and frames */
-  size_t frame;            /* that it is in, among the things */
+  const char *name;        /* NULL for the base */
+  const struct Body *body; /* NULL for the base and frames */
+  size_t frame;            /* index of the object that it is in */
   Node position[3];
-  Node angle;     /* of a body in the plane */
-  bool is_planar; /* such a body */
+  Node angle;     /* of a planar body */
+  bool is_planar; /* it is a planar body */
 };
 
 struct Samples {
   const struct Model *model;
   struct Thing *things; /* the first one is the base */
   size_t thing_count;
-  size_t *constraints; /* among the model's: those of positions; none where there are very many */
+  size_t *constraints; /* indices in the model, of constraints on positions; none if there are too many */
   size_t constraint_count;
-  double **values; /* of each sample, of each node up to the last one that these and the coordinates and gaps are */
+  /* of each sample: values by node, up to the last node of positions, constraints, coordinates and gaps */
+  double **values;
   size_t count;
 };
 
 /*
- * is_still: time and inputs are those of the start, so that what they move stands still too. parameters: what is added to the start
- * value of each; NULL for nothing.
+ * Takes the samples; the first one is the start. is_still: time and inputs keep their start values. parameters:
+ * changes of the start values of all parameters; NULL for none.
  */
 struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters);
 
-/* There are many of large systems. */
+/* Frees the values, which take much memory for large systems. */
 void release_samples(struct Samples *samples);

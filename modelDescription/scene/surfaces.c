@@ -15,7 +15,7 @@ static void append(struct Surfaces *surfaces, struct Surface surface) {
   surfaces->items[surfaces->count++] = surface;
 }
 
-/* Whether gap = normal . position + offset. */
+/* True if gap = normal . position + offset for all samples; sets the plane. */
 static bool is_plane(const struct Samples *samples, Node gap, struct Surface *surface) {
   struct LeastSquares system = least_squares_create(samples->count, 4);
   double solution[4];
@@ -36,7 +36,7 @@ static bool is_plane(const struct Samples *samples, Node gap, struct Surface *su
   return true;
 }
 
-/* A gap that is one coordinate but for numbers: slope*(coordinate - limit). */
+/* A gap that is linear in one coordinate: slope * (coordinate - limit). */
 struct Limit {
   size_t coordinate;
   double slope;
@@ -60,7 +60,10 @@ static bool is_of_coordinate(const struct Samples *samples, Node gap, struct Lim
   return false;
 }
 
-/* Moves the coordinate until the gap is this wide. NULL where that is not found. */
+/*
+ * Moves the coordinate until the gap has this width, by fixed-point iteration with the constraints. Returns the values
+ * of the nodes; NULL if it fails.
+ */
 static double *values_where(const struct Configurations *configurations, Node gap, const struct Limit *limit,
                             double width) {
   double *offsets = allocate(configurations->model->coordinates.count, sizeof *offsets), *values = NULL;
@@ -75,7 +78,7 @@ static double *values_where(const struct Configurations *configurations, Node ga
   return values;
 }
 
-/* The end of the way of a thing, on which it comes from beside. */
+/* Sets the surface at the end of a path, with the normal from at to beside. False if the object does not move. */
 static bool is_end(const struct Thing *thing, const double *at, const double *beside, struct Surface *surface) {
   for (int axis = 0; axis < 3; axis++) {
     surface->point[axis] = at[thing->position[axis]];
@@ -87,7 +90,7 @@ static bool is_end(const struct Thing *thing, const double *at, const double *be
   return true;
 }
 
-/* The first thing that the coordinate moves, where it is at its limit. */
+/* Adds the stop of a coordinate, at the first object that the coordinate moves. */
 static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
                      const struct Configurations *configurations, Node gap) {
   const double little = 1e-4;
@@ -105,7 +108,7 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
   if (beside != NULL) release(beside);
 }
 
-/* Where things are, and how wide gaps are: there are many stops, and the rest of a large system is not evaluated for each. */
+/* Prepares the evaluation of positions and gaps only, since each stop needs several evaluations. */
 static struct Configurations configurations_with_stops(const struct Samples *samples) {
   const struct Switches *switches = &samples->model->switches;
   struct NodeList wanted = {.count = 0};
@@ -115,7 +118,7 @@ static struct Configurations configurations_with_stops(const struct Samples *sam
   return configurations_of(samples->model, &wanted);
 }
 
-/* Whether shapes say what things look like: where these touch at a stop is not known, and a block of it would lie in them. */
+/* True if moving shapes are visible. Stops are not drawn then, as their place on the shapes is unknown. */
 static bool draws_shapes(const struct Mechanism *mechanism) {
   bool draws = false;
   for (size_t i = 0; i < mechanism->shape_count; i++) {

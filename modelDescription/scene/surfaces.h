@@ -1,12 +1,12 @@
-/* What things hit: planes of contacts, and stops of coordinates. */
+/* Finds the surfaces that objects hit: planes of contacts, and stops of coordinates. */
 #pragma once
 
 #include "samples.h"
 
 struct Surface {
-  size_t thing;     /* among the samples', that hits it */
-  double point[3];  /* m: in the plane; of a stop, where the thing is when it hits */
-  double normal[3]; /* of length 1, towards where the gap is open */
+  size_t thing;     /* index of the object that hits it */
+  double point[3];  /* m: in the plane; of a stop: the position of the object at the stop */
+  double normal[3]; /* unit vector towards the open side */
   bool is_stop;
 };
 
@@ -15,4 +15,5 @@ struct Surfaces {
   size_t count;
 };
 
+/* Returns at most one surface for each contact. */
 struct Surfaces find_surfaces(const struct Samples *samples);
