@@ -4,8 +4,8 @@
 #include "base/memory.h"
 
 /*
- * The one velocity in a constraint that holds at all times which is not given yet; the number of coordinates if there are others,
- * or none.
+ * Returns the only velocity in a permanent constraint that is not prescribed yet; the number of coordinates if there
+ * are several, or none.
  */
 static size_t only_unknown(const struct Model *model, Node constraint, const bool *is_given) {
   const struct Graph *graph = model->graph;
@@ -21,7 +21,7 @@ static size_t only_unknown(const struct Model *model, Node constraint, const boo
   return found;
 }
 
-/* Of each velocity, whether drives give it, also by way of constraints. */
+/* Returns, for each velocity, whether it is prescribed, directly or through constraints. */
 static bool *given_velocities(const struct Model *model) {
   size_t n = model->coordinates.count;
   bool *is_given = allocate(n, sizeof *is_given), grows = true;
@@ -45,7 +45,7 @@ static bool has_given_velocity(const struct Model *model, const struct Friction 
   return all;
 }
 
-/* Of one in a plane the runtime follows the speed. */
+/* Adds a branch on the sign of the velocity. Not for frictions in a plane, whose speed the runtime monitors. */
 static void follow_sign(struct Model *model, const struct Friction *friction) {
   append_branch(&model->switches, (struct Branch){.mode = friction->mode,
                                                   .indicator = friction->velocity,

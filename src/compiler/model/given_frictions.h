@@ -1,10 +1,10 @@
-/* Frictions along velocities that are given, by drives, inputs or time. */
+/* Frictions along prescribed velocities: those given by prescribed motions, inputs or time. */
 #pragma once
 
 #include "model/model.h"
 
 /*
- * Makes the modes of such frictions branches, by the signs of their velocities, and their constraints empty: velocity = 0 would
- * contradict what is given. The modes of those in planes stay their own.
+ * Finds such frictions. Removes their constraints, since velocity = 0 would contradict the prescribed motion. The mode
+ * of each becomes that of a branch with the velocity as its indicator; a friction in a plane keeps its own mode.
  */
 void find_given_frictions(struct Model *model);

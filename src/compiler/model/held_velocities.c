@@ -25,12 +25,12 @@ void substitute_in_observers(struct Model *model, const Node *replacements) {
     substitute(graph, &model->states.items[i].rate, 1, replacements, &model->states.items[i].rate);
 }
 
-/* Positive unless friction holds its velocity at 0. */
+/* Returns an expression that is positive unless the velocity of the friction is kept at 0. */
 static Node is_free(struct Graph *graph, const struct Friction *friction) {
   return power_number(graph, friction->told, 2.0);
 }
 
-/* The same of another velocity, which follows from that one unless its coefficient is 0. */
+/* Returns the same for a velocity that depends on it by a coefficient; a coefficient of 0 leaves the velocity free. */
 static Node is_free_beside(struct Graph *graph, Node is_free, Node coefficient) {
   Node sign = function(graph, SIGN, coefficient, ZERO);
   return add(graph, is_free, subtract(graph, ONE, power_number(graph, sign, 2.0)));
@@ -38,7 +38,10 @@ static Node is_free_beside(struct Graph *graph, Node is_free, Node coefficient) 
 
 /* --- Velocities of coordinates --- */
 
-/* The velocity v of a friction along c v, with its coefficient. Its index, or the number of coordinates where there is none. */
+/*
+ * If the friction acts along c v, with a single velocity v, returns the index of v and its coefficient c. Else returns
+ * the number of coordinates.
+ */
 static size_t coordinate_of(const struct Model *model, const struct Friction *friction, Node *coefficient) {
   struct Graph *graph = model->graph;
   const struct Gradient gradient = gradient_by_kinds(graph, friction->velocity, OF_VELOCITIES);
@@ -49,7 +52,10 @@ static size_t coordinate_of(const struct Model *model, const struct Friction *fr
   return is_alone ? (size_t)graph_symbol_of(graph, gradient.symbols[0])->index : model->coordinates.count;
 }
 
-/* A constraint a x + b y = constant between two coordinates, or a x + b y = 0 between their velocities, with fixed a and b. */
+/*
+ * A constraint a x + b y = constant between two coordinates, or a x + b y = 0 between their velocities, with constant a
+ * and b.
+ */
 struct Gear {
   size_t coordinate[2];
   Node coefficient[2];
@@ -73,7 +79,7 @@ static bool read_gear(const struct Model *model, Node constraint, struct Gear *g
   return !is_of_velocities || simplify_fraction(graph, rest) == ZERO;
 }
 
-/* The gears of the model; their number is that of the list. */
+/* Returns the gears of the model, and their number. */
 static struct Gear *read_gears(const struct Model *model, size_t *count) {
   struct Gear *gears = allocate(model->constraints.count, sizeof *gears);
   *count = 0;
@@ -82,7 +88,10 @@ static struct Gear *read_gears(const struct Model *model, size_t *count) {
   return gears;
 }
 
-/* Puts 0 for a velocity while friction holds it, and for those to which gears pass that on. is_held: of each coordinate. */
+/*
+ * Replaces a velocity by 0 while friction keeps it at 0, and those coupled to it by gears. is_held has an element for
+ * each coordinate, which ends the recursion.
+ */
 static void hold_coordinate(const struct Model *model, const struct Gear *gears, size_t gear_count, size_t coordinate,
                             Node is_free, bool *is_held, Node *replacements) {
   struct Graph *graph = model->graph;
@@ -115,7 +124,7 @@ static void hold_coordinates(struct Model *model) {
 
 /* --- Other velocities, such as v - vBelt --- */
 
-/* What a value is where f = 0, if it is c f and something without velocities; else false. */
+/* If value is c f plus a term without velocities, sets *held to that term, the value at f = 0; else returns false. */
 static bool is_along(struct Graph *graph, Node value, Node f, Node *held) {
   const struct Gradient by = gradient_by_kinds(graph, f, OF_VELOCITIES),
                         of = gradient_by_kinds(graph, value, OF_VELOCITIES);

@@ -1,13 +1,17 @@
-/* Velocities at which friction sticks, as conditions, pieces of functions and outputs see them. */
+/* Velocities of sticking frictions, as seen by conditions, piecewise functions and outputs. */
 #pragma once
 
 #include "model/model.h"
 
 /*
- * Puts an exact 0 for a velocity that a friction holds, while it does, into what looks at it: the indicators of branches, what
- * events assign, and outputs. The constraint that holds the velocity leaves it a rounding error, whose sign decides nothing.
+ * Replaces a velocity by an exact 0 while a friction sticks at it: in the indicators of branches, in assignments of
+ * events, in outputs and in rates of states. The constraint keeps the velocity at 0 up to rounding, and the sign of a
+ * rounding error must decide nothing.
  */
 void hold_velocities(struct Model *model);
 
-/* Replaces symbols in the indicators of branches, in what events assign, and in outputs. */
+/*
+ * Replaces symbols in the indicators of branches, in assignments of events, in outputs and in rates of states.
+ * replacements has one element for each symbol.
+ */
 void substitute_in_observers(struct Model *model, const Node *replacements);

@@ -19,7 +19,7 @@ struct Vector vector_scale(struct Graph *graph, Node factor, struct Vector a) {
   return a;
 }
 
-/* a b - c d */
+/* Returns a b - c d. */
 static Node difference_of_products(struct Graph *graph, Node a, Node b, Node c, Node d) {
   Node subtrahend = multiply(graph, c, d);
   return subtract(graph, multiply(graph, a, b), subtrahend);
@@ -77,7 +77,10 @@ void pose_translate(struct Graph *graph, struct Pose *pose, struct Vector offset
   pose->origin = position_at(graph, pose, offset);
 }
 
-/* turn: from the components along the new axes to those along the present ones; spin: its angular velocity. */
+/*
+ * Rotates the frame. turn maps components along the new axes to those along the present ones; spin is the relative
+ * angular velocity along the new axes.
+ */
 static void turn_axes(struct Graph *graph, struct Pose *pose, const struct Matrix *turn, struct Vector spin) {
   for (int i = 0; i < 3; i++) pose->rotation.row[i] = matrix_apply_transposed(graph, turn, pose->rotation.row[i]);
   pose->velocity = matrix_apply_transposed(graph, turn, pose->velocity);
@@ -89,7 +92,7 @@ void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step
   turn_axes(graph, pose, &step->rotation, step->angular_velocity);
 }
 
-/* Rodrigues: cos I + sin [e x] + (1 - cos) e e^T */
+/* Rodrigues' formula for a unit axis e: R = cos I + sin [e x] + (1 - cos) e e^T. */
 void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate) {
   Node cosine = function(graph, COSINE, angle, ZERO), sine = function(graph, SINE, angle, ZERO);
   Node rest = subtract(graph, ONE, cosine);
@@ -104,7 +107,7 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
   turn_axes(graph, pose, &turn, vector_scale(graph, rate, axis));
 }
 
-/* From q v conj(q), and 2 conj(q) q' for the angular velocity along the new axes. */
+/* The rotation is v -> q v conj(q); the relative angular velocity along the new axes is 2 conj(q) q'. */
 void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]) {
   struct Matrix turn;
   Node square[4];

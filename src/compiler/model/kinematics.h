@@ -1,7 +1,7 @@
 /*
- * Frames: axes that are moved and turned step by step, and how fast they move by that. Vectors and matrices are of
- * nodes; what belongs to a moving frame is along its own axes, which keeps expressions short: along a chain of joints
- * each one adds as much as the one before.
+ * Frames: axes that are translated and rotated step by step, and their velocities. Elements of vectors and matrices are
+ * nodes. Quantities of a moving frame have components along its own axes. This keeps expressions short: along a chain
+ * of joints, each joint adds about the same number of operations.
  */
 #pragma once
 
@@ -14,14 +14,14 @@ struct Vector {
   Node along[3];
 };
 
-/* Rows of a 3 x 3 matrix. */
+/* A 3 x 3 matrix by rows. */
 struct Matrix {
   struct Vector row[3];
 };
 
-/* Where a frame is and how it moves. */
+/* Position, orientation and velocities of a frame. */
 struct Pose {
-  struct Matrix rotation;         /* turns components along its axes into those along the base's */
+  struct Matrix rotation;         /* maps components along its axes to those along the base's */
   struct Vector origin;           /* m, along the base's axes */
   struct Vector velocity;         /* of its origin, along its own axes */
   struct Vector angular_velocity; /* along its own axes */
@@ -33,29 +33,32 @@ struct Vector vector_scale(struct Graph *graph, Node factor, struct Vector a);
 struct Vector vector_subtract(struct Graph *graph, struct Vector a, struct Vector b);
 Node vector_dot(struct Graph *graph, struct Vector a, struct Vector b);
 
-/* matrix a, and with the transposed matrix. */
+/* Return matrix a, and matrix^T a. */
 struct Vector matrix_apply(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 struct Vector matrix_apply_transposed(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 
 struct Matrix matrix_transposed(const struct Matrix *matrix);
 
-/* The pose of the base. */
+/* Returns the pose of the base. */
 struct Pose pose_of_base(void);
 
-/* Moves the frame by an offset along its own axes; rate: the offset's time derivative. */
+/* Translates the frame by an offset along its own axes; rate is the offset's time derivative. */
 void pose_translate(struct Graph *graph, struct Pose *pose, struct Vector offset, struct Vector rate);
 
-/* Turns the frame about a constant axis of length 1. */
+/* Rotates the frame about a constant unit axis. */
 void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate);
 
-/* Turns it by a quaternion of norm 1, q[0] + q[1] i + q[2] j + q[3] k. */
+/* Rotates the frame by a unit quaternion q[0] + q[1] i + q[2] j + q[3] k. */
 void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
 
-/* Moves or turns the frame by a step, as seen from itself; one that does both would tell its velocity along axes of its own. */
+/*
+ * Applies a step, either a translation or a rotation, relative to the frame. A step with both would have its velocity
+ * along other axes.
+ */
 void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step);
 
-/* The velocity of a point of the frame at an offset, along its axes. */
+/* Returns the velocity of a point of the frame, along its axes; rate is the offset's time derivative. */
 struct Vector velocity_at(struct Graph *graph, const struct Pose *pose, struct Vector offset, struct Vector rate);
 
-/* The place of such a point, along the base's axes. */
+/* Returns the position of a point of the frame, along the base's axes. */
 struct Vector position_at(struct Graph *graph, const struct Pose *pose, struct Vector offset);

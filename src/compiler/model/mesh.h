@@ -1,21 +1,24 @@
-/* A surface of triangles, as files of meshes give it. */
+/* A surface of triangles, as read from a file. */
 #pragma once
 
 #include <stddef.h>
 
-/* Of the corners, at which a mesh touches. */
+/* Most corners at which a mesh may touch; each becomes a contact. */
 enum { MOST_CORNERS = 32 };
 
 struct Mesh {
-  double (*points)[3]; /* m, in the mesh's own axes */
+  double (*points)[3]; /* m, along the mesh's own axes */
   size_t point_count;
-  size_t (*triangles)[3]; /* places of points */
+  size_t (*triangles)[3]; /* indices of points */
   size_t triangle_count;  /* above 0 */
-  /* What mesh_find_corners() finds: the corners of the convex hull, but for what is nearer to the others' hull than is told of. */
-  size_t corners[MOST_CORNERS]; /* places of points in ascending order */
-  size_t corner_count;          /* 0: not asked for yet */
-  double lack;                  /* m, how far the farthest point lies beyond a face of the corners' hull */
+  /*
+   * Vertices of the convex hull, as found by mesh_find_corners(): without those that lie closer to the hull of the
+   * others than its tolerance.
+   */
+  size_t corners[MOST_CORNERS]; /* indices of points, ascending */
+  size_t corner_count;          /* 0 until they are found */
+  double lack;                  /* m: distance of the farthest point outside the hull of the corners */
 };
 
-/* The largest side of the box about it, and that box's least corner, both in m. */
+/* Returns the longest side of the bounding box, and its least corner, in m. */
 double mesh_side(const struct Mesh *mesh, double least[3]);

@@ -1,16 +1,16 @@
 /*
- * The methods of <solver>, as the compiler knows them. A new one has an entry here, a place in fmu/system.xsd and its
- * file in src/runtime/methods/.
+ * The methods of <solver>, as the compiler knows them. A new method needs an entry here, its name in fmu/system.xsd and
+ * its file in src/runtime/methods/.
  */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What a method takes of the Taylor series of the motion. */
+/* Use of the Taylor series of the motion. */
 enum SeriesUse {
   NO_SERIES,
-  FIRST_TERMS, /* to see how far a step may go */
+  FIRST_TERMS, /* a few, to bound the step */
   ALL_TERMS
 };
 
@@ -18,25 +18,25 @@ enum { METHOD_SOURCES = 10 };
 
 struct Method {
   const char *name;          /* in system.xml and on the command line */
-  const char *solver;        /* names its file, and with solver_ before it, its struct Solver */
-  const char *sparse_solver; /* the one for a large sparse Jacobian; NULL for none */
+  const char *solver;        /* name of its file, and of its struct Solver after "solver_" */
+  const char *sparse_solver; /* the same for a large sparse Jacobian; NULL for none */
   const char *sentence;      /* for the documentation */
-  const char *evaluations;   /* what derivativeEvaluations counts; NULL for nothing */
-  /* The other files that it needs. */
+  const char *evaluations;   /* description of the statistic derivativeEvaluations; NULL if it counts none */
+  /* Other source files that it needs. */
   const char *sources[METHOD_SOURCES];
   enum SeriesUse series;
-  bool needs_jacobian; /* and counts its evaluations */
-  bool hands_over;     /* between methods, and counts how often */
-  bool factors;        /* matrices with a row and a column for each coordinate, by lagrangian.implicit.lu */
-  bool needs_linear;   /* solves linear systems alone, as a whole communication step */
-  bool uses_library;   /* which no FMU carries in C, and which allocates by itself */
+  bool needs_jacobian; /* it counts the Jacobian's evaluations */
+  bool hands_over;     /* it switches between methods, and counts how often */
+  bool factors; /* it factors matrices with a row for each velocity and first-order state, by lagrangian.implicit.lu */
+  bool needs_linear; /* it solves linear systems alone, in one step for each communication step */
+  bool uses_library; /* it uses an external library, which allocates memory itself */
 };
 
-/* NULL where there is no method of this name. */
+/* Returns a method; NULL if there is none of this name. */
 const struct Method *method_named(const char *name);
 
-/* "a, b or c". */
+/* Returns "a, b or c". */
 char *method_names(void);
 
-/* The solver for a Jacobian with so many rows and elements other than 0. */
+/* Returns the solver for a Jacobian with so many rows and nonzero elements. */
 const char *method_solver(const struct Method *method, size_t rows, size_t elements);

@@ -1,4 +1,7 @@
-/* A mechanical system: variables, energies, forces. The reader fills it as its author wrote it; massless.h adds inertias. */
+/*
+ * A mechanical system: variables, energies and forces. The reader fills it from system.xml; massless.h adds
+ * regularizations.
+ */
 #pragma once
 
 #include "algebra/units/quantity.h"
@@ -11,19 +14,19 @@
 
 struct Variable {
   char *name, *description;
-  char *unit;         /* as written, NULL where none was given */
-  char *display_unit; /* that importers may show it in; NULL where none was given */
+  char *unit;         /* as written; NULL if none was given */
+  char *display_unit; /* unit in which importers may show it; NULL if none was given */
   enum VariableType type;
   struct Dimension dimension;
-  double start, minimum, maximum, nominal; /* NAN where none was given */
-  Node start_expression;                   /* of a state, whose value is start; ZERO of others */
-  Node node;                               /* the symbol, or the value of an output */
-  Node rate;             /* of a <state>: its time derivative, which may hold accelerations and forces */
-  char *force_name;      /* of a constraint, where its force is not NAME.force; else NULL */
-  bool is_of_velocities; /* of a constraint, whose force times it is a power then, else an energy */
-  Node force_share;      /* of a joint's constraint: what of its force has this name; ZERO for all */
-  bool is_fixed;         /* of a coordinate: constraints move neither its start nor its velocity's */
-  bool is_work;          /* of a state: that of <work/>, whose rate is the power of the forces */
+  double start, minimum, maximum, nominal; /* NAN if none was given */
+  Node start_expression;                   /* of a state: the expression of its start value; ZERO for other variables */
+  Node node;                               /* its symbol, or the value of an output */
+  Node rate;             /* of a <state>: its time derivative, which may contain accelerations and constraint forces */
+  char *force_name;      /* of a constraint: name of its force if that is not NAME.force; else NULL */
+  bool is_of_velocities; /* of a constraint: its force times the constraint is a power, not an energy */
+  Node force_share; /* of a joint's constraint: the share of its force that has this name; ZERO for the whole force */
+  bool is_fixed;    /* of a coordinate: constraints change neither its start value nor that of its velocity */
+  bool is_work;     /* of a state: that of <work/>, whose rate is the power of the nonconservative forces */
   long line;
 };
 
@@ -32,107 +35,114 @@ struct VariableList {
   size_t count;
 };
 
-/* A particle or a rigid body. Components that were not given are ZERO and not present. */
+/* A particle or a rigid body. Components that were not given are ZERO and absent. */
 struct Body {
   char *name;
   struct Quantity mass, inertia;
   struct Quantity position[3], angle;
-  Node displaced[4]; /* x, y, z and angle as functions of displacements too */
+  Node displaced[4]; /* x, y, z and angle, also as functions of virtual displacements */
   bool has_position[3], has_angle;
-  bool is_in_frame;     /* has the following in place of an angle and its inertia */
-  size_t frame;         /* among the model's */
-  struct Vector offset; /* m, of the centre of mass along the frame's axes */
-  struct Matrix tensor; /* kg.m2, about the centre of mass along the frame's axes */
-  /* m/s of the centre of mass and rad/s, along the frame's axes; also as functions of displacements and their rates. */
+  bool is_in_frame;     /* it uses the fields below, not an angle and a scalar inertia */
+  size_t frame;         /* index among the model's frames */
+  struct Vector offset; /* m, of the centre of mass, along the frame's axes */
+  struct Matrix tensor; /* kg.m2, about the centre of mass, along the frame's axes */
+  /*
+   * m/s, of the centre of mass, and rad/s, along the frame's axes. The displaced ones are also functions of virtual
+   * displacements and their rates.
+   */
   struct Vector velocity, angular_velocity, displaced_velocity, displaced_angular_velocity;
   long line;
 };
 
-/* Axes that are moved and turned, as functions of displacements too. The first one is the base. */
+/* A frame, also as a function of virtual displacements. The first frame is the base. */
 struct ReferenceFrame {
   char *name;
-  size_t parent;   /* among the model's */
-  bool is_of_body; /* turns with the planar body of its name */
+  size_t parent;   /* index among the model's frames */
+  bool is_of_body; /* rotates with the planar body of its name */
   struct Pose pose;
-  struct Pose *steps; /* from the parent to the frame, each as seen from the one before */
+  struct Pose *steps; /* from the parent to the frame, each relative to the one before */
   size_t step_count;
 };
 
-/* A Cartesian force along a component of a position, which is a function of displacements too. */
+/* A Cartesian force along one component of a position, which is also a function of virtual displacements. */
 struct PointForce {
   Node position, force;
 };
 
-/* A torque and the angular velocity of what it turns, a function of displacements too, along the same axes. */
+/*
+ * A torque, and the angular velocity of its object, along the same axes. The velocity is also a function of virtual
+ * displacements.
+ */
 struct Torque {
   struct Vector torque, angular_velocity;
 };
 
 /*
- * What has an inertia without energy, since it rests: the rate of a holonomic constraint, or a nonholonomic one itself.
- * Adding its inertia to M, which may be singular without it, changes neither the motion nor the forces.
+ * Regularization of M: an inertia m for a rate that is 0 on the motion, that of a holonomic constraint, or a
+ * nonholonomic constraint itself. M + j^T m j, where j is the constraint's row of J, may be regular if M is singular.
+ * Neither the motion nor the forces change.
  */
 struct Stillness {
   Node constraint, inertia;
 };
 
-/* How a coordinate moves that is driven: in a given way. */
+/* Prescribed motion of a coordinate. */
 struct Drive {
-  bool given;        /* false of a coordinate that moves by its equation */
+  bool given;        /* false for a coordinate that moves by its equation */
   Node acceleration; /* a function of inputs, parameters and time */
-  size_t reaction;   /* the place of the drive's force among the reactions */
+  size_t reaction;   /* index of the driving force among the reactions */
 };
 
-/* The point of a linearisation: one value for each symbol of the graph, ZERO where none was given. */
+/* The operating point of a linearization: a value for each symbol of the graph, ZERO if none was given. */
 struct LinearizationPoint {
   Node *values;
   bool *given;
 };
 
-/* Who made a system, and on what terms: texts as given; NULL where none was. */
+/* Author and terms of a system; NULL if not given. */
 struct Origin {
   char *author, *version, *copyright, *license;
 };
 
-/* What moves in a given way, by inputs or by drives. */
+/* Motions that inputs or prescribed coordinates impose. */
 struct GivenMotion {
-  Node *input_rates;                 /* of each input: the one that is its time derivative; ZERO for none */
+  Node *input_rates;                 /* [inputs]: the input that is its time derivative; ZERO for none */
   bool inputs_move;                  /* positions or energies depend on inputs */
-  struct Drive *drives;              /* one a coordinate */
-  size_t drive_count;                /* of those that are given */
-  const struct Variable *constraint; /* one that moves in a given way, so that it does work; NULL for none */
+  struct Drive *drives;              /* [coordinates] */
+  size_t drive_count;                /* number of prescribed coordinates */
+  const struct Variable *constraint; /* a rheonomic constraint, whose force does work; NULL for none */
 };
 
 enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH, SHAPE_ELLIPSOID };
 enum { SHAPE_TYPES = SHAPE_ELLIPSOID + 1 };
 
-/* As in type="...". */
+/* Names in type="...". */
 extern const char *const shape_type_names[SHAPE_TYPES];
 
-/* What is drawn, and touches. A plane is where its axis is 0, and open above it. */
+/* A shape that is drawn, and may have contacts. A plane is normal to its axis; bodies are on the positive side. */
 struct ContactShape {
   char *name;
   enum ShapeType type;
-  size_t frame;         /* among the model's: where it is and how it turns */
-  const char *in;       /* the frame or body; a particle in the plane has the base's axes */
-  size_t particle;      /* that one's place among the bodies; NO_PARTICLE for none */
+  size_t frame;         /* index among the model's frames: position and orientation */
+  const char *in;       /* name of the frame or body; a particle in the plane has the base's axes */
+  size_t particle;      /* index of that particle among the bodies; NO_PARTICLE for none */
   int axis;             /* of a plane, cylinder or capsule: x, y or z of the frame */
-  struct Vector offset; /* m, of its middle along the frame's axes */
-  struct Matrix turn;   /* from its own axes to the frame's */
-  Node angles[3];       /* rad, of that about the frame's x, y and z, one after the other */
-  Node radius, length;  /* m; of a capsule without its round ends */
+  struct Vector offset; /* m, of its centre, along the frame's axes */
+  struct Matrix turn;   /* rotation from its own axes to the frame's */
+  Node angles[3];       /* rad, of that rotation: about the frame's x, y and z in turn */
+  Node radius, length;  /* m; the length of a capsule excludes its round ends */
   struct Vector size;   /* m, of a box or ellipsoid along its axes */
-  struct Mesh *mesh;    /* NULL of other types */
-  bool is_hidden;       /* touches, and is not drawn */
-  char *color; /* such as "#ff8000", or "#ff800080" where half of it is seen through; NULL for the page's choice */
+  struct Mesh *mesh;    /* NULL for other types */
+  bool is_hidden;       /* has contacts, but is not drawn */
+  char *color;          /* such as "#ff8000", or "#ff800080" at half opacity; NULL for the page's choice */
 };
 
 #define NO_PARTICLE ((size_t)-1)
 
-/* The place of the base among the frames. */
+/* Index of the base among the frames. */
 enum { BASE_FRAME = 0 };
 
-/* Bodies, the frames that they are in, and their shapes. */
+/* Bodies, their frames and their shapes. */
 struct Mechanism {
   struct Body *bodies;
   size_t body_count;
@@ -140,69 +150,69 @@ struct Mechanism {
   size_t frame_count;
   struct ContactShape *shapes;
   size_t shape_count;
-  struct VariableList places; /* where bodies, frames and points are, and how they move, in the nodes */
-  struct Vector gravity;      /* m/s2: the direction of what <gravity> gives, along the base's axes */
+  struct VariableList places; /* positions and velocities of bodies, frames and points, as nodes */
+  struct Vector gravity;      /* m/s2: the acceleration of <gravity>, along the base's axes */
   struct Stillness *stillnesses;
   size_t stillness_count;
 };
 
-/* In J, and in W the dissipation. */
+/* In J; the dissipation in W. */
 struct Energies {
-  struct Quantity kinetic;          /* K of L = K - U, of the bodies and of the <kinetic> terms */
-  struct Quantity explicit_kinetic; /* of the <kinetic> terms alone */
+  struct Quantity kinetic;          /* K of L = K - U, of bodies and <kinetic> terms */
+  struct Quantity explicit_kinetic; /* of <kinetic> terms alone */
   struct Quantity kinetic_energy;   /* the energy of both, see energies.h */
-  bool driven;                      /* masses are moved in a given way, also where all velocities are 0 */
+  bool driven;                      /* masses have a prescribed velocity, even if all velocities are 0 */
   struct Quantity potential, dissipation;
-  /* The sums of the <kinetic> terms, potentials and dissipations as functions of displacements too. */
+  /* The sums of <kinetic> terms, potentials and dissipations, also as functions of virtual displacements. */
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
 };
 
 struct Forces {
-  struct Quantity *along; /* generalized force along each coordinate */
+  struct Quantity *along; /* [coordinates]: generalized forces */
   struct PointForce *at_points;
   size_t point_count;
   struct Torque *torques;
   size_t torque_count;
-  struct Quantity driven_power; /* W: of Cartesian forces along the motion that time alone gives */
-  bool any;                     /* some force, dissipation or drive was given */
+  struct Quantity driven_power; /* W: power of Cartesian forces along the motion that time alone prescribes */
+  bool any;                     /* the model has forces, dissipation or prescribed motions */
 };
 
 /* The symbols that the equations of motion are solved for. */
 struct Unknowns {
-  Node *accelerations; /* of each coordinate */
-  Node *forces;        /* of each constraint, of the kind ACCELERATION, numbered after the coordinates */
+  Node *accelerations; /* [coordinates] */
+  Node *forces;        /* [constraints]: of kind ACCELERATION; their indices follow those of the coordinates */
 };
 
-/* What <solver> says; NAN where a number was not given. */
+/* Attributes of <solver>; NAN for numbers that were not given. */
 struct SolverChoice {
   const struct Method *method; /* NULL for the default */
   double tolerance, max_step;  /* max_step in s */
-  double max_steps;            /* in one communication step, a whole number */
+  double max_steps;            /* in one communication step; a whole number */
   long line;
 };
 
-/* What <experiment> says, in s; NAN where none was given. */
+/* Attributes of <experiment>, in s; NAN if not given. */
 struct Experiment {
   double start_time, stop_time, step_size;
 };
 
 struct Model {
   char *name, *description;
-  const struct FileLines *lines; /* that stand for those of included files */
+  const struct FileLines *lines; /* lines of included files, see base/diagnostics.h */
   struct Origin origin;
   struct Graph *graph;
   Node time;
   struct VariableList parameters, inputs, coordinates, velocities, outputs;
-  struct VariableList states;      /* of first order, behind the velocities: of <state> and of <work/> */
-  struct VariableList calculated;  /* parameters that follow from others, their values in the nodes */
-  struct VariableList definitions; /* what each <define> stands for, in its node */
-  size_t variation_count;          /* of the coordinates, the last ones: derivatives of the others, see variations.h */
-  size_t state_variation_count;    /* the same of the states */
+  struct VariableList states;      /* of first order, after the velocities: of <state> and <work/> */
+  struct VariableList calculated;  /* parameters computed from others; their nodes are the values */
+  struct VariableList definitions; /* of <define>; their nodes are the expressions */
+  size_t variation_count;       /* number of last coordinates that are sensitivities of the others, see variations.h */
+  size_t state_variation_count; /* the same for states */
   struct VariableList displacements;
-  struct VariableList modes; /* that the author declared; those of switches have no names */
+  struct VariableList modes; /* declared by the author; modes of switches have no names */
   struct VariableList
-      constraints;               /* each is 0 at all times: of coordinates and time, or also linear in the velocities */
-  struct VariableList reactions; /* forces along the displacements, then of the drives */
+      constraints; /* each is 0 at all times: a function of coordinates and time, or linear in the velocities */
+  struct VariableList reactions; /* forces along the displacements, then driving forces */
   struct Switches switches;
   struct GivenMotion given;
   struct Mechanism mechanism;
@@ -210,50 +220,55 @@ struct Model {
   struct Forces forces;
   struct Unknowns unknowns;
   bool linearized;
-  bool unrolled;                   /* the accelerations are wanted as expressions */
-  struct LinearizationPoint point; /* where linearized */
+  bool unrolled;                   /* accelerations are needed as expressions */
+  struct LinearizationPoint point; /* if linearized */
   struct SolverChoice solver;
   struct Experiment experiment;
 };
 
-/* The place of a coordinate, a velocity or a state behind them among all states; the index alone of other symbols. */
+/*
+ * Returns the index of a coordinate, velocity or first-order state in the state vector; for other symbols, their own
+ * index.
+ */
 size_t state_place(size_t coordinates, const struct Symbol *symbol);
 
-/* How many time derivatives of the input are inputs too; they follow it. */
+/* Returns the number of time derivatives of the input that are inputs too; they follow it. */
 size_t input_rate_count(const struct Model *model, size_t input);
 
-/* Whether the input is the time derivative of the one before it. */
+/* True if the input is the time derivative of the one before. */
 bool is_input_rate(const struct Model *model, size_t input);
 
-/* Adds a term to one of the sums. */
+/* Adds a term to a sum. */
 void add_term(struct Model *model, struct Quantity *sum, Node term);
 
-/* Without dimension, start value, range and nominal value. */
+/* Returns a variable with unknown dimension, and without start value, range and nominal value. */
 struct Variable variable_create(char *name, char *description, long line);
 
-/* Whether the start value is an expression of parameters. */
+/* True if the start value depends on parameters. */
 bool start_follows(const struct Model *model, const struct Variable *variable);
 
-/* The start values of all symbols, in the order of the graph's; accelerations are 0. */
+/* Returns the start values of all symbols, in the order of the graph's; 0 for accelerations. */
 double *start_values(const struct Model *model);
 
-/* The state of <work/>; NULL where none was asked for. */
+/* Returns the state of <work/>; NULL if there is none. */
 const struct Variable *work_of(const struct Model *model);
 
-/* True if nothing moves: there are neither coordinates nor states. */
+/* True if there are neither coordinates nor states. */
 bool is_motionless(const struct Model *model);
 
-/* Whether some coordinate is. */
+/* True if some coordinate is fixed at the start. */
 bool has_fixed_coordinates(const struct Model *model);
 
-/* The symbol of what a row of inertia.h is solved for: an acceleration, or the force of a constraint. */
+/* Returns the unknown of a row of the system K x = b of inertia.h: an acceleration, or a constraint force. */
 Node unknown_of_row(const struct Model *model, size_t row);
 
-/* The name of the force of a constraint. */
+/* Returns the name of a constraint's force. */
 char *constraint_force_name(const struct Variable *constraint);
 
-/* Of that force: energy by the constraint's unit; of a joint that holds a velocity, still a force. */
+/*
+ * Returns the dimension of that force: energy, or power for constraints of velocities, by the constraint's dimension.
+ */
 struct Dimension constraint_force_dimension(const struct Variable *constraint);
 
-/* The unit of a variable, for output: as written, else from its dimension; NULL where FMI has none. */
+/* Returns the unit of a variable as written, else from its dimension; NULL if FMI cannot express it. */
 char *variable_unit(const struct Variable *variable);

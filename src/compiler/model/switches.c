@@ -23,7 +23,10 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
   return add(graph, first, second);
 }
 
-/* This component of the vector against which a friction in a plane pushes: of the velocity's direction, or of the heading. */
+/*
+ * Returns this component of the unit vector that a friction in a plane opposes: the direction of the velocity, or the
+ * heading.
+ */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
   Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.heading);
@@ -31,7 +34,7 @@ static Node direction_in_plane(struct Graph *graph, const struct Friction *frict
   return divide(graph, component, power_number(graph, square, 0.5));
 }
 
-/* What a friction along a velocity pushes with in the direction in which it slides. */
+/* Returns the sliding force of a friction along a velocity, by the direction of sliding. */
 static Node sliding_by_direction(struct Graph *graph, const struct Friction *friction) {
   if (friction->sliding == friction->sliding_back) return friction->sliding;
   return choose_node(graph, friction->mode, friction->sliding, friction->sliding_back);

@@ -1,4 +1,4 @@
-/* What switches a system: modes, which are constant between events, and what changes them. */
+/* What switches a system: modes, which are constant between events, and the elements that change them. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,81 +6,82 @@
 #include "algebra/graph.h"
 #include "passage.h"
 
-/* Its mode is the sign of its indicator, -1, 0 or 1; at a zero the mode changes. */
+/* A piecewise expression's branch. The mode is the sign of the indicator, -1, 0 or 1. */
 struct Branch {
   Node mode, indicator;
-  bool is_side;         /* of an event's expression: what comes to 0 and rests there keeps it */
-  bool is_of_friction;  /* the mode of a friction whose velocity is given; results hold the mode itself */
-  unsigned kinds;       /* of the symbols that decide on the mode, those of further modes among them */
-  const char *function; /* that has the pieces, and where: for messages */
+  bool is_side; /* of an event's expression: while the indicator rests at 0, the mode keeps its last nonzero sign */
+  bool is_of_friction;  /* the mode of a friction with a prescribed velocity; results keep the mode itself */
+  unsigned kinds;       /* of the symbols on which the mode depends, also through other modes */
+  const char *function; /* name of the piecewise function, and its line, for messages */
   long line;
 };
 
 /*
- * A unilateral constraint, gap >= 0. Its mode is 1 while it holds as a constraint, -gap = 0, whose force then presses, and
- * 0 while it is open.
+ * A unilateral constraint, gap >= 0. Its mode is 1 while it is closed: then -gap = 0 holds as a constraint, with a
+ * compressive force. It is 0 while it is open.
  */
 struct Contact {
-  size_t constraint; /* among the model's */
+  size_t constraint; /* index among the model's constraints */
   Node mode, gap, restitution;
 };
 
 /*
- * What a friction along one of two velocities has that acts in their plane: Coulomb's cone. Both are frictions of the model, the
- * one across follows the one along, and share their modes: the common mode is 1 while the friction slides against the velocity
- * in the plane, 0 while it sticks, and -1 while it slides along the heading, as it does from rest on. While it sticks the heading
- * is what it carries beside its constraint, as a share of what it pushes with sliding: 0 but where several carry a load.
+ * Coulomb friction in a plane, along two velocities. It is two consecutive frictions of the model, "along" and
+ * "across", with one mode: 1 while it slides against the velocity in the plane, 0 while it sticks, -1 while it slips
+ * along the heading, a given direction, as at the onset of slip. While it sticks, the heading is the load that it
+ * carries beside its constraint, as a share of the sliding force; it is 0 unless several frictions share a load.
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
 struct PlaneSide {
   enum PlaneAxis axis;
-  Node heading;      /* a mode: this component of a unit vector, or of a share */
-  Node lower, upper; /* modes: speeds at which the mode may change; a negative upper one is along the heading */
+  Node heading;      /* a mode: its component of the unit vector, or of the share */
+  Node lower, upper; /* modes: speeds; upper < 0 is a bound on the velocity along the heading */
 };
 
 /*
- * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, 0 while it sticks: then a constraint
- * holds the velocity at 0 with a force of at most stiction. What it pushes with as it slides, it may also take at rest,
- * where others hold the velocity at 0: the told mode is 0 then. Against a negative velocity it pushes with sliding_back, up to
- * stiction_back. One whose velocity is given, by drives or inputs, never sticks: its mode is that of a branch, the velocity's
- * sign, or in a plane its own, and at rest it has no force.
+ * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, and 0 while it sticks: then a
+ * constraint keeps the velocity at 0 with a force of at most stiction. `told` is the reported mode. It is also 0 while
+ * other constraints keep the velocity at 0, when the friction may act with its sliding force at rest. Against a
+ * negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A friction with a
+ * prescribed velocity never sticks and has no force at rest: its mode is that of a branch on the velocity's sign, or in
+ * a plane its own.
  */
 struct Friction {
-  size_t constraint; /* among the model's */
+  size_t constraint; /* index among the model's constraints */
   Node mode, told, velocity, sliding, stiction, sliding_back, stiction_back;
   bool is_given;
   struct PlaneSide plane;
 };
 
-/* What a variable becomes at an event: a coordinate, a velocity or a mode. */
+/* An assignment of an event, to a coordinate, a velocity or a mode. */
 struct Assignment {
   Node symbol, value;
 };
 
-/* Times base + count period, by modes: those of base and period change where the period is set anew. */
+/* Sampling times base + count period. These are modes, since base and period change if the period is set anew. */
 struct Sample {
   Node base, count, period;
-  Node every, offset; /* constant between events: the period, and the first time */
-  Node branch;        /* the mode of the branch that turns at the next time */
+  Node every, offset; /* period and first time, constant between events */
+  Node branch;        /* mode of the branch that switches at the next time */
 };
 
 struct Event {
   enum Passage passage;
-  struct Sample sample; /* of PASSAGE_SAMPLES */
-  Node condition;       /* a function of modes alone: positive where it holds, or the sign of the expression */
-  Node expression;      /* that passes 0; ZERO for conditions and samples */
-  Node side;            /* of an expression, the mode that keeps its last sign other than 0; else ZERO */
-  long line;            /* of a sample, or of the expression, for messages */
-  bool is_of_contacts;  /* contacts, frictions and forces decide on the condition */
+  struct Sample sample; /* with PASSAGE_SAMPLES */
+  Node condition;       /* of modes alone: positive if the condition holds; for an expression, its sign */
+  Node expression;      /* whose zero crossing is the event; ZERO for conditions and samples */
+  Node side;            /* of an expression, the mode with its last nonzero sign; else ZERO */
+  long line;            /* of the sample or expression, for messages */
+  bool is_of_contacts;  /* the condition depends on contacts, frictions or constraint forces */
   struct Assignment *assignments;
   size_t assignment_count;
-  char *text; /* for messages: when, or every of a sample */
+  char *text; /* for messages: the condition, or the period of a sample */
 };
 
 struct Switches {
-  size_t first;      /* the index of the first mode: the number of parameters */
-  size_t mode_count; /* of all kinds */
+  size_t first;      /* index of the first mode: the number of parameters */
+  size_t mode_count; /* modes of all kinds */
   struct Branch *branches;
   size_t branch_count;
   struct Contact *contacts;
@@ -93,20 +94,20 @@ struct Switches {
 
 void append_branch(struct Switches *switches, struct Branch branch);
 
-/* Whether anything may happen along the motion. */
+/* True if events may occur. */
 bool has_switches(const struct Switches *switches);
 
-/* Whether any friction acts in a plane. */
+/* True if a friction acts in a plane. */
 bool has_planes(const struct Switches *switches);
 
-/* Of a friction that acts in a plane, of which this is the part along: the square of the speed. */
+/* Returns the square of the speed of a friction in a plane, given its part along. */
 Node square_of_speed(struct Graph *graph, const struct Friction *along);
 
-/* What it pushes with against its velocity without its constraint, and along it where that is negative. */
+/* Returns the force against the velocity that the friction exerts beside its constraint. */
 Node sliding_push(struct Graph *graph, const struct Friction *friction);
 
-/* Positive while its constraint holds, else 0. */
+/* Returns an expression that is 1 while the friction's constraint is active, else 0. */
 Node friction_sticks(struct Graph *graph, const struct Friction *friction);
 
-/* The force of a friction, from that of its constraint: while it slides it belongs to none. */
+/* Returns the whole force of a friction: that of its constraint while it sticks, else the sliding force. */
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force);

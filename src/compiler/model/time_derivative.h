@@ -3,5 +3,8 @@
 
 #include "model/model.h"
 
-/* The direction of d/dt in the space of all symbols, for derivative_along(): with the accelerations, or with 0 for them. */
+/*
+ * Returns the seeds of d/dt for derivative_along(), one for each symbol of the graph. Accelerations of free coordinates
+ * are their symbols, or 0 without with_accelerations.
+ */
 Node *time_seeds(const struct Model *model, bool with_accelerations);
