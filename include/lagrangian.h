@@ -146,7 +146,7 @@ struct BranchFacts {
   const char *file;     /* the file of the expression, without its folder */
   long line;            /* 0 if unknown */
   bool is_side;         /* of an event's expression: at 0 the mode keeps its last nonzero sign */
-  bool holds_energy;    /* the kinetic or potential energy depends on it by the state; energies must not jump there */
+  bool holds_energy;    /* the state determines it, and energies depend on it: they must not jump there */
 };
 
 struct ContactFacts {

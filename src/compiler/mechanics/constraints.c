@@ -24,7 +24,10 @@ static bool has_element(const struct Elements *elements, size_t row, size_t colu
   return has;
 }
 
-/* Forces that follow from those of constraints; the pattern of J holds their places too. */
+/*
+ * Appends the generalized forces that depend on constraint forces. J gets elements of 0 at their positions, so that its
+ * pattern includes them.
+ */
 static void append_oblique(struct Constraints *constraints, const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;

@@ -8,7 +8,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* Velocities of coordinates and of what inputs move. */
+/* True for the velocity of a coordinate, and for an input that is the time derivative of another. */
 static bool is_velocity(const struct Model *model, Node node) {
   const struct Symbol *symbol = graph_symbol_of(model->graph, node);
   return symbol->kind == VELOCITY || (symbol->kind == INPUT && is_input_rate(model, (size_t)symbol->index));
@@ -24,12 +24,16 @@ Node stored_energy(const struct Model *model, Node potential) {
   return energy;
 }
 
-/* The degrees of an expression's terms in the velocities; without a highest one where it is no polynomial of them. */
+/*
+ * Lowest and highest degree of an expression's terms in the velocities; the highest is INFINITY if it is no polynomial.
+ */
 struct Degrees {
   double lowest, highest;
 };
 
-/* of: the degrees of all nodes below, by their places in the graph's cone. */
+/*
+ * Returns the degrees of a node from those of the nodes below, which are indexed by their places in the graph's cone.
+ */
 static struct Degrees degrees_of_vertex(const struct Model *model, Node node, const struct Degrees *of) {
   const struct Graph *graph = model->graph;
   const struct Vertex *vertex = &graph->vertices[node];
@@ -62,7 +66,7 @@ static struct Degrees degrees_of(const struct Model *model, Node target) {
 
 Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {
   struct Degrees degrees = degrees_of(model, term);
-  /* Degrees below and above may cancel each other once multiplied out. */
+  /* Terms of other degrees may cancel once multiplied out. */
   if (degrees.lowest != 2 || degrees.highest != 2) degrees = degrees_of(model, simplify_fraction(model->graph, term));
   *driven = degrees.highest == 2 && degrees.lowest < 2;
   return degrees.highest == 2 ? term : negate(model->graph, stored_energy(model, term));

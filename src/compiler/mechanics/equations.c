@@ -19,7 +19,7 @@ struct Equations *equations_create(const struct Model *model) {
   return equations;
 }
 
-/* Whether the nodes are made of finite numbers. */
+/* True if all constants below the nodes are finite. */
 static bool are_finite(const struct Graph *graph, const Node *nodes, size_t count) {
   const struct Cone *cone = graph->cone;
   bool finite = true;

@@ -1,4 +1,4 @@
-/* The equations of motion, and all that is computed beside them. */
+/* The equations of motion, and the expressions computed with them. */
 #pragma once
 
 #include "algebra/node_list.h"
@@ -7,43 +7,46 @@
 
 struct SwitchingExpressions;
 
-/* What follows from a model, which stays as it is. */
+/* Equations derived from a model. */
 struct Equations {
-  size_t count; /* coordinates */
+  size_t count; /* number of coordinates */
   struct Constraints *constraints;
   struct Inertia *inertia;
   /*
-   * Of each row of inertia.h, coordinates and then constraints; a: accelerations and forces of constraints. residual is
-   * K a - right_side with symbols for a; acceleration has expressions in unrolled blocks, and the symbols in others.
+   * For each row of inertia.h, coordinates and then constraints, with unknowns a: accelerations and constraint forces.
+   * residual is K a - right_side with symbols for a. acceleration holds expressions for the unknowns of unrolled
+   * blocks, and the symbols of others.
    */
   Node *right_side, *residual, *acceleration;
-  /* Accelerations are given as such (linearised systems): M is 1 above, and inertia is M at the point. */
+  /*
+   * The accelerations are given explicitly, as in linearized systems. residual has M = 1; inertia is M at the operating
+   * point.
+   */
   bool explicit_form;
-  struct NodeList
-      rates; /* of the model's states behind the velocities; they hold no accelerations of unrolled blocks */
-  /* Of the non-conservative forces: sum Q_i v_i, F . dr/dt of Cartesian ones, and of what drives and moves. */
+  struct NodeList rates; /* of the model's first-order states, without unknowns of unrolled blocks */
+  /* Power of the nonconservative forces: sum of Q_i v_i, F . dr/dt of Cartesian forces, and that of the drives. */
   Node power;
-  Node stated_power;                            /* the same, which may hold the acceleration symbols */
+  Node stated_power;                            /* the same; may contain acceleration symbols */
   Node kinetic, potential, total;               /* energies, see energies.h */
   Node *outputs;                                /* of the model */
-  Node *reactions;                              /* of the model; they may hold the acceleration symbols */
-  Node *places;                                 /* of the model; they too */
-  const struct Method *method;                  /* that solves them; NULL without coordinates */
-  const struct SwitchingExpressions *switching; /* NULL where nothing switches */
+  Node *reactions;                              /* of the model; may contain acceleration symbols */
+  Node *places;                                 /* of the model; likewise */
+  const struct Method *method;                  /* solver; NULL without coordinates and states */
+  const struct SwitchingExpressions *switching; /* NULL if nothing switches */
 };
 
-/* Equations of a model without anything derived yet. */
+/* Returns the equations of a model before their derivation, with its constraints. */
 struct Equations *equations_create(const struct Model *model);
 
-/* Reports coefficients that are not finite: of sums and products too large for numbers, and of a point at a pole. */
+/* Reports coefficients that are not finite, by overflow or at a pole. */
 void equations_check_finite(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
 
-/* Whether the row belongs to a block that is solved at run time, by ldlt.h. */
+/* True if the row belongs to a block that is solved numerically at run time. */
 bool is_looped(const struct Equations *equations, size_t row);
 
-/* True if rates of states hold accelerations or forces that are found at run time. */
+/* True if rates of first-order states contain accelerations or constraint forces that are computed at run time. */
 bool rates_use_unknowns(const struct Graph *graph, const struct Equations *equations);
 
-/* How many rows there are. */
+/* Returns the number of rows: coordinates and constraints. */
 size_t row_count(const struct Equations *equations);

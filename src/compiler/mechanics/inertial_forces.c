@@ -6,12 +6,15 @@
 #include "model/time_derivative.h"
 #include "mechanics/virtual_work.h"
 
-/* Whether what rests is a velocity, of a nonholonomic constraint. */
+/* True if the regularized constraint is nonholonomic. */
 static bool is_rate(const struct Graph *graph, Node constraint) {
   return graph_depends_on(graph, constraint, VELOCITY);
 }
 
-/* Positions and angles of planar bodies. A weight of ZERO is that of a mere point. */
+/*
+ * Collects m r'' for the positions, and I phi'' for the angles, of particles and planar bodies. Points without mass add
+ * nothing.
+ */
 static struct VirtualWork work_on_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
   struct VirtualWork work = {0};
@@ -40,7 +43,7 @@ static struct VirtualWork work_on_positions(const struct Model *model, const Nod
   return work;
 }
 
-/* v' + omega x v */
+/* Returns the inertial time derivative of a vector along rotating axes: v' + omega x v. */
 static struct Vector rate_in_frame(struct Graph *graph, const Node *seeds, struct Derivatives *rates,
                                    struct Vector spin, struct Vector vector) {
   struct Vector carried = vector_cross(graph, spin, vector);

@@ -1,21 +1,22 @@
 /*
- * d/dt (dK/dv_i) - dK/dq_i of the bodies' share of K, as d'Alembert's sum over what has an inertia:
+ * Inertial forces d/dt (dK/dv_i) - dK/dq_i of the bodies, in d'Alembert's form with partial velocities (T. R. Kane,
+ * D. A. Levinson: Dynamics: Theory and Applications, 1985):
  *
- *   sum m (d2r/dt2) . dr/dq_i                              for particles and planar bodies
- *   sum m (v' + omega x v) . dv/dv_i + (I omega' + omega x I omega) . d omega/dv_i      for bodies in frames
+ *  sum m (d2r/dt2) . dr/dq_i                              for particles and planar bodies
+ *  sum m (v' + omega x v) . dv/dv_i + (I omega' + omega x I omega) . d omega/dv_i      for bodies in frames
  *
- * with the velocities v and omega along the frame's axes, and x' for d/dt of components. Lagrange's general form makes
- * terms that only cancel each other, which these leave out.
+ * v and omega have components along the frame's axes; v' is d/dt of the components. The general form of Lagrange's
+ * equation has more terms, which cancel each other.
  */
 #pragma once
 
 #include "model/model.h"
 
 /*
- * Of the symbols of the kind with these time derivatives (seeds): COORDINATE, or DISPLACEMENT or INPUT, where the symbol of a
- * rate follows its own, and its element means nothing.
+ * Returns the inertial forces along the symbols of a kind; seeds are the time derivatives of all symbols. The kind is
+ * COORDINATE, or DISPLACEMENT or INPUT, where each symbol is followed by its rate: elements of rates have no meaning.
  */
 Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count);
 
-/* The kinetic energy of what has an inertia without energy: 0 on the motion, but not its second derivatives. */
+/* Returns the kinetic energy of the regularization: 0 on the motion, but with nonzero second derivatives. */
 Node energy_of_stillness(const struct Model *model);

@@ -12,7 +12,7 @@
 #include "mechanics/switching.h"
 #include "model/time_derivative.h"
 
-/* Q_i, with -dD/dv_i of the dissipation function D added. */
+/* Returns Q_i - dD/dv_i, with the dissipation function D. */
 static Node *generalized_forces(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
@@ -22,7 +22,7 @@ static Node *generalized_forces(const struct Model *model) {
   return force;
 }
 
-/* Takes the elements of a block out of an array over all coordinates; back: puts them there. */
+/* Copies the elements of a block from an array over all rows; with back, to that array. */
 static void move_block(const struct InertiaBlock *block, Node *all, Node *of_block, bool back) {
   for (size_t i = 0; i < block->count; i++) {
     if (back) all[block->coordinates[i]] = of_block[i];
@@ -35,9 +35,10 @@ static bool is_driven(const struct Model *model, size_t row) {
 }
 
 /*
- * Multiplied out, the inertial forces in curvilinear coordinates lose terms that only cancel each other; others grow.
- * left: the inertial forces of the count coordinates, and ZERO for constraints, without and with accelerations, which
- * are replaced, block by block, where that makes them shorter. Forces and potentials stay as their author wrote them: k*(r - l0) is more accurate than k*r - k*l0.
+ * Shortens the inertial forces, block by block. Multiplied out, those in curvilinear coordinates lose terms that cancel
+ * each other, but others grow. left: inertial forces of the coordinates, and ZERO for constraints, at zero
+ * accelerations and with their symbols; each is replaced only by a shorter form. Forces and potentials stay as written:
+ * k*(r - l0) has smaller rounding errors than k*r - k*l0.
  */
 static void shorten_inertial_forces(const struct Model *model, const struct Inertia *inertia, Node *left[2]) {
   struct Graph *graph = model->graph;
@@ -55,7 +56,7 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
   inertia_add_product(graph, inertia, rows, other);
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
-    /* The M of a driven coordinate is that of the drive, 1; that of a tree is not formed. */
+    /* A prescribed coordinate has the M of v' = acceleration, 1; that of a tree is not formed. */
     if (is_driven(model, inertia->blocks[b].coordinates[0]) || inertia->blocks[b].tree != NULL) continue;
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
@@ -64,7 +65,7 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
   }
 }
 
-/* The equation of a driven coordinate tells the force of its drive; what moves it is another one. */
+/* Replaces the equation of a prescribed coordinate by v' = acceleration; its residual becomes the driving force. */
 static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
   struct Graph *graph = model->graph;
   const struct Drive *drive = &model->given.drives[i];
@@ -74,7 +75,7 @@ static void give_motion(const struct Model *model, struct Equations *equations, 
   equations->residual[i] = subtract(graph, model->unknowns.accelerations[i], drive->acceleration);
 }
 
-/* Those that follow from the forces of constraints belong to the matrix. */
+/* Removes the terms with constraint forces, which the matrix contains. */
 static Node without_forces(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   if (model->switches.friction_count == 0 || !graph_depends_on(graph, node, ACCELERATION)) return node;
@@ -84,7 +85,7 @@ static Node without_forces(const struct Model *model, Node node) {
   return node;
 }
 
-/* right_side: what Lagrange's equation leaves when the accelerations are 0; residual: M a - right_side. */
+/* Derives right_side, which is Q less the bias forces, and residual, M a - right_side. */
 static void derive_motion(const struct Model *model, struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   size_t n = equations->count;
@@ -109,7 +110,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
   }
 }
 
-/* The rows of the constraints, and their forces in those of the coordinates. */
+/* Adds the rows of the constraints, and J^T F to the rows of the coordinates. */
 static void add_constraints(const struct Model *model, struct Equations *equations) {
   const struct Constraints *constraints = equations->constraints;
   struct Graph *graph = model->graph;
@@ -128,7 +129,10 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
   }
 }
 
-/* What is computed of the accelerations: their expressions, or the right sides of what is left to ldlt.h at run time. */
+/*
+ * Returns the unknowns of unrolled blocks as expressions, and the right sides of the other blocks, which are solved at
+ * run time.
+ */
 static Node *solution_of(struct Graph *graph, const struct Equations *equations, const Node *right_side) {
   Node *solution = allocate(row_count(equations), sizeof *solution);
   inertia_solve(graph, equations->inertia, right_side, solution);
@@ -137,7 +141,7 @@ static Node *solution_of(struct Graph *graph, const struct Equations *equations,
   return solution;
 }
 
-/* Products that right sides share are computed once, where that makes the accelerations shorter. */
+/* Solves for the accelerations. Uses shared products of the right sides if that makes the accelerations shorter. */
 static void solve_for_accelerations(const struct Model *model, struct Equations *equations) {
   struct Graph *graph = model->graph;
   size_t rows = row_count(equations);
@@ -157,7 +161,7 @@ static void solve_for_accelerations(const struct Model *model, struct Equations 
   }
 }
 
-/* What is solved for symbolically stands for its symbol. */
+/* Replaces the unknowns that are solved symbolically by their expressions. */
 static Node with_accelerations(const struct Model *model, const struct Equations *equations, Node node) {
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, node, ACCELERATION)) return node;
@@ -195,7 +199,7 @@ static void derive_rates(const struct Model *model, struct Equations *equations)
   }
 }
 
-/* What an output tells: forces of reaction may decide on its branches, and have branches themselves. */
+/* Returns the expression of an output. Its branches may depend on reactions, which may have branches themselves. */
 static Node output_of(const struct Model *model, const Node *reactions, Node node) {
   node = with_reactions(model, reactions, without_branches(model, node));
   return without_branches(model, node);

@@ -11,11 +11,11 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* States, inputs and accelerations, which change in motion, with their values at the point and deviations from them. */
+/* Expansion of the variables at the operating point: states, inputs, accelerations and constraint forces. */
 struct Expansion {
   struct Graph *graph;
-  Node *values;     /* one node a symbol: its value at the point; of parameters: themselves */
-  Node *deviations; /* one node a symbol; ZERO for parameters */
+  Node *values;     /* of each symbol: its value at the point; parameters stay */
+  Node *deviations; /* of each symbol: symbol - value; ZERO for parameters */
 };
 
 enum {
@@ -55,7 +55,7 @@ static struct Expansion expansion_create(const struct Model *model) {
   return expansion;
 }
 
-/* factor * sum of d node / d s, at the point, times the deviation of s */
+/* Returns factor * sum over symbols s of (d node / d s at the point) * deviation of s. */
 static Node change_of(const struct Expansion *expansion, Node node, double factor) {
   struct Graph *graph = expansion->graph;
   struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
@@ -67,13 +67,13 @@ static Node change_of(const struct Expansion *expansion, Node node, double facto
   return change;
 }
 
-/* Taylor's polynomial of the first order at the point. */
+/* Returns the Taylor polynomial of degree 1 at the point. */
 static Node expand(const struct Expansion *expansion, Node node) {
   Node change = change_of(expansion, node, 1.0);
   return add(expansion->graph, at_point(expansion, node), change);
 }
 
-/* The same of the second order. */
+/* Returns the Taylor polynomial of degree 2 at the point. */
 static Node expand_twice(const struct Expansion *expansion, Node node) {
   struct Graph *graph = expansion->graph;
   struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
@@ -103,8 +103,8 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
 }
 
 /*
- * M solution = right for one block and several right sides by rows, in fractions where they are not too large. Rows are
- * in the block's order of elimination.
+ * Solves M solution = right for a block, with several right sides by rows; in fractions if they are small enough. Rows
+ * are in the block's order of elimination.
  */
 static void solve_block(struct Graph *graph, const struct InertiaBlock *block, size_t columns, const Node *right,
                         Node *solution) {
@@ -121,7 +121,7 @@ static void solve_block(struct Graph *graph, const struct InertiaBlock *block, s
   }
 }
 
-/* The accelerations at the point. */
+/* Computes the accelerations and constraint forces at the point. */
 static void find_values(struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
                         const struct Inertia *inertia, Node *value) {
   Node *right = allocate(inertia->count, sizeof *right);
@@ -135,7 +135,7 @@ static void find_values(struct Expansion *expansion, const struct Model *model, 
   for (size_t i = 0; i < inertia->count; i++) set_value(expansion, unknown_of_row(model, i), value[i]);
 }
 
-/* The symbols of the gradients, ascending, each once; returns their number. */
+/* Collects the symbols of all gradients, ascending, each once. Returns their number. */
 static size_t join_symbols(const struct Gradient *gradients, size_t count, Node **symbols) {
   size_t all = 0, kept = 0;
   for (size_t i = 0; i < count; i++) all += gradients[i].count;
@@ -149,7 +149,7 @@ static size_t join_symbols(const struct Gradient *gradients, size_t count, Node 
   return kept;
 }
 
-/* M da = -(d residual / d s) ds with M and the acceleration held at their values at the point, for one block. */
+/* Solves M da = -(d residual / d s) ds for a block, with M and the accelerations at the point. */
 static void linearize_block(const struct Expansion *expansion, const struct Equations *equations,
                             const struct InertiaBlock *block, Node *acceleration) {
   struct Graph *graph = expansion->graph;
@@ -200,7 +200,7 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
   return singular;
 }
 
-/* The expression with the linearised forces of constraints, from row first on, in place of their symbols. */
+/* Replaces the unknowns from row first on by their linearized expressions. */
 static Node without_unknowns(const struct Model *model, const struct Equations *linear, size_t first, Node node) {
   struct Graph *graph = model->graph;
   Node *replacements = own_symbols(graph), result;
@@ -210,7 +210,7 @@ static Node without_unknowns(const struct Model *model, const struct Equations *
   return result;
 }
 
-/* Whether the point fulfils the constraints, and K can be solved there. */
+/* True if the point fulfils the constraints and their time derivatives. */
 static bool fulfils_constraints(const struct Expansion *expansion, const struct Model *model,
                                 const struct Equations *equations, struct Diagnostics *diagnostics) {
   const struct Constraints *constraints = equations->constraints;
@@ -231,7 +231,7 @@ static bool fulfils_constraints(const struct Expansion *expansion, const struct 
   return wrong == 2 * constraints->count;
 }
 
-/* What is affine in states and inputs, and the energies, of the second degree. */
+/* Fills in the equations: affine in states and inputs, with energies of degree 2. */
 static void expand_all(const struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
                        struct Equations *linear) {
   struct Graph *graph = expansion->graph;
@@ -272,12 +272,12 @@ struct Equations *linearize(const struct Model *model, const struct Equations *e
     expand_all(&expansion, model, equations, linear);
     for (size_t i = 0; i < equations->rates.count; i++) rates[i] = at_point(&expansion, linear->rates.nodes[i]);
     warn_without_equilibrium(model, values, rates, diagnostics);
-    linear->constraints->count = 0; /* the linear equations obey them by themselves */
+    linear->constraints->count = 0; /* the linear equations satisfy them */
   }
   return singular ? NULL : linear;
 }
 
-/* Symbols at 0 but parameters, modes and time. */
+/* Returns replacements for all symbols: 0, except for parameters, modes and time. */
 static Node *zero_symbols(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *zero = allocate(graph->symbol_count, sizeof *zero);
@@ -289,7 +289,10 @@ static Node *zero_symbols(const struct Model *model) {
   return zero;
 }
 
-/* A row of A, B and c from the derivative of the state of this name; reports where it is not linear with constant coefficients. */
+/*
+ * Fills a row of A, B and c from the derivative of the named state. Reports a derivative that is not linear with
+ * constant coefficients.
+ */
 static void fill_row(const struct Model *model, Node derivative, size_t row, const char *name,
                      struct LinearSystem *system, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;
@@ -339,7 +342,7 @@ static void print_matrix(const struct Model *model, const char *name, const Node
     for (size_t j = 0; j < columns; j++) {
       Node node = matrix[i * columns + j];
       if (j > 0) printf(", ");
-      if (values != NULL) printf("%.15g", values[node]); /* without the digits that only show rounding */
+      if (values != NULL) printf("%.15g", values[node]); /* 15 digits: the others show rounding alone */
       else {
         printf("%s", expression_text(model->graph, node));
       }

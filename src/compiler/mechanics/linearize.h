@@ -1,24 +1,30 @@
-/* Linearisation about a point: x' = A (x - x0) + B (u - u0) + f(x0, u0). */
+/* Linearization at an operating point: x' = A (x - x0) + B (u - u0) + f(x0, u0). */
 #pragma once
 
 #include "mechanics/equations.h"
 
-/* The matrices of a linear system; state order: coordinates, then velocities. Element (i, j) at i * columns + j. */
+/*
+ * The matrices of a linear system x' = A x + B u + c. The state holds coordinates, velocities, then first-order states.
+ * Element (i, j) has the index i * columns + j.
+ */
 struct LinearSystem {
   size_t states, inputs;
   Node *a, *b; /* states x states, states x inputs */
-  Node *c;     /* states: what remains at x = 0 and u = 0 */
+  Node *c;     /* [states] */
 };
 
 /*
- * The equations linearised at model->point: accelerations affine in states and inputs, outputs and positions to first
- * order, energies to second; without the work of forces. Warns where the point is no equilibrium; NULL after reporting a
- * system that cannot be linearised there.
+ * Returns the equations linearized at model->point: accelerations affine in states and inputs, outputs and positions of
+ * degree 1, energies of degree 2. The power of forces stays as it is. Warns if the point is no equilibrium. Returns
+ * NULL after reporting a system that cannot be linearized there.
  */
 struct Equations *linearize(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
 
-/* The matrices of equations that are linear in states and inputs; NULL after reporting which acceleration is not. */
+/*
+ * Returns the matrices of equations that are linear in states and inputs; NULL after reporting the accelerations that
+ * are not.
+ */
 struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics);
 

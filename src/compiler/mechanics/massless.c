@@ -9,17 +9,17 @@
 #include "mechanics/inertial_forces.h"
 #include "mechanics/mass_matrix/pivots.h"
 
-/* What is left of a diagonal element, or of the terms of a sum, by rounding. */
+/* Smallest share that a pivot has of its diagonal element, or a sum of its terms, if it is not 0 up to rounding. */
 static const double rounding = 1e-10;
 
-/* M and J, as expressions and in numbers. */
+/* M and J, as expressions and as numbers. */
 struct Matrices {
   const struct Model *model;
-  size_t count; /* coordinates */
+  size_t count; /* number of coordinates */
   struct Elements mass;
   struct Constraints *constraints;
-  double *values; /* of all nodes at a point at which expressions vanish only where they vanish everywhere */
-  bool *is_held;  /* each constraint: its rate has an inertia */
+  double *values; /* of all nodes at a generic point, where expressions vanish only if they vanish identically */
+  bool *is_held;  /* of each constraint: it is regularized */
 };
 
 static struct Elements mass_elements(const struct Model *model) {
@@ -40,7 +40,7 @@ static struct Elements mass_elements(const struct Model *model) {
   return elements;
 }
 
-/* Which coordinates M couples, with the inertia of the constraints that are held. */
+/* Returns the components of coordinates that M couples, with the regularized constraints. */
 static struct Components couplings(const struct Matrices *matrices) {
   const struct Elements *jacobian = &matrices->constraints->jacobian;
   size_t *first = allocate(matrices->constraints->count, sizeof *first); /* 1 + a coordinate of each constraint */
@@ -56,14 +56,14 @@ static struct Components couplings(const struct Matrices *matrices) {
   return find_components(matrices->count, &all);
 }
 
-/* The places of the coordinates in their components, and the number of coordinates of each. */
+/* Returns the index of each coordinate in its component; counts the coordinates of each component. */
 static size_t *places_in(const struct Components *components, size_t count, size_t *sizes) {
   size_t *places = allocate(count, sizeof *places);
   for (size_t i = 0; i < count; i++) places[i] = sizes[components->of[i]]++;
   return places;
 }
 
-/* Adds M and the inertia of the held constraints, as 1, to the dense matrices of the components. */
+/* Adds M, and j^T j for the row j of each regularized constraint, to the dense matrices of the components. */
 static void fill(const struct Matrices *matrices, const struct Components *components, const size_t *places,
                  const size_t *sizes, double **dense) {
   const struct Elements *mass = &matrices->mass, *jacobian = &matrices->constraints->jacobian;
@@ -83,7 +83,10 @@ static void fill(const struct Matrices *matrices, const struct Components *compo
   }
 }
 
-/* A vector z with m z = 0 of a positive semidefinite m, by L D L^T in place; false where there is none. */
+/*
+ * Finds a vector z != 0 with m z = 0 for a positive semidefinite m, by L D L^T in place up to the first zero pivot.
+ * False if m is regular.
+ */
 static bool find_null_vector(size_t n, double *m, double *z) {
   for (size_t i = 0; i < n; i++) {
     double *row = m + i * n, diagonal = row[i];
@@ -105,7 +108,7 @@ static bool find_null_vector(size_t n, double *m, double *z) {
   return false;
 }
 
-/* Marks the constraints that hold the motion z; false where none does that is not marked yet. */
+/* Regularizes the constraints with J z != 0. False if all of them were regularized before. */
 static bool hold_motion(struct Matrices *matrices, const double *z) {
   const struct Elements *jacobian = &matrices->constraints->jacobian;
   bool has_changed = false;
@@ -123,7 +126,7 @@ static bool hold_motion(struct Matrices *matrices, const double *z) {
   return has_changed;
 }
 
-/* Holds one motion without inertia of each component; false where nothing changes any more. */
+/* Regularizes one null vector of each component. False if nothing changed. */
 static bool hold_motions(struct Matrices *matrices) {
   size_t n = matrices->count;
   struct Components components = couplings(matrices);
@@ -143,7 +146,7 @@ static bool hold_motions(struct Matrices *matrices) {
   return has_changed;
 }
 
-/* The inertia of a coordinate, ZERO where it has none; a number where it changes in time. */
+/* Returns the inertia of a coordinate; its value at the start if it varies in time, and ZERO if there is none. */
 static Node inertia_of(const struct Matrices *matrices, size_t coordinate, const double *at_start) {
   struct Graph *graph = matrices->model->graph;
   const struct Elements *mass = &matrices->mass;
@@ -162,7 +165,10 @@ static Node *inertias_of(const struct Matrices *matrices, const double *at_start
   return inertias;
 }
 
-/* 1 / sum of 1 / inertia over the coordinates with inertia in the row, in all of the system where it has none. */
+/*
+ * Returns 1 / (sum of 1 / inertia) over the coordinates with inertia in the row. If it has none, returns the inertia of
+ * the first coordinate that has one, or 1.
+ */
 static Node harmonic_inertia(const struct Matrices *matrices, size_t row, const Node *inertias) {
   struct Graph *graph = matrices->model->graph;
   const struct Elements *jacobian = &matrices->constraints->jacobian;
@@ -176,7 +182,7 @@ static Node harmonic_inertia(const struct Matrices *matrices, size_t row, const 
   return sum != ZERO ? power_number(graph, sum, -1.0) : ONE;
 }
 
-/* The square of the length of a row of J at the start, 1 where it has none there. */
+/* Returns the square of the norm of a row of J at the start; 1 if that is 0 or not finite. */
 static double square_of_row(const struct Matrices *matrices, size_t row, const double *at_start) {
   const struct Elements *jacobian = &matrices->constraints->jacobian;
   double square = 0.0;
@@ -186,8 +192,8 @@ static double square_of_row(const struct Matrices *matrices, size_t row, const d
 }
 
 /*
- * Of the size of the smallest inertia that the constraint couples: larger, it would drown that in rounding; smaller, it
- * would lose the digits of the forces that go through what has none.
+ * Appends the regularizations. Each inertia is about the smallest that its constraint couples. A larger one would swamp
+ * that by its rounding errors; a smaller one would cost digits of the forces on coordinates without inertia.
  */
 static void append_stillnesses(const struct Matrices *matrices, struct Model *model) {
   struct Graph *graph = model->graph;
@@ -203,7 +209,7 @@ static void append_stillnesses(const struct Matrices *matrices, struct Model *mo
   }
 }
 
-/* Values at which M and J are finite, if eight trials find some. */
+/* Returns the values of all nodes for random symbols, at which M and J are finite if eight trials find such. */
 static double *values_somewhere(const struct Matrices *matrices, const struct Graph *graph) {
   double *symbols = allocate(graph->symbol_count, sizeof *symbols), *values = NULL;
   uint64_t seed = 1;

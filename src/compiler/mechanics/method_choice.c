@@ -2,7 +2,10 @@
 
 #include "algebra/kinks.h"
 
-/* What loses energy, or is driven by what an FMU does not know, may hold modes that die away while others go on. */
+/*
+ * True if the system may be stiff: it has dissipation, or inputs whose course is unknown, so that fast modes may decay
+ * while slow ones continue.
+ */
 static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;
   bool may = graph_depends_on(graph, model->energies.dissipation.node, VELOCITY);

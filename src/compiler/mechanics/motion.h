@@ -1,10 +1,10 @@
-/* From a model to the equations that its FMU has. */
+/* From a model to the equations of its FMU. */
 #pragma once
 
 #include "mechanics/equations.h"
 
 /*
- * The equations of motion, linearised where the model asks for it, with what switches them and the method that solves
- * them. Coordinates without inertia get one in the model, see massless.h. NULL after reporting errors.
+ * Derives the equations of motion, linearized if the model says so, their switching and their method. Regularizes
+ * coordinates without inertia in the model, see massless.h. Returns NULL after reporting errors.
  */
 struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics);

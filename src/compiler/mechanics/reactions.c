@@ -8,7 +8,10 @@
 #include "model/time_derivative.h"
 #include "mechanics/virtual_work.h"
 
-/* What Cartesian forces and torques do along the symbols of the kind; each is followed by that of its rate. */
+/*
+ * Returns the generalized forces of Cartesian forces and torques along the symbols of a kind, each of which is followed
+ * by its rate.
+ */
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
   const struct Forces *forces = &model->forces;
   struct Graph *graph = model->graph;
@@ -27,7 +30,7 @@ static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_
   return along;
 }
 
-/* R + Q for each symbol of the kind but the last; that of its rate follows it. */
+/* Returns R + Q_s along each symbol of the kind that is followed by its rate, as in reactions.h. */
 static Node *forces_along(const struct Model *model, enum SymbolKind kind, size_t count) {
   struct Graph *graph = model->graph;
   Node lagrangian = subtract(graph, model->energies.displaced_kinetic.node, model->energies.displaced_potential.node);
@@ -52,7 +55,7 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
 }
 
-/* Forces at what an input moves act on the system through it, so that what moves it delivers R, and they Q. */
+/* Forces at a point that an input moves act on the system through this input. Its drive delivers R, the forces Q. */
 Node moving_power(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t count = model->inputs.count;

@@ -1,26 +1,29 @@
 /*
- * Forces of reaction: what must act along a motion that is given, such as a virtual displacement s that is always 0, from
- * the equation of this motion alone, with r for the positions and L for <kinetic> less the potential,
+ * Reaction forces along a prescribed motion s, such as a virtual displacement that is always 0, by the equation of this
+ * motion alone. With positions r, and with L for <kinetic> less the potential,
  *
- *   R = sum m (d2r/dt2) . dr/ds + d/dt (dL/ds') - dL/ds - Q_s
+ *  R = sum m (d2r/dt2) . dr/ds + d/dt (dL/ds') - dL/ds - Q_s
  *
- * along the true motion of all else.
+ * at the true motion of the system.
  */
 #pragma once
 
 #include "model/model.h"
 
 /*
- * The forces along the displacements, the first of model->reactions, with the acceleration symbols: -R, what the system
- * pushes with, as the tension of a rod for a displacement that makes it longer.
+ * Derives the forces along the displacements, the first of model->reactions; they may contain acceleration symbols. The
+ * sign is -R: a displacement that lengthens a rod gives its tension.
  */
 void reactions_derive(const struct Model *model, Node *reactions);
 
-/* The power of what moves the inputs on which positions and energies depend, with the acceleration symbols. */
+/*
+ * Returns the power of the drives of inputs on which positions and energies depend; it may contain acceleration
+ * symbols.
+ */
 Node moving_power(const struct Model *model);
 
-/* What replaces each symbol where nothing is displaced: itself, or 0 for a displacement. */
+/* Returns replacements for all symbols: 0 for displacements, other symbols for themselves. */
 Node *undisplaced_symbols(const struct Graph *graph);
 
-/* The node with the symbols of reactions replaced by these. */
+/* Replaces the symbols of reactions in a node by these expressions. */
 Node with_reactions(const struct Model *model, const Node *reactions, Node node);

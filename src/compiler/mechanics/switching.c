@@ -9,7 +9,7 @@
 #include "lagrangian.h"
 #include "model/time_derivative.h"
 
-/* What decides on the motion. */
+/* Collects the expressions that determine the motion. */
 static struct NodeList roots_of(const struct Model *model, const struct Equations *equations) {
   const struct Switches *switches = &model->switches;
   struct NodeList roots = {0};
@@ -35,13 +35,13 @@ static struct NodeList roots_of(const struct Model *model, const struct Equation
   return roots;
 }
 
-/* Whether the state decides by a branch on an energy; the cone holds the energies. */
+/* True if the state determines the mode of a branch, and energies depend on it; the cone holds the energies. */
 static bool holds_energy(const struct Model *model, const struct Branch *branch) {
   const unsigned of_state = 1u << COORDINATE | 1u << VELOCITY;
   return (branch->kinds & of_state) != 0 && cone_has(model->graph->cone, branch->mode);
 }
 
-/* The branches of energies: also those that only add to them, whose jumps no force tells. */
+/* Finds the branches of energies. Some only add a constant to them, so that their jumps show in no force. */
 static void find_energies(const struct Model *model, const struct Equations *equations,
                           struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
@@ -52,7 +52,7 @@ static void find_energies(const struct Model *model, const struct Equations *equ
     switching->holds_energy[i] = holds_energy(model, &switches->branches[i]);
 }
 
-/* The branches whose modes stand in the roots, or in the indicators of such branches. */
+/* Finds the branches whose modes occur in the roots, or in the indicators of such branches. */
 static void find_branches(const struct Model *model, struct NodeList *roots, struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
@@ -79,7 +79,7 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
   }
 }
 
-/* Forces have no rate that is known here. */
+/* Returns the time derivative of a node; ZERO for forces, whose rate is unknown. */
 static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
   if (graph_depends_on(model->graph, node, ACCELERATION)) return ZERO;
   Node rate;
@@ -91,7 +91,7 @@ static Node indicator_of_contact(const struct Model *model, const struct Contact
   return choose_node(model->graph, contact->mode, model->unknowns.forces[contact->constraint], contact->gap);
 }
 
-/* Positive while the force is between the limits of both directions. */
+/* Returns an expression that is positive while the force is between the limits of both directions. */
 static Node left_of_stiction(struct Graph *graph, const struct Friction *friction, Node force) {
   if (friction->stiction != friction->stiction_back) {
     Node forth = subtract(graph, friction->stiction, force), back = add(graph, friction->stiction_back, force);
@@ -110,7 +110,7 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }
 
-/* The component of the velocity in a plane along the heading, or to the left of it. */
+/* Returns the component of the velocity along the heading, or to the left of it. */
 static Node velocity_by_heading(struct Graph *graph, const struct Friction *along, bool is_left) {
   Node first = multiply(graph, along[0].plane.heading, along[is_left ? 1 : 0].velocity);
   Node second = multiply(graph, along[1].plane.heading, along[is_left ? 0 : 1].velocity);
@@ -118,8 +118,9 @@ static Node velocity_by_heading(struct Graph *graph, const struct Friction *alon
 }
 
 /*
- * In units of the velocity: falls through 0 where the speed falls to the lower one, or that along the heading below 0 by as much,
- * or the force needed comes to the stiction; of one whose velocity is given, where the speed rises from rest to the lower one.
+ * Returns the lower indicator of a friction in a plane, in units of the velocity. It falls through 0 if, while sliding,
+ * the speed falls to lower; while slipping along the heading, the velocity along it falls to -lower; while sticking,
+ * the force reaches the stiction. With a prescribed velocity at rest, it does so if the speed rises to lower.
  */
 static Node lower_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
@@ -136,8 +137,8 @@ static Node lower_indicator(const struct Model *model, const struct Friction *al
 }
 
 /*
- * The same where the speed rises to the upper one, or that to the side of the heading; with a negative upper one, where that along
- * the heading falls to it.
+ * Returns the upper indicator. It falls through 0 if the speed rises to upper, or that to the side of the heading; with
+ * a negative upper, if the velocity along the heading falls to it.
  */
 static Node upper_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
@@ -179,7 +180,7 @@ static void append_watched(const struct Model *model, const struct SwitchingExpr
   }
 }
 
-/* What rounding may make of the indicators of branches, of gaps, and of the velocities of frictions. */
+/* Bounds the rounding errors of the indicators of branches, of gaps, and of the velocities of frictions. */
 static void fill_roundings(const struct Model *model, const struct SwitchTable *counts,
                            struct SwitchingExpressions *switching) {
   Node *nodes = switching->roundings = allocate(indicator_count(counts), sizeof *nodes);
@@ -191,7 +192,7 @@ static void fill_roundings(const struct Model *model, const struct SwitchTable *
   roundings_of(model->graph, nodes, indicator_count(counts), nodes);
 }
 
-/* The energies and the momenta, where branches hold them. */
+/* Appends the energies and momenta if a branch has holds_energy. */
 static void append_energies(const struct Model *model, const struct Equations *equations,
                             struct SwitchingExpressions *switching, struct NodeList *list) {
   size_t n = model->coordinates.count, first = list->count;
@@ -207,7 +208,10 @@ static void append_energies(const struct Model *model, const struct Equations *e
   switching->energy_count = list->count - first;
 }
 
-/* The scale of the speed: that of all velocities in it, each of its present size, or its nominal one where that is larger. */
+/*
+ * Returns the scale of the speed: the sum, over both velocities v and all v_i in them, of
+ * |dv/dv_i| (|v_i| + nominal_i).
+ */
 static Node scale_of_plane(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
   Node scale = ZERO;
@@ -233,7 +237,7 @@ static void append_planes(const struct Model *model, struct NodeList *list) {
   }
 }
 
-/* The period and the first time of each sample. */
+/* Appends the period and the first time of each sample. */
 static void append_samples(const struct Switches *switches, struct SwitchingExpressions *switching,
                            struct NodeList *list) {
   for (size_t i = 0; i < switches->event_count; i++) {
@@ -297,7 +301,7 @@ static void fill_branches(const struct Model *model, const struct SwitchingExpre
     values[branch_rate_place(counts, i)] = rate_of(model, values[i], seeds);
 }
 
-/* All that have a fixed place; the energies follow them, as many as there are. */
+/* Appends all values, in the order of struct SwitchTable. */
 static void append_values(const struct Model *model, const struct Equations *equations,
                           const struct SwitchTable *counts, struct SwitchingExpressions *switching,
                           struct NodeList *list) {
@@ -316,7 +320,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
   append_samples(&model->switches, switching, list);
 }
 
-/* Whether the friction follows from the force of the contact. */
+/* True if the friction depends on the contact force. */
 static bool rests_on(const struct Model *model, const struct Friction *friction, const struct Contact *contact) {
   struct Cone *cone = model->graph->cone;
   cone_collect(cone, model->graph, &friction->sliding, 1);
@@ -339,7 +343,7 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
   switching->rests = any ? rests : NULL;
 }
 
-/* True if the node depends on time, parameters and modes alone, and changes with time at a rate that is constant between events. */
+/* True if the node depends on time, parameters and modes alone, with a nonzero rate that is constant between events. */
 static bool is_affine_in_time(const struct Model *model, Node node, Node rate) {
   const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
   const struct Vertex *vertices = model->graph->vertices;
@@ -383,7 +387,7 @@ Node without_branches(const struct Model *model, Node node) {
     if (!switches->branches[i].is_of_friction)
       replacements[graph->vertices[switches->branches[i].mode].left] =
           function(graph, SIGN, switches->branches[i].indicator, ZERO);
-  /* An indicator may rest on branches itself, of expressions that were read before. */
+  /* The indicator of a branch may contain earlier branches. */
   for (size_t depth = 0; depth <= switches->branch_count && graph_depends_on(graph, node, MODE); depth++) {
     Node before = node;
     substitute(graph, &node, 1, replacements, &node);

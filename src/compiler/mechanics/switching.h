@@ -1,38 +1,41 @@
-/* What an FMU must know to switch: the indicators of events, and all that decides on the modes behind one. */
+/* Expressions for switching: the indicators of events, and the values that decide on the modes after one. */
 #pragma once
 
 #include "mechanics/equations.h"
 
 struct SwitchingExpressions {
-  const struct Branch **branches; /* those that the motion rests on */
-  bool *holds_energy; /* of each branch: whether the state decides by it on an energy, which must not jump there */
+  const struct Branch **branches; /* those on which the motion depends */
+  bool *holds_energy;             /* of each branch: the state determines its mode, and energies depend on it */
   size_t branch_count, assignment_count;
-  size_t energy_count; /* where a branch holds any: kinetic, potential, and momenta where it holds the first; else 0 */
+  size_t energy_count; /* kinetic, potential, and momenta if modes affect the kinetic one; 0 without holds_energy */
   /*
-   * As indicator[] of struct SwitchTable holds them, see include/lagrangian.h: of contacts, the gap while they are open and
-   * the force while they are closed; of frictions, the velocity while they slide and what is left of the stiction while they
-   * stick.
+   * Indicators, as in indicator[] of struct SwitchTable: of contacts, the gap while open, the force while closed; of
+   * frictions, the velocity while sliding, the margin to the stiction while sticking.
    */
   Node *indicators;
   size_t indicator_count;
-  Node *roundings; /* of the indicators, see include/lagrangian.h */
-  /* What the indicators look at, whatever the modes: those of branches, gaps, velocities and stictions of frictions. */
+  Node *roundings; /* rounding error bounds of the indicators, see include/lagrangian.h */
+  /*
+   * Expressions in the indicators, for any modes: indicators of branches, gaps, velocities and stictions of frictions.
+   */
   Node *watched;
   size_t watched_count;
-  Node *values; /* as value[] of struct SwitchTable holds them, see include/lagrangian.h */
+  Node *values; /* value[] of struct SwitchTable */
   size_t value_count;
-  bool feels_forces;    /* some branch turns by the force of a constraint */
-  bool has_sides;       /* of expressions of events, among the branches */
-  bool friction_varies; /* some friction slides with a force that is not constant */
-  size_t *timed;        /* the branches whose next zero is a known time: affine in time, else of parameters and modes */
+  bool feels_forces;    /* a branch depends on a constraint force */
+  bool has_sides;       /* some branches are those of events' expressions */
+  bool friction_varies; /* the sliding force of a friction is not constant */
+  size_t *timed;        /* branches that switch at known times: affine in time, and otherwise of parameters and modes */
   size_t timed_count;
-  size_t sample_count; /* of the events */
-  bool *
-      rests; /* of each friction, and in it of each contact: the friction follows from its force; NULL where none does */
+  size_t sample_count; /* number of sampling events */
+  bool *rests; /* [friction * contacts + contact]: the friction depends on the contact force; NULL if none does */
 };
 
-/* NULL for a system that does not switch. Both hold the acceleration symbols. */
+/* Returns the expressions, which contain acceleration symbols; NULL if nothing switches. */
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations);
 
-/* The node with the modes of branches replaced by the signs that they stand for, as results that no event waits for. */
+/*
+ * Replaces the modes of branches in a node by the signs of their indicators, as for results, whose branches cause no
+ * events.
+ */
 Node without_branches(const struct Model *model, Node node);

@@ -12,7 +12,7 @@ static struct FactorPattern full_pattern(size_t count) {
   return (struct FactorPattern){count, start, column};
 }
 
-/* The place of the only component that is not ZERO, from 0 to 5; -1 where there are several. */
+/* Returns the index, 0 to 5, of the only component that is not ZERO; -1 if there are several. */
 static int only_component(struct SpatialVector axis) {
   int only = -1;
   for (int i = 0; i < 6; i++) {
@@ -23,7 +23,7 @@ static int only_component(struct SpatialVector axis) {
   return only;
 }
 
-/* Nothing is left along a component that a coordinate moves freely. */
+/* Clears the component of a free motion, along which no articulated inertia remains. */
 static void clear_component(struct SpatialInertia *inertia, int component) {
   int i = component % 3;
   for (int j = 0; j < 3; j++) {
@@ -37,7 +37,7 @@ static void clear_component(struct SpatialInertia *inertia, int component) {
   }
 }
 
-/* U = inertia S, and the masses S^T U along the coordinates. Returns U. */
+/* Computes U = inertia S and the masses D = S^T U + inertia of the coordinates. Returns U. */
 static struct SpatialVector *set_masses(struct Graph *graph, struct ArticulatedLink *item,
                                         const struct SpatialInertia *inertia) {
   const struct Link *link = item->link;
@@ -54,7 +54,7 @@ static struct SpatialVector *set_masses(struct Graph *graph, struct ArticulatedL
   return force;
 }
 
-/* The gains U D^-1. */
+/* Computes the gains U D^-1. */
 static void set_gains(struct Graph *graph, struct ArticulatedLink *item, const struct SpatialVector *force) {
   size_t count = item->link->count;
   Node *x = allocate(count, sizeof *x);
@@ -68,7 +68,7 @@ static void set_gains(struct Graph *graph, struct ArticulatedLink *item, const s
   }
 }
 
-/* What the coordinates of a link leave of the inertia. */
+/* Returns the articulated inertia without the free motions of the link: inertia - U D^-1 U^T. */
 static struct SpatialInertia eliminate_link(struct Graph *graph, struct ArticulatedLink *item,
                                             struct SpatialInertia inertia) {
   const struct Link *link = item->link;
@@ -85,23 +85,23 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
 }
 
 /*
- * What the coordinates of a link move, stretched as far as it goes: joints that turn leave this as it is, so that it costs
- * an evaluation nothing.
+ * Upper bounds of the inertia outward of a link, with all distances stretched. Rotations leave them unchanged, so that
+ * behind revolute joints they depend on parameters alone.
  */
 struct Load {
   Node mass;
-  Node lever; /* the mass times the distance of its centre from the link's origin, at most */
-  Node trace; /* of the moments about the origin, at most */
+  Node lever; /* at most the mass times the distance of the centre of mass from the link's origin */
+  Node trace; /* at most the trace of the moments about the origin */
 };
 
 static Node length_of(struct Graph *graph, struct Vector vector) {
   return power_number(graph, vector_dot(graph, vector, vector), 0.5);
 }
 
-/* With the load of the links behind. */
+/* Returns the load of a link, with that of the outward links. */
 static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bodies, const struct Load *behind) {
   const struct Vector *moment = bodies->moment.row, *coupling = bodies->coupling.row;
-  struct Vector lever = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* of -[lever] */
+  struct Vector lever = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* from -[lever] */
   struct Load load = {.mass = add(graph, bodies->mass.row[0].along[0], behind->mass),
                       .lever = add(graph, length_of(graph, lever), behind->lever),
                       .trace = behind->trace};
@@ -117,7 +117,7 @@ static void add_load_to_parent(struct Graph *graph, struct Load *parent, const s
   parent->trace = add(graph, parent->trace, add(graph, load.trace, scale(graph, 2.0, steiner)));
 }
 
-/* The size of the elements of M on the diagonal: a pivot far below it is rounding. */
+/* Computes bounds of the diagonal elements of M. A pivot far below one is rounding error. */
 static void set_scales(struct Graph *graph, struct ArticulatedLink *item, const struct Load *load) {
   const struct Link *link = item->link;
   item->scale = allocate(link->count, sizeof *item->scale);

@@ -1,22 +1,28 @@
 /*
- * M a = b of a kinematic tree without M, by articulated inertias (Featherstone, Rigid Body Dynamics Algorithms, 2008,
- * section 7.3): from the last links to the first, each hands on the inertia that its coordinates leave, and its force;
- * then accelerations follow from the first to the last. The cost grows with the number of links.
+ * Solves M a = b for a kinematic tree by articulated-body inertias, without forming M (R. Featherstone: Rigid Body
+ * Dynamics Algorithms, 2008, section 7.3).
+ *
+ * For each link with the motion subspace S, from the outermost to the base: its articulated inertia I is that of its
+ * bodies and of its children; U = I S, D = S^T U plus the inertia of the coordinates themselves. I - U D^-1 U^T goes to
+ * the parent. The forces p follow likewise: u = b - S^T p, and p + U D^-1 u goes to the parent. From the base outwards,
+ * a = D^-1 u - D^-1 U^T (acceleration of the parent). The D are the pivots of an L D L^T factorization of M, positive
+ * if M is positive definite. Each pass visits each link once: the cost is proportional to the number of links.
+ * Constraints within a link are further rows of D, with S = 0.
  */
 #pragma once
 
 #include "mechanics/mass_matrix/factors.h"
 #include "mechanics/mass_matrix/links.h"
 
-/* A link with what is left of the inertia behind it. */
+/* A link with its factors. */
 struct ArticulatedLink {
   const struct Link *link;
-  size_t parent; /* among the tree's; NO_LINK for what the tree does not move */
-  size_t *rows;  /* of its coordinates among those of the tree */
+  size_t parent; /* index among the tree's links; NO_LINK if the tree does not move the parent */
+  size_t *rows;  /* of each of its rows, the index among the rows of the tree */
   struct FactorPattern pattern;
-  Node *mass, *factor;        /* of its coordinates, in the pattern of a full matrix */
-  Node *scale;                /* of each coordinate: its element of M on the diagonal is no larger */
-  struct SpatialVector *gain; /* of each coordinate: forces = gain times what pushes along it */
+  Node *mass, *factor;        /* D and its factors, in the pattern of a full matrix */
+  Node *scale;                /* of each coordinate: a bound of its diagonal element of M */
+  struct SpatialVector *gain; /* of each row: a column of U D^-1 */
 };
 
 struct ArticulatedTree {
@@ -26,17 +32,17 @@ struct ArticulatedTree {
 };
 
 /*
- * Of the links that the tree moves; coordinates: row_count of them, in the order of its rows. NULL where one of them moves
- * nothing that has inertia.
+ * Returns the tree of links with this number; coordinates are its row_count rows. Returns NULL if a constant is not
+ * finite, as of a link whose motion has no inertia.
  */
 struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Links *links, size_t tree,
                                            const size_t *coordinates, size_t row_count);
 
-/* The element of D of a row. */
+/* Returns the pivot of a row. */
 Node articulated_pivot(const struct ArticulatedTree *tree, size_t row);
 
 /* Solves M x = b in place. */
 void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, Node *x);
 
-/* sum += M x */
+/* Adds M x to sum. */
 void articulated_add_product(struct Graph *graph, const struct ArticulatedTree *tree, const Node *x, Node *sum);

@@ -1,10 +1,11 @@
-/* What constraints add to the mass matrix. */
+/* The constraint block of the system K x = b. */
 #pragma once
 
 #include "mechanics/mass_matrix/mass_elements.h"
 
 /*
- * What borders M: the rows J of count constraints, and what their forces add beside J^T; both of constraints and coordinates.
+ * The rows J of count constraints, and the coefficients of their forces in generalized forces beside J^T; both of
+ * constraints and coordinates.
  */
 struct Border {
   size_t count;

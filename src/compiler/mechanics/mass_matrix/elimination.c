@@ -11,16 +11,16 @@ int compare_positions(const void *first, const void *second) {
   return order != 0 ? order : compare_sizes(&a->row, &b->row);
 }
 
-/* Steps for each item that two sets have when they are joined, which takes memory too. */
+/* Steps of graph_work() for each item of two joined sets, with its memory. */
 enum { JOIN_WORK = 4 };
 
-/* The neighbours of a row, ascending. */
+/* The neighbours of a row in the elimination graph, ascending. */
 struct Set {
   size_t *items;
   size_t count;
 };
 
-/* The rows that wait, as a heap: the one with the fewest neighbours on top. Entries of an old degree are passed over. */
+/* A priority queue of rows, as a binary heap: the lowest degree first. Entries with an outdated degree are skipped. */
 struct Waiting {
   size_t degree, row;
 };
@@ -74,7 +74,7 @@ static struct Set *neighbours_of(size_t count, const struct Position *positions,
   return sets;
 }
 
-/* Without the row itself, and without the one that is eliminated; all neighbours of that become its own. */
+/* Adds the neighbours of the eliminated row; removes that row, and the row itself. */
 static void join(struct Set *set, size_t row, const struct Set *others, size_t eliminated) {
   struct Set joined = {.items = allocate(set->count + others->count, sizeof(size_t))};
   for (size_t i = 0, j = 0; i < set->count || j < others->count;) {
@@ -87,7 +87,7 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
   *set = joined;
 }
 
-/* Eliminates all rows; the sets are then the columns of L below the diagonal. */
+/* Eliminates all rows. Afterwards the sets are the columns of L below the diagonal. */
 static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct Set *sets, size_t *order,
                            size_t *place) {
   struct Queue queue = {0};
@@ -98,7 +98,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
     struct Waiting waiting = pop(&queue);
     const struct Set *set = &sets[waiting.row];
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
-    if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* comes again when these are gone */
+    if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* pushed again when they are gone */
     is_eliminated[waiting.row] = true;
     place[waiting.row] = next;
     order[next++] = waiting.row;

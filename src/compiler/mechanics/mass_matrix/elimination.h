@@ -1,4 +1,11 @@
-/* In which order the rows of a sparse symmetric matrix are eliminated, and what L of M = L D L^T then holds. */
+/*
+ * Elimination order of a sparse symmetric matrix by minimum degree, and the pattern of L in M = L D L^T (A. George, J.
+ * W. H. Liu: The evolution of the minimum degree ordering algorithm, SIAM Review 31, 1989).
+ *
+ * Each step eliminates the row with the fewest neighbours in the elimination graph, the first of several, and connects
+ * its neighbours with each other. A chain or a tree has no fill-in; a full matrix keeps its order. Each step joins
+ * sorted sets, so the cost is about the sum of the squared column lengths of L.
+ */
 #pragma once
 
 #include <stddef.h>
@@ -6,27 +13,26 @@
 #include "algebra/graph.h"
 
 /*
- * The rows of the lower triangle of L: row i has its elements at start[i] .. start[i + 1] - 1, their columns ascending
- * and the diagonal last. Rows and columns are places in order.
+ * The rows of the lower triangle of L: row i has the elements start[i] .. start[i + 1] - 1, at ascending columns, the
+ * diagonal last. Rows and columns are positions in order, the elimination order.
  */
 struct Elimination {
   size_t *order;
   size_t *start, *column;
 };
 
-/* An element of the matrix: row and column. */
+/* Row and column of an element. */
 struct Position {
   size_t row, column;
 };
 
-/* For qsort(), of what begins with a position: by columns, and in these by rows. */
+/* Compares structs that begin with a position, for qsort(): by columns, then by rows. */
 int compare_positions(const void *first, const void *second);
 
 /*
- * For a matrix of count rows with elements at these positions of the lower triangle and on all of the diagonal. Always
- * takes the row with the fewest neighbours among those left (minimum degree), the first of several: a chain or a tree
- * fills nothing in, and a full matrix stays as it is. A row from late on is not taken before its neighbours below late;
- * late is count for none. Its work is counted in the graph; beyond the limit the result is no elimination.
+ * Orders a matrix of count rows, with elements at these positions of the lower triangle and on all of the diagonal. A
+ * row from `late` on is eliminated after all its neighbours below `late`, as a constraint after its coordinates; late
+ * is count for none. Counts its work in the graph; beyond the limit the result has no meaning.
  */
 struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
                              size_t position_count);

@@ -5,7 +5,10 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* Where the block keeps an element of the lower triangle, in places; start[count] where it is not in the pattern. */
+/*
+ * Returns the index of an element of the lower triangle in the block; start[count] if it is not in the pattern. row and
+ * column are positions in the block.
+ */
 static size_t find(const struct InertiaBlock *block, size_t row, size_t column) {
   size_t low = block->start[row], high = block->start[row + 1];
   while (low < high) {
@@ -70,13 +73,16 @@ void block_factor(struct Graph *graph, struct InertiaBlock *block) {
   block->factor = factors_create(graph, &pattern, block->mass);
 }
 
-/* Takes from a solution what its force does along the response to 1 of it (J. Sherman, W. J. Morrison, 1950). */
+/*
+ * Sherman-Morrison update: corrects a solution for one column added to K, that of a force; response is the solution for
+ * the column.
+ */
 static void take_response(struct Graph *graph, size_t count, const Node *response, size_t force, Node *x) {
   Node own = divide(graph, x[force], add(graph, ONE, response[force]));
   for (size_t i = 0; i < count; i++) x[i] = subtract(graph, x[i], multiply(graph, response[i], own));
 }
 
-/* The matrix has the columns of forces that others follow from, one after the other. */
+/* Solves with the columns of oblique.h added to K, one after the other. */
 static void solve_with_columns(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
   const struct FactorPattern pattern = pattern_of(block);
   size_t n = block->count;
@@ -106,7 +112,7 @@ void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Nod
   }
 }
 
-/* The same for a tree. */
+/* Adds the product with the matrix of a tree. */
 static void add_product_of_tree(struct Graph *graph, const struct InertiaBlock *block, const Node *vector, Node *sum) {
   Node *x = allocate(block->count, sizeof *x), *product = allocate(block->count, sizeof *product);
   for (size_t i = 0; i < block->count; i++) x[i] = vector[block->coordinates[i]];

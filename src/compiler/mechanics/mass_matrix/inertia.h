@@ -1,76 +1,85 @@
 /*
- * The mass matrix M = d2L/dv dv, bordered by the constraints' Jacobian matrix J where there are some: K = (M J^T; J 0).
- * It is sparse, in blocks that are independent of each other, each with its factors L D L^T or the pattern of them. Its
- * rows are the coordinates, then the constraints.
+ * The mass matrix M = d2L/dv dv, with the constraints' Jacobian matrix J as K = (M J^T; J 0). Its rows are the
+ * coordinates, then the constraints.
+ *
+ * K is sparse. Rows that are not coupled form independent blocks, found as connected components; each one is factored
+ * as L D L^T in an order of minimum degree (elimination.h), in which constraints come after their coordinates, so that
+ * no pivoting is needed (saddle.h). Small blocks are solved symbolically, kinematic trees by articulated inertias
+ * (articulated.h), others at run time.
  */
 #pragma once
 
 #include "mechanics/mass_matrix/articulated.h"
 
-/* Where M loses its rank: it must hold that pivot > 0 and that it has not vanished against its scale. */
+/* A pivot that is checked at run time: M is singular unless value > 0, and value is not small against scale. */
 struct Pivot {
   Node value;    /* D_i of M = L D L^T */
   Node diagonal; /* M_ii */
-  Node scale;    /* the magnitude of the terms of M_ii, with |sin| and |cos| taken as 1 */
+  Node scale;    /* magnitude of the terms of M_ii, with |sin| and |cos| as 1 */
   size_t coordinate;
 };
 
 /*
- * Rows that K couples, directly or by way of others. Elements are kept in the pattern of L, by rows of its lower
- * triangle, columns ascending and the diagonal last: row i has elements start[i] .. start[i + 1] - 1. Rows and columns
- * are places in coordinates.
+ * A connected component of the rows of K. Elements have the pattern of L: row i has the elements
+ * start[i] .. start[i + 1] - 1, at ascending columns, the diagonal last. Rows and columns are positions in coordinates.
  */
 struct InertiaBlock {
   size_t count;
-  size_t constraint_count; /* of its rows; each of them is eliminated after its coordinates */
-  size_t *coordinates;     /* its rows in the order of elimination */
-  bool is_unrolled;        /* solved symbolically, as straight-line code; others by ldlt.h at run time */
+  size_t constraint_count; /* number of its rows that are constraints; each is eliminated after its coordinates */
+  size_t *coordinates;     /* its rows, in the order of elimination */
+  bool is_unrolled;        /* solved symbolically, as straight-line code; else numerically at run time */
   size_t *start, *column;
-  Node *mass; /* the elements of K; ZERO where L fills in */
-  /* Of the forces that others follow from: how many, the row of each, and the columns that they add to K, see oblique.h. */
+  Node *mass; /* elements of K; ZERO at fill-in */
+  /*
+   * Forces on which generalized forces depend: their number, the row of each, and the columns added to K, see
+   * oblique.h.
+   */
   size_t force_count, *forces;
   Node *oblique;
-  Node *factor; /* of unrolled blocks: the elements of L, and those of D on the diagonal; NULL in others */
-  /* In place of elements and factors, of which it has none; NULL for those. Its rows are the coordinates, ascending. */
+  Node *factor; /* unrolled blocks: the elements of L, and of D on the diagonal; else NULL */
+  /*
+   * A kinematic tree, which replaces elements and factors; else NULL. Its rows are its coordinates and constraints,
+   * ascending.
+   */
   const struct ArticulatedTree *tree;
 };
 
 struct Inertia {
   size_t count;            /* rows: coordinates and constraints */
-  size_t coordinate_count; /* of them */
+  size_t coordinate_count; /* number of coordinates */
   struct InertiaBlock *blocks;
   size_t block_count;
-  size_t *block_of, *place_of; /* of each row */
-  struct Pivot *pivots;        /* of the unrolled blocks */
+  size_t *block_of, *place_of; /* of each row: its block, and its position in the block */
+  struct Pivot *pivots;        /* of unrolled blocks */
   size_t pivot_count;
 };
 
-/* The same matrix with each symbol s replaced by replacements[s], its factors and pivots too. */
+/* Returns the matrix, factors and pivots with each symbol s replaced by replacements[s]. */
 struct Inertia *inertia_substitute(struct Graph *graph, const struct Inertia *inertia, const Node *replacements);
 
-/* Solves M solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
+/* Solves K solution = right_side for the unrolled blocks; other elements become ZERO. Both may be the same array. */
 void inertia_solve(struct Graph *graph, const struct Inertia *inertia, const Node *right_side, Node *solution);
 
-/* Factors a block that has no factors yet. */
+/* Factors a block. */
 void block_factor(struct Graph *graph, struct InertiaBlock *block);
 
-/* Solves for the coordinates of one unrolled block, in their order of elimination, in place. */
+/* Solves for the unknowns of an unrolled block in place, in their order of elimination. */
 void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x);
 
 /* sum += K vector */
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);
 
-/* Where the block of i and j keeps an element, in its mass; the end of that where it is not in the pattern. */
+/* Returns the index of element (i, j) in its block's mass; the number of elements if it is not in the pattern. */
 size_t inertia_find(const struct Inertia *inertia, size_t i, size_t j);
 
-/* K_ij, which is not known in trees: ZERO. */
+/* Returns K_ij; ZERO for trees, whose elements are not formed. */
 Node inertia_element(const struct Inertia *inertia, size_t i, size_t j);
 
-/* Whether some block is a tree; false for NULL, of systems without coordinates. */
+/* True if a block is a tree; false for NULL. */
 bool inertia_has_trees(const struct Inertia *inertia);
 
-/* The block that a row belongs to. */
+/* Returns the block of a row. */
 const struct InertiaBlock *inertia_block_of(const struct Inertia *inertia, size_t coordinate);
 
-/* Whether the pattern of the block is the whole triangle, and its matrix positive definite. */
+/* True if the block is positive definite and its pattern is the whole triangle. */
 bool block_is_full(const struct InertiaBlock *block);

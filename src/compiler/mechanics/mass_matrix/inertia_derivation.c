@@ -5,15 +5,15 @@
 #include "mechanics/mass_matrix/elimination.h"
 #include "mechanics/mass_matrix/pivots.h"
 
-/* The trees of a model that have factors, by their numbers. */
+/* The trees of a model that have factors. */
 struct Trees {
-  const size_t *tree_of; /* of each row; NO_TREE for none */
+  const size_t *tree_of; /* [rows]; NO_TREE for none */
   struct KnownTree {
     const struct ArticulatedTree *tree;
   } * items;
 };
 
-/* The rows of one tree, ascending. */
+/* Returns the rows of a tree, ascending. */
 static size_t *rows_of_tree(const struct Links *links, size_t tree, size_t row_count, size_t *count) {
   size_t *rows = allocate(row_count, sizeof *rows);
   *count = 0;
@@ -38,7 +38,7 @@ static struct Trees find_trees(const struct Model *model, struct Links *links, s
   return trees;
 }
 
-/* Keeps the coordinates of each tree together, as elements of M would. */
+/* Couples the coordinates of each tree by elements of 0, so that they form one component. */
 static void couple_trees(const struct Trees *trees, size_t coordinates, struct Elements *elements) {
   size_t *last = allocate(coordinates, sizeof *last); /* 1 + the last coordinate of each tree */
   for (size_t i = 0; i < coordinates; i++) {
@@ -49,7 +49,7 @@ static void couple_trees(const struct Trees *trees, size_t coordinates, struct E
   }
 }
 
-/* The block of a tree: members are its rows. */
+/* Fills in the block of a tree; members are its rows. */
 static void create_block_of_tree(struct Inertia *inertia, size_t number, size_t *members,
                                  const struct ArticulatedTree *tree) {
   struct InertiaBlock *block = &inertia->blocks[number];
@@ -59,7 +59,7 @@ static void create_block_of_tree(struct Inertia *inertia, size_t number, size_t 
   block->start = allocate(block->count + 1, sizeof *block->start);
 }
 
-/* The block of the elements from one to before another; members: its rows, ascending. */
+/* Fills in a block with the elements from `from` to before `to`; members are its rows, ascending. */
 static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
                          const struct Elements *elements, size_t from, size_t to) {
   struct InertiaBlock *block = &inertia->blocks[number];
@@ -81,7 +81,7 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
     block->mass[inertia_find(inertia, elements->positions[k].row, elements->positions[k].column)] = elements->nodes[k];
 }
 
-/* count: all rows, the last of which are those of constraints. */
+/* Creates the blocks of a matrix of count rows, the last of which are those of constraints. */
 static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
                                      struct Elements *elements, const struct Trees *trees) {
   struct Components components = find_components(count, elements);
@@ -106,7 +106,7 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   return inertia;
 }
 
-/* The column of a force that others follow from, which is new where there is none yet. */
+/* Returns the column of a force on which generalized forces depend; appends it if needed. */
 static size_t oblique_column(struct InertiaBlock *block, size_t force) {
   for (size_t k = 0; k < block->force_count; k++)
     if (block->forces[k] == force) return k;
@@ -129,7 +129,10 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
   }
 }
 
-/* What does not hold has a row of zeros: solved symbolically, it takes a diagonal, by which its force is 0. */
+/*
+ * Gives the zero rows of open contacts and sliding frictions a diagonal for the symbolic solution, so that their forces
+ * are 0.
+ */
 static void append_open_rows(const struct Model *model, struct Elements *elements) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
@@ -143,7 +146,7 @@ static void append_open_rows(const struct Model *model, struct Elements *element
   }
 }
 
-/* The same matrix with the borders J and J^T. */
+/* Creates the blocks of K. */
 static struct Inertia *create_bordered(const struct Model *model, struct Elements *elements,
                                        const struct Border *border, const struct Trees *trees) {
   const struct Graph *graph = model->graph;
@@ -162,7 +165,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   size_t count = model->coordinates.count;
   bool is_linear = model->linearized || (model->solver.method != NULL && model->solver.method->needs_linear);
   size_t rows = count + border->count;
-  /* The formulas of linear systems need M itself. */
+  /* Formulas of linear systems need the elements of M. */
   struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, border, stillness);
   struct Trees trees = find_trees(model, links, rows);
   struct Elements elements = elements_of(model, momentum, trees.tree_of);
@@ -171,7 +174,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
   if (!is_right || border->count > 0) inertia = is_right ? create_bordered(model, &elements, border, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
-  /* The power of drives rests on accelerations, which its derivatives need as expressions. */
+  /* The power of prescribed motions depends on accelerations, whose derivatives must be expressions. */
   bool power_has_accelerations = (model->given.drive_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
   bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {

@@ -1,18 +1,18 @@
-/* The mass matrix of a model, with its blocks found and checked. */
+/* Derivation of the mass matrix, its blocks and its checks. */
 #pragma once
 
 #include "mechanics/mass_matrix/border.h"
 #include "mechanics/mass_matrix/inertia.h"
 
 /*
- * Blocks of M up to this size become straight-line code. Larger ones take fewer operations where their numbers are
- * factored: the Taylor series of a symbolic factorization alone would be longer than all others.
+ * Largest block of M that is solved by straight-line code. A numerical factorization of larger ones takes fewer
+ * operations: the Taylor series of symbolic factors would be longer than all others of the system.
  */
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * K from the momenta dL/dv of all coordinates; stillness: energy_of_stillness(). Reports a coordinate without inertia and an M that is
- * singular everywhere or not positive at the start values; NULL then.
+ * Returns K from the momenta dL/dv of all coordinates; stillness is energy_of_stillness(). Returns NULL after reporting
+ * a coordinate without inertia, or an M that is singular everywhere, or not positive definite at the start values.
  */
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
                                const struct Border *border, struct Diagnostics *diagnostics);

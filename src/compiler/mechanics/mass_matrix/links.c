@@ -6,21 +6,24 @@
 #include "base/memory.h"
 #include "model/time_derivative.h"
 
-/* The average number of coordinates that move a coordinate of a tree, from which on articulated inertias take fewer operations. */
+/*
+ * Smallest mean number of coordinates on the path from the base to a coordinate of a tree. From here on, articulated
+ * inertias take fewer operations than a factorization of M.
+ */
 static const double least_depth = 4.5;
 
-/* Links that move against the one before: a single body that moves freely has two. */
+/* Fewest links with coordinates in a tree; a single free body has two. */
 enum { LEAST_LINKS = 6 };
 
 struct Builder {
   const struct Model *model;
   struct Links *links;
   size_t row_count;     /* coordinates and constraints */
-  size_t *last_link;    /* of each frame; NO_LINK where it is fixed to the base */
+  size_t *last_link;    /* of each frame; NO_LINK if it is fixed to the base */
   size_t *link_of_body; /* of each body in a frame, likewise */
   size_t *link_of;      /* of each row; NO_LINK for none */
-  bool *is_elsewhere;   /* of each row: something beside its link has inertia by it, or holds it */
-  Node *at_rest;        /* replacements of symbols: no displacements */
+  bool *is_elsewhere;   /* of each row: inertia or constraints outside its link depend on it */
+  Node *at_rest;        /* replacements of symbols: displacements are 0 */
 };
 
 static struct Vector without_displacements(const struct Builder *builder, struct Vector vector) {
@@ -44,7 +47,7 @@ static void append_row(struct Link *link, size_t row) {
   link->coordinates[link->count++] = row;
 }
 
-/* Adds the coordinates whose velocities make a vector. */
+/* Appends the coordinates on whose velocities a vector depends. */
 static void find_coordinates(const struct Builder *builder, struct Link *link, struct Vector velocity) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
@@ -57,21 +60,21 @@ static void find_coordinates(const struct Builder *builder, struct Link *link, s
   }
 }
 
-/* How much of a vector that is linear in the velocities each of them makes. */
+/* Fills in the motion subspace: the derivatives of a velocity by those of the link's coordinates. */
 static void set_axes(const struct Builder *builder, struct Link *link, struct Vector velocity, bool is_angular) {
   struct Graph *graph = builder->model->graph;
   for (int component = 0; component < 3; component++) {
     struct Gradient gradient = gradient_by_kinds(graph, velocity.along[component], 1u << VELOCITY);
     for (size_t i = 0; i < gradient.count; i++) {
       size_t place = place_in_link(link, (size_t)graph_symbol_of(graph, gradient.symbols[i])->index);
-      if (place == link->count) continue; /* it is driven */
+      if (place == link->count) continue; /* a prescribed coordinate */
       struct SpatialVector *axis = &link->axes[place];
       (is_angular ? &axis->angular : &axis->linear)->along[component] = gradient.values[i];
     }
   }
 }
 
-/* What the geometry of a link is in its parent, and how its coordinates move it. */
+/* Fills in the pose of a link in its parent, and its motion subspace. */
 static void set_motion(const struct Builder *builder, struct Link *link) {
   for (int i = 0; i < 3; i++) link->pose.rotation.row[i] = without_displacements(builder, link->pose.rotation.row[i]);
   link->pose.origin = without_displacements(builder, link->pose.origin);
@@ -81,7 +84,7 @@ static void set_motion(const struct Builder *builder, struct Link *link) {
   set_axes(builder, link, without_displacements(builder, link->pose.angular_velocity), true);
 }
 
-/* Appends a link for a step from the parent. Returns its number. */
+/* Appends a link for a step from its parent. Returns its index. */
 static size_t append_link(struct Builder *builder, size_t parent, const struct Pose *step) {
   struct Links *links = builder->links;
   struct Link link = {.parent = parent, .pose = *step};
@@ -89,7 +92,7 @@ static size_t append_link(struct Builder *builder, size_t parent, const struct P
   find_coordinates(builder, &link, step->angular_velocity);
   for (size_t i = 0; i < link.count; i++) {
     size_t coordinate = link.coordinates[i];
-    /* What moves two links is no tree. */
+    /* A coordinate that moves two links excludes a tree. */
     if (builder->link_of[coordinate] != NO_LINK) builder->is_elsewhere[coordinate] = true;
     builder->link_of[coordinate] = links->count;
   }
@@ -110,7 +113,7 @@ static void create_links_of_frames(struct Builder *builder) {
   }
 }
 
-/* A body that moves in its frame has a link of its own. */
+/* Appends a link for a body that moves in its frame. */
 static void append_link_of_body(struct Builder *builder, size_t number) {
   struct Graph *graph = builder->model->graph;
   const struct Body *body = &builder->model->mechanism.bodies[number];
@@ -162,7 +165,9 @@ static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
   link->has_inertia = true;
 }
 
-/* The inertia beside that of bodies must stay within a link each. */
+/*
+ * Adds the inertia of <kinetic> terms, potentials and regularization. It must couple coordinates of the same link only.
+ */
 static void add_further_inertia(struct Builder *builder, Node stillness) {
   const struct Model *model = builder->model;
   struct Graph *graph = model->graph;
@@ -182,13 +187,13 @@ static void add_further_inertia(struct Builder *builder, Node stillness) {
   }
 }
 
-/* The nearest link towards the base, itself among them, that has coordinates. */
+/* Returns the nearest link with coordinates, from this one towards the base. */
 static size_t moved_link(const struct Links *links, size_t link) {
   while (link != NO_LINK && links->items[link].count == 0) link = links->items[link].parent;
   return link;
 }
 
-/* Coordinates of links on one way to the base move the same bodies. */
+/* Finds the components of rows: coordinates on one path to the base move the same bodies. */
 static struct Components couple(const struct Builder *builder) {
   const struct Links *links = builder->links;
   struct Elements couplings = {0};
@@ -208,7 +213,7 @@ static void mark_columns(struct Builder *builder, const struct Elements *element
       builder->is_elsewhere[elements->positions[k].column] = true;
 }
 
-/* Two constraints of one link may follow from each other, which only saddle.h sees. */
+/* Excludes constraints that share a link: they may depend on each other, which saddle.h alone detects. */
 static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
   size_t *held = allocate(builder->links->count, sizeof *held);
   for (size_t j = 0; j < count; j++)
@@ -216,7 +221,10 @@ static void leave_shared_links(const struct Builder *builder, const size_t *link
   for (size_t j = 0; j < count; j++) is_local[j] = is_local[j] && held[link[j]] == 1;
 }
 
-/* Whether each constraint holds always, and alone the coordinates of one link, as the norm of a quaternion does. */
+/*
+ * Returns, for each constraint, whether it is local: permanent, and the only one on the coordinates of a single link,
+ * as the norm of a quaternion is. If coordinates are fixed at the start, none is.
+ */
 static bool *find_local_constraints(const struct Builder *builder, const struct Border *border) {
   const struct Model *model = builder->model;
   const struct Elements *jacobian = border->jacobian;
@@ -237,7 +245,10 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
   return is_local;
 }
 
-/* A constraint within a link is one more row of it, which moves nothing; others are for saddle.h. */
+/*
+ * Adds a constraint within one link to its rows, without motion. Other constraints exclude a tree; saddle.h solves
+ * them.
+ */
 static void add_constraints(struct Builder *builder, const struct Border *border) {
   const struct Elements *jacobian = border->jacobian;
   size_t n = builder->model->coordinates.count;
@@ -252,7 +263,7 @@ static void add_constraints(struct Builder *builder, const struct Border *border
   }
 }
 
-/* The elements of J in the rows that were added. */
+/* Fills in the elements of J in these rows. */
 static void set_constraints(struct Builder *builder, const struct Border *border) {
   const struct Elements *jacobian = border->jacobian;
   size_t n = builder->model->coordinates.count;
@@ -265,7 +276,7 @@ static void set_constraints(struct Builder *builder, const struct Border *border
   }
 }
 
-/* For each component whether it is large, and what one of its coordinates moves hangs on many others on the average. */
+/* Returns, for each component, whether it has enough links and is deep enough on average. */
 static bool *find_deep(const struct Links *links, const struct Components *components) {
   double *depth = allocate(links->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
          *count = allocate(components->count, sizeof *count);
@@ -285,7 +296,7 @@ static bool *find_deep(const struct Links *links, const struct Components *compo
   return is_deep;
 }
 
-/* Takes the components as trees that are so as a whole, and deep. Whether there are any. */
+/* Chooses the components that are trees as a whole, and deep. True if there are any. */
 static bool choose_trees(struct Builder *builder, const struct Components *components) {
   struct Links *links = builder->links;
   size_t n = builder->row_count;
@@ -303,7 +314,10 @@ static bool choose_trees(struct Builder *builder, const struct Components *compo
   return any;
 }
 
-/* What the articulated inertias take; before, no node was made, so that systems without trees have the nodes as before. */
+/*
+ * Fills in motion subspaces and inertias. No node is made before, so that systems without trees have the same nodes as
+ * without this search.
+ */
 static void set_links(struct Builder *builder, const struct Border *border, Node stillness) {
   for (size_t i = 0; i < builder->links->count; i++) set_motion(builder, &builder->links->items[i]);
   for (size_t i = 0; i < builder->model->mechanism.body_count; i++)

@@ -18,7 +18,7 @@ void elements_append(struct Elements *elements, size_t row, size_t column, Node 
   elements->nodes[elements->count++] = node;
 }
 
-/* M_ij = d p_i / d v_j, row by row; a driven coordinate has 1 alone, for v' = its acceleration. */
+/* Computes M_ij = d p_i / d v_j by rows, j <= i. A prescribed coordinate has the row of v' = acceleration, 1. */
 static struct Elements differentiate_momenta(const struct Model *model, const Node *momentum, const size_t *tree_of) {
   struct Graph *graph = model->graph;
   size_t count = model->coordinates.count;
@@ -75,7 +75,10 @@ size_t *sort_by_components(struct Elements *elements, const struct Components *c
   return start;
 }
 
-/* The elements at these positions column by column, whose numbers the parts have as rows, which gives other expressions of the same values. */
+/*
+ * Computes elements by columns, in the order of parts: rows of parts are indices of positions. The expressions differ
+ * from those by rows, with the same values.
+ */
 static void differentiate_columns(const struct Model *model, const Node *momentum, const struct Position *parts,
                                   const struct Position *positions, size_t count, Node *nodes) {
   struct Graph *graph = model->graph;
@@ -93,8 +96,8 @@ static void differentiate_columns(const struct Model *model, const Node *momentu
 }
 
 /*
- * Takes the elements of a component by columns where that makes them shorter. The cost is that of all its momenta for
- * each column, so that only components with most of their elements are worth it.
+ * Replaces the elements of a component by those of columns if these are shorter. Each column takes a sweep over all
+ * momenta, so this is tried only if there are at least columns^2 / 4 elements.
  */
 static void try_columns(const struct Model *model, const Node *momentum, const struct Position *positions, size_t count,
                         Node *nodes) {
@@ -110,7 +113,7 @@ static void try_columns(const struct Model *model, const Node *momentum, const s
   }
 }
 
-/* Multiplies the elements of each component out where that makes them shorter, and drops those that vanish so. */
+/* Replaces the elements of each component by reduced fractions if these are shorter, and removes those that vanish. */
 static void shorten_elements(const struct Model *model, const Node *momentum, struct Elements *elements) {
   struct Components components = find_components(model->coordinates.count, elements);
   size_t *start = sort_by_components(elements, &components), kept = 0;

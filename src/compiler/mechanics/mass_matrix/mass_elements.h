@@ -1,33 +1,36 @@
-/* The elements of the mass matrix, as expressions, and which coordinates they couple. */
+/* The elements of the mass matrix, and the components of coordinates that they couple. */
 #pragma once
 
 #include "mechanics/mass_matrix/elimination.h"
 #include "model/model.h"
 
-/* Elements of M on and below the diagonal, in no particular order. */
+/* Elements of a sparse matrix in no particular order; those of M are on and below the diagonal. */
 struct Elements {
-  struct Position *positions; /* coordinates */
+  struct Position *positions; /* rows and columns */
   Node *nodes;
   size_t count;
 };
 
-/* Of no tree, by number: see links.h. */
+/* Number of no tree, see links.h. */
 #define NO_TREE ((size_t)-1)
 
-/* From the momenta dL/dv of the coordinates that belong to no tree; none is ZERO. */
+/* Returns M from the momenta dL/dv, for coordinates that belong to no tree. Elements that vanish are left out. */
 struct Elements elements_of(const struct Model *model, const Node *momentum, const size_t *tree_of);
 
-/* Appends an element; none at its position may be there. */
+/* Appends an element; its position must be new. */
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node);
 
-/* Coordinates that are coupled, directly or by way of others, are of one component, numbered by their first ones. */
+/*
+ * Connected components: coordinates that are coupled, directly or through others. They are numbered by their first
+ * coordinates.
+ */
 struct Components {
-  size_t *of; /* each coordinate */
+  size_t *of; /* [coordinates] */
   size_t count;
 };
 
-/* count: coordinates. */
+/* Finds the components of count coordinates, by union-find. */
 struct Components find_components(size_t count, const struct Elements *elements);
 
-/* Sorts the elements by components. Returns where each component begins, and the end. */
+/* Sorts the elements by components. Returns the start of each component, and the end. */
 size_t *sort_by_components(struct Elements *elements, const struct Components *components);

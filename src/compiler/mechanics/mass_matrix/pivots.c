@@ -10,12 +10,13 @@ double next_random(uint64_t *seed) {
   return 0.5 + (double)(*seed >> 11) / 9007199254740992.0;
 }
 
-/* What ends a numeric L D L^T. */
+/* The kind of pivot that ends a numerical factorization L D L^T. */
 enum Ending { SINGULAR, NOT_POSITIVE };
 
 /*
- * The coordinate at which a numeric L D L^T finds the block singular, and for NOT_POSITIVE also negative; or count, the
- * number of all coordinates. The sign of its pivot is +1 or -1, 0 where it is singular.
+ * Factors a block numerically. Returns the coordinate of the first pivot that is 0, or with NOT_POSITIVE also negative;
+ * count, the number of all rows, if there is none. *sign is the sign of the last pivot, 0 for a zero one. A pivot is 0
+ * up to rounding if it is below 1e-10 of its diagonal element.
  */
 static size_t end_in_block(const struct InertiaBlock *block, const double *values, size_t count, enum Ending ending,
                            int *sign) {
@@ -43,7 +44,7 @@ static size_t end_in_block(const struct InertiaBlock *block, const double *value
   return found;
 }
 
-/* The coordinate at which a block of M ends as above, count where none does, -1 without a finite M. */
+/* Does the same for all blocks without a tree; -1 if an element of M is not finite. */
 static long ending_coordinate(const struct Inertia *inertia, const double *values, enum Ending ending, int *sign) {
   size_t found = inertia->count;
   for (size_t b = 0; b < inertia->block_count; b++) {
@@ -57,7 +58,7 @@ static long ending_coordinate(const struct Inertia *inertia, const double *value
   return (long)found;
 }
 
-/* Whether M couples the coordinate, which has no inertia of its own, with others. */
+/* True if M couples the coordinate, which has no diagonal element, with others. */
 static bool has_coupled_inertia(const struct Inertia *inertia, size_t coordinate) {
   const struct InertiaBlock *block = inertia_block_of(inertia, coordinate);
   for (size_t i = 0; i < block->count; i++)
@@ -85,7 +86,7 @@ static bool has_all_inertias(const struct Model *model, const struct Inertia *in
   return complete;
 }
 
-/* A matrix that is singular at the start values, as at a pole, may be regular elsewhere; a negative one is a wrong sign. */
+/* True unless M has a negative pivot at the start values. A zero pivot, as at a pole, is allowed there. */
 static bool is_positive_at_start(const struct Model *model, const struct Inertia *inertia,
                                  struct Diagnostics *diagnostics) {
   double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
@@ -122,10 +123,13 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
   return false;
 }
 
-/* Of a pivot that is none, rounding leaves less; the first of n links in a row has about n^-3. */
+/*
+ * Smallest relative pivot of a regular tree. Rounding leaves less of a zero pivot; the first of n links in a row has a
+ * relative pivot of about n^-3.
+ */
 static const double least_share = 1e-13;
 
-/* The smallest share that a pivot of the tree has of its scale; NAN where one is not finite. */
+/* Returns the smallest ratio of a pivot of the tree to its scale; NAN if one is not finite. */
 static double smallest_share_in(const struct ArticulatedTree *tree, size_t coordinate_count, const double *values) {
   double smallest = 1.0;
   for (size_t i = 0; i < tree->count; i++) {
@@ -157,7 +161,9 @@ bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *t
 
 enum { MAGNITUDE_DEPTH = 8 };
 
-/* An upper bound of |node| that shares its structure, with |sin|, |cos| <= 1. */
+/*
+ * Returns an upper bound of |node| to a limited depth, with |sin| and |cos| as 1. It shares the structure of the node.
+ */
 static Node magnitude(struct Graph *graph, Node node, int depth) {
   const struct Vertex vertex = graph->vertices[node];
   if (depth == MAGNITUDE_DEPTH) return node;
@@ -179,7 +185,10 @@ static Node magnitude(struct Graph *graph, Node node, int depth) {
   }
 }
 
-/* The trigonometric factors of a diagonal element can vanish where the motion is regular (poles). */
+/*
+ * Returns a scale for the pivots of a diagonal element. Its trigonometric factors count as 1, since they may vanish
+ * where the motion is regular.
+ */
 static Node pivot_scale(struct Graph *graph, Node diagonal) {
   Node terms[TERM_LIMIT], scale = ZERO;
   int count = terms_of(graph, diagonal, terms, TERM_LIMIT);
@@ -189,12 +198,12 @@ static Node pivot_scale(struct Graph *graph, Node diagonal) {
 }
 
 static void append_pivot(struct Inertia *inertia, size_t coordinate, Node value, Node diagonal, Node scale) {
-  if (value == ONE || coordinate >= inertia->coordinate_count) return; /* as of driven coordinates */
+  if (value == ONE || coordinate >= inertia->coordinate_count) return; /* such as those of prescribed coordinates */
   inertia->pivots[inertia->pivot_count++] =
       (struct Pivot){.value = value, .diagonal = diagonal, .scale = scale, .coordinate = coordinate};
 }
 
-/* From the last links to the first, as they are eliminated. */
+/* Appends the pivots of a tree, in the order of elimination. */
 static void append_pivots_of_tree(struct Inertia *inertia, const struct InertiaBlock *block) {
   for (size_t i = block->tree->count; i-- > 0;) {
     const struct ArticulatedLink *item = &block->tree->items[i];

@@ -1,16 +1,24 @@
-/* The factors M = L D L^T of the mass matrix: whether there are any, and the symbolic ones of small blocks. */
+/*
+ * Regularity of the mass matrix, and symbolic factors M = L D L^T of small blocks.
+ *
+ * M is regular in general if its numerical factors are so at one of eight random points: a determinant that does not
+ * vanish identically vanishes there with probability 0.
+ */
 #pragma once
 
 #include "mechanics/mass_matrix/inertia.h"
 
-/* Numbers from 0.5 to 1.5, to find what an expression is in general. */
+/* Returns pseudorandom numbers in [0.5, 1.5), by a linear congruential generator. */
 double next_random(uint64_t *seed);
 
-/* Reports a coordinate without inertia, and a matrix that is singular everywhere or negative at the start values. */
+/*
+ * Reports a coordinate without inertia, and an M that is singular everywhere or has a negative pivot at the start
+ * values; false then.
+ */
 bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics);
 
-/* Whether a tree has factors: not everywhere singular, and not negative at the start values. */
+/* True if a tree has factors: it is not singular everywhere, and has no negative pivot at the start values. */
 bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *tree);
 
-/* Factors the blocks that are unrolled, and appends their pivots. */
+/* Factors the unrolled blocks, and collects their pivots. */
 void pivots_factor(struct Graph *graph, struct Inertia *inertia);

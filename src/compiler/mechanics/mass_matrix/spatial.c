@@ -27,14 +27,14 @@ static struct Matrix matrix_add(struct Graph *graph, const struct Matrix *a, con
   return sum;
 }
 
-/* [r] matrix, where [r] x is the cross product of r and x. */
+/* Returns [r] matrix, where [r] x is the cross product of r and x. */
 static struct Matrix crossed(struct Graph *graph, struct Vector r, const struct Matrix *matrix) {
   struct Matrix columns = matrix_transposed(matrix);
   for (int i = 0; i < 3; i++) columns.row[i] = vector_cross(graph, r, columns.row[i]);
   return matrix_transposed(&columns);
 }
 
-/* Makes a matrix that is known to be symmetric so to the node: its upper triangle is computed, and no other. */
+/* Copies the upper triangle of a symmetric matrix to the lower one, so that both have the same nodes. */
 static void mirror(struct Matrix *matrix) {
   for (int i = 1; i < 3; i++)
     for (int j = 0; j < i; j++) matrix->row[i].along[j] = matrix->row[j].along[i];
@@ -67,7 +67,7 @@ struct SpatialInertia spatial_inertia_add(struct Graph *graph, const struct Spat
   return sum;
 }
 
-/* matrix - column row^T */
+/* Returns matrix - column row^T. */
 static struct Matrix less_product(struct Graph *graph, struct Matrix matrix, struct Vector column, struct Vector row) {
   for (int i = 0; i < 3; i++)
     matrix.row[i] = vector_subtract(graph, matrix.row[i], vector_scale(graph, column.along[i], row));
@@ -95,8 +95,8 @@ struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct Spa
 }
 
 /*
- * With the inertia turned, T^T inertia T for T = (1 -[r]; 0 1): coupling - mass [r], and
- * moment - coupling^T [r] + [r] (coupling - mass [r]).
+ * With the inertia in the parent's axes and r from the parent's origin, T^T inertia T for T = (1 -[r]; 0 1): the
+ * coupling is coupling - mass [r], the moment is moment - coupling^T [r] + [r] (coupling - mass [r]).
  */
 struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struct Pose *pose,
                                                 const struct SpatialInertia *inertia) {

@@ -8,7 +8,7 @@ struct PlainTurn {
   Node cosine, sine;
 };
 
-/* Whether the rotation is one, by an angle that mixes the two other axes. */
+/* True if the matrix is a rotation about one of the axes, by an angle other than multiples of a quarter turn. */
 static bool find_plain_turn(struct Graph *graph, const struct Matrix *rotation, struct PlainTurn *turn) {
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -24,8 +24,9 @@ static bool find_plain_turn(struct Graph *graph, const struct Matrix *rotation, 
 }
 
 /*
- * Of four elements (a, b; d, e) along the two other axes, c^2 + s^2 = 1 leaves the trace a + e and the difference b - d: with
- * x = c (b + d) - s (e - a) they become (a - s x, c x - d; c x - b, e + s x).
+ * Rotates the four elements (a, b; d, e) along the two other axes with four products. c^2 + s^2 = 1 leaves the trace
+ * a + e and the difference b - d unchanged. With x = c (b + d) - s (e - a), the result is
+ * (a - s x, c x - d; c x - b, e + s x).
  */
 static void turn_block(struct Graph *graph, const struct PlainTurn *turn, struct Matrix *matrix) {
   Node *a = &matrix->row[turn->first].along[turn->first], *b = &matrix->row[turn->first].along[turn->second];
