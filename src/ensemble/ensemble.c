@@ -4,14 +4,14 @@
 #include "lane_steps.h"
 #include "lane_values.h"
 
-/* Runs in lanes. */
+/* The runs that are in the lanes, and those to come. */
 struct Group {
   const struct Ensemble *ensemble;
   struct LaneSteps steps;
   struct LaneEvents events;
   Mask is_active;
-  size_t run[LANES], time[LANES]; /* of each active lane, and the next of the times */
-  size_t next, end;               /* runs that are to come */
+  size_t run[LANES], time[LANES]; /* of each active lane: its run, and the index of its next sampling time */
+  size_t next, end;               /* the runs to come */
 };
 
 static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *variable, int lane, double value) {
@@ -21,7 +21,7 @@ static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *varia
     steps->parameter[variable->index][lane] = value;
 }
 
-/* Whether the FMU would take the value. */
+/* True if the FMU would accept the value. */
 static bool is_allowed(const struct ScalarVariable *variable, double value) {
   return isfinite(value) && value >= variable->minimum && value <= variable->maximum;
 }
@@ -32,7 +32,7 @@ static void leave(struct Group *group, Mask lanes) {
   group->is_active &= ~lanes;
 }
 
-/* The next run into a lane. */
+/* Loads the next run into a lane. */
 static void load(struct Group *group, int lane) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
@@ -55,7 +55,7 @@ static void load(struct Group *group, int lane) {
   ensemble->is_left[run] = !is_right;
 }
 
-/* The start values of lanes that follow from their parameters, but for those that vary themselves. */
+/* Computes start values that are expressions of parameters, except those that vary themselves. */
 static void follow(struct Group *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
@@ -72,7 +72,7 @@ static void follow(struct Group *group, Mask lanes) {
   }
 }
 
-/* Lets lanes that are free take runs that are to come, until all are at work or there are no more. */
+/* Loads runs into free lanes, until all are active or no run is left. */
 static void fill(struct Group *group) {
   Mask is_new;
   do {
@@ -87,7 +87,7 @@ static void fill(struct Group *group) {
   } while (any_lane(~group->is_active) && group->next < group->end);
 }
 
-/* The lanes whose next time lies before their events, or in their reach where there is none; time: these times. */
+/* Returns the lanes whose next sampling time lies before their event, or else in their step; time: these times. */
 static Mask find_reached(const struct Group *group, Lanes *time) {
   const double *times = group->ensemble->times;
   Lanes end = group->steps.origin + group->steps.reach;
@@ -102,7 +102,7 @@ static Mask find_reached(const struct Group *group, Lanes *time) {
   return is_reached;
 }
 
-/* What is asked at the times that the series reach; a run is over at the last of them. */
+/* Samples values at all times within the steps. A run ends at the last time. */
 static void deliver(struct Group *group) {
   const struct Ensemble *ensemble = group->ensemble;
   for (;;) {

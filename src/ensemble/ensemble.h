@@ -1,6 +1,6 @@
 /*
- * Many runs of a system at once: from starts and parameters to values at given times. The runs are integrated in lanes
- * (lane_steps.h), and a lane whose run is over takes the next one. Any number of threads may call the functions.
+ * Simulates many runs of a system at once, a vector lane for each (lane_steps.h); a lane that finishes takes the next
+ * run. Start values and parameters vary; outputs are sampled at given times. The functions are thread-safe.
  */
 #ifndef ENSEMBLE_H
 #define ENSEMBLE_H
@@ -14,21 +14,21 @@
 #define ENSEMBLE_EXPORT __attribute__((visibility("default")))
 #endif
 
-/* Variables are given by their value references. Each run starts at time 0 from the system's own values but for what varies. */
+/* An ensemble. Variables are value references. Runs start at time 0, with the system's start values unless varied. */
 struct Ensemble {
   size_t varied_count, asked_count, time_count;
   const unsigned *varied, *asked;
-  const double *times; /* ascending, none before 0; the last is the end of the runs, after 0 */
-  double tolerance;    /* relative; 0 for the system's own */
-  const double *start; /* of what varies: runs x varied */
-  double *values;      /* of what is asked: runs x times x asked */
-  bool *is_left;       /* runs that lanes cannot do, or that have no solution: their values mean nothing */
+  const double *times; /* in s, ascending, not negative; the last is the end of the runs, and positive */
+  double tolerance;    /* relative; 0: the system's own */
+  const double *start; /* values of the varied variables: runs x varied_count */
+  double *values;      /* sampled values: runs x time_count x asked_count */
+  bool *is_left;       /* runs that failed or need the FMU: their values are invalid */
 };
 
-/* Whether all that varies can be given, and all that is asked be told. */
+/* True if the ensemble supports the system, the varied and the asked variables. */
 ENSEMBLE_EXPORT bool ensemble_serves(const struct Ensemble *ensemble);
 
-/* Does count runs from the first on; false where there is no memory. */
+/* Simulates runs first .. first + count - 1. Returns false if memory is exhausted. */
 ENSEMBLE_EXPORT bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count);
 
 #endif

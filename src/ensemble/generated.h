@@ -1,4 +1,4 @@
-/* What stands before a generated system that is compiled over lanes: its functions of C are those of lane_functions.h. */
+/* Precedes a generated system compiled for lanes: replaces the functions of math.h by those of lane_functions.h. */
 #ifndef GENERATED_H
 #define GENERATED_H
 

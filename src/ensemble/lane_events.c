@@ -51,9 +51,12 @@ Mask lane_events_start(struct LaneEvents *events, Mask lanes) {
   return lost;
 }
 
-/* --- Whether there is an event ---------------------------------------------------------------------------------------- */
+/*
+ * --- Test for events
+ * --------------------------------------------------------------------------------------------------
+ */
 
-/* The lanes in which a contact is closed, or a friction sticks. */
+/* Returns the lanes in which a contact is closed or a friction sticks. */
 static Mask are_touched(const struct LaneSteps *steps) {
   const struct SwitchTable *switches = lagrangian.switches;
   Mask touched = {0};
@@ -71,7 +74,7 @@ Mask lane_events_accelerations(struct LaneEvents *events, Lanes time) {
   return lanes_refused;
 }
 
-/* The indicators at a time; returns the lanes in which there are none. */
+/* Evaluates the indicators at a time. Returns the lanes in which that fails. */
 static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feels_forces, Lanes *indicator) {
   struct LaneSteps *steps = events->steps;
   lane_steps_take_state(steps, time);
@@ -81,7 +84,15 @@ static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feel
   return refused;
 }
 
-/* The lanes in which a function, whose values at the nodes are f, stays positive: judge_signs() of events/search.c. */
+/*
+ * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see judge_signs() of
+ * events/search.c. With the interpolant sum of c_k T_k and
+ * T_k
+ *  <= 1, it is positive if c_0 exceeds the sum of the other
+ * c_k
+ *  and the tail, which bounds the interpolation error. It is also positive between nonnegative ends, if it is
+ *  monotone or concave by the same bound on a derivative.
+ */
 static Mask stay_positive(const Lanes *f) {
   Lanes c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES];
   chebyshev_coefficients(f, c);
@@ -96,14 +107,14 @@ static Mask stay_positive(const Lanes *f) {
   return is_far | (is_resolved & (rises | (is_concave & ends_positive)));
 }
 
-/* The sign that an indicator has while its mode stays, as indicator_sign() of events/indicators.c tells it. */
+/* Returns the sign of an indicator in the present mode, as indicator_sign() of events/indicators.c. */
 static Lanes sign_of(const struct LaneSteps *steps, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_branch = indicator < switches->branch_count;
   return is_branch ? steps->parameter[switches->branches[indicator].mode] : LANES_OF(1.0);
 }
 
-/* The lanes in which surely nothing happens from one time to another; where something can hide, nobody knows that here. */
+/* Returns the lanes that certainly have no event between two times. None if narrow features may hide events. */
 static Mask are_quiet(struct LaneEvents *events, Lanes from, Lanes to) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t count = indicator_count(switches);
@@ -147,7 +158,7 @@ Mask lane_events_find(struct LaneEvents *events, Mask active) {
 
 /* --- Constraints ------------------------------------------------------------------------------------------------------ */
 
-/* The lanes in which a constraint holds. */
+/* Returns the lanes in which a constraint is closed. */
 static Mask are_held(const struct LaneSteps *steps) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t of_switches = switches != NULL ? switches->contact_count + switches->friction_count : 0;

@@ -1,6 +1,7 @@
 /*
- * Events and constraints of runs in lanes. A step in which no indicator can leave its sign is known by vectors, by the rule
- * of events/search.c; for all else the FMU's own runtime does what it does for one run (single/single_run.h).
+ * Events and constraints of runs in lanes. A vectorized test proves for most steps that no indicator changes its sign,
+ * by the criterion of events/search.c. For other lanes, the FMU's own runtime handles one run after another
+ * (single/single_run.h).
  */
 #ifndef LANE_EVENTS_H
 #define LANE_EVENTS_H
@@ -11,36 +12,38 @@
 struct LaneEvents {
   struct SingleRun *run;
   struct LaneSteps *steps;
-  Mask happens;        /* an event cuts the reach of the lane */
-  Lanes time;          /* of it, else the end of the reach */
-  Lanes *acceleration; /* of the coordinates, and the forces of constraints */
+  Mask happens;        /* an event ends the lane's step */
+  Lanes time;          /* time of the event, else the end of the step */
+  Lanes *acceleration; /* of the coordinates, then the forces of the constraints */
   Lanes *indicator;    /* CHEBYSHEV_NODES rows */
 };
 
-/* False where there is no memory. lane_events_are_needed() tells whether a system has events or constraints. */
+/* Returns false if memory is exhausted. */
 bool lane_events_create(struct LaneEvents *events, struct LaneSteps *steps);
 void lane_events_destroy(struct LaneEvents *events);
+
+/* True if the system has events or constraints. */
 bool lane_events_are_needed(void);
 
-/* From start values to the state and the modes with which runs begin. Returns the lanes in which there are none. */
+/* Resolves the start: from start values to the first state and modes. Returns the lanes in which that fails. */
 Mask lane_events_start(struct LaneEvents *events, Mask lanes);
 
-/* Looks for the first event in each reach. Returns the lanes in which that cannot be told. */
+/* Finds the first event in each step. Returns the lanes in which that fails. */
 Mask lane_events_find(struct LaneEvents *events, Mask active);
 
 /*
- * Lets the lanes go on, which are at the ends of their reaches: behind their events, and on their constraints. Returns those
- * that cannot.
+ * Continues after the end of the steps: with the state and modes after an event, projected onto the constraints.
+ * Returns the lanes in which that fails.
  */
 Mask lane_events_go_on(struct LaneEvents *events, Mask active);
 
-/* The accelerations of systems with constraints at a time and at steps->state. Returns the lanes in which there are none. */
+/* Computes accelerations and forces of a constrained system at steps->state. Returns the lanes in which that fails. */
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);
 
-/* Brings steps->state at a time of each lane onto the constraints that hold. Returns the lanes in which that cannot be. */
+/* Projects steps->state at a time of each lane onto its closed constraints. Returns the lanes in which that fails. */
 Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes);
 
-/* Returns the lanes of runs that may not end at a time with steps->state. */
+/* Returns the lanes in which the checks at the end of a run fail for steps->state. */
 Mask lane_events_may_not_end(struct LaneEvents *events, Lanes time, Mask lanes);
 
 #endif

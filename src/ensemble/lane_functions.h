@@ -1,16 +1,16 @@
-/* Elementary functions over lanes. */
+/* Elementary functions for lanes. */
 #ifndef LANE_FUNCTIONS_H
 #define LANE_FUNCTIONS_H
 
 #include "lanes.h"
 #include "random_numbers.h"
 
-/* By their names in C. */
+/* The names that generated code uses. */
 #define lanes_fabs lanes_absolute
 #define lanes_fmin lanes_smaller
 #define lanes_fmax lanes_larger
 
-/* Lane by lane, by the function of C. */
+/* Applies the function of C to each lane. */
 #define LANE_FUNCTION(name)                                                                                            \
   LANES_INLINE Lanes lanes_##name(Lanes x) {                                                                           \
     for (int i = 0; i < LANES; i++) x[i] = name(x[i]);                                                                 \
@@ -43,29 +43,38 @@ LANE_FUNCTION_OF_TWO(random_gauss)
 #undef LANE_FUNCTION
 #undef LANE_FUNCTION_OF_TWO
 
-/* The angle x less the nearest whole number of quarter turns, and this number modulo 4; for |x| up to LARGEST_ANGLE. */
+/*
+ * The angle x minus the nearest multiple of pi/2, and that multiple modulo 4; for
+ * x
+ *  <= LARGEST_ANGLE. Argument reduction by W. J. Cody and W. Waite (Software Manual for the Elementary Functions,
+ *  1980): pi/2 is split into parts whose products with the multiple are exact, so that no digit is lost.
+ */
 struct QuarterTurns {
   Lanes rest;
   Mask turns;
 };
 
-/* Up to here the products of the parts of pi / 2 below with the number of quarter turns are exact. */
+/* Up to here, the multiple of pi/2 has 16 bits, and its products with the 33-bit parts are exact. */
 #define LARGEST_ANGLE 1e5
 
 LANES_INLINE struct QuarterTurns quarter_turns(Lanes x) {
-  /* Added and taken away again, it leaves the nearest whole number, whose last bits are those of the sum. */
+  /* adding and subtracting it rounds to a whole number, whose low bits are those of the sum */
   const double rounder = 0x1.8p52;
-  /* pi / 2 in three parts, the first two of 33 bits. */
+  /* pi/2 in three parts, the first two of 33 bits */
   const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
   Lanes sum = x * 0x1.45f306dc9c883p-1 + rounder, count = sum - rounder;
   Lanes rest = x - count * first;
   Lanes part = count * second, nearer = rest - part;
-  /* What the subtraction rounds away counts where little is left. */
+  /* the rounding error of the subtraction, which matters if it cancels */
   Lanes lost = (rest - nearer) - part;
   return (struct QuarterTurns){.rest = nearer + (lost - count * third), .turns = (Mask)sum & 3};
 }
 
-/* Taylor's series of sin and cos, whose next terms are below a hundredth of the rounding for |x| <= pi / 4. */
+/*
+ * Taylor polynomials of sin and cos; for
+ * x
+ *  <= pi/4 the first omitted term is below a hundredth of the rounding error.
+ */
 LANES_INLINE Lanes sine_near_zero(Lanes x) {
   Lanes z = x * x;
   Lanes sum = z * (-1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0));
@@ -82,7 +91,7 @@ LANES_INLINE Lanes cosine_near_zero(Lanes x) {
   return 1.0 - z * (0.5 - z * (1.0 / 24.0 - z * (1.0 / 720.0 - sum)));
 }
 
-/* sin of a quarter turn's multiples added to the angle: 1 for cos. */
+/* Returns sin(x + more_turns pi/2); 1 gives cos. */
 LANES_INLINE Lanes sine_behind(Lanes x, int64_t more_turns) {
   struct QuarterTurns angle = quarter_turns(x);
   Mask turns = angle.turns + more_turns;
@@ -91,7 +100,7 @@ LANES_INLINE Lanes sine_behind(Lanes x, int64_t more_turns) {
   return (Lanes)((Bits)value ^ (Bits)(turns & 2) << 62);
 }
 
-/* By the functions of C where the angle is too large for the above. */
+/* Uses the functions of C for larger angles. */
 #define LANE_SINE(name, more_turns)                                                                                    \
   LANES_INLINE Lanes lanes_##name(Lanes x) {                                                                           \
     Lanes value = sine_behind(x, more_turns);                                                                          \

@@ -1,6 +1,10 @@
 #include "lane_limit.h"
 
-/* sum over k >= 1 of |u_k| step^k, for even and odd powers apart, which do not wait for one another */
+/*
+ * Returns the sum over k >= 1 of
+ * u_k
+ *  step^k; even and odd powers are two independent chains.
+ */
 static Lanes excursion(const Lanes *u, int order, Lanes step) {
   Lanes square = step * step, even = {0}, odd = {0};
   int k = order;

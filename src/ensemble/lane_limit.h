@@ -1,6 +1,6 @@
 /*
- * How far series may be trusted (include/series_limit.h), over lanes, under the same names: lanes in which the operand
- * surely stays near enough are told at once, the others are asked about one by one.
+ * Step limits of include/series_limit.h for lanes, under the same names. A vectorized bound decides most lanes; the
+ * others are decided one by one.
  */
 #ifndef SERIES_LIMIT_H
 #define SERIES_LIMIT_H
@@ -9,12 +9,12 @@
 #include "single/single_lane.h"
 
 struct SeriesLimit {
-  int order;      /* of the polynomials */
-  Lanes step;     /* what the functions below shorten */
-  Mask shortened; /* the lanes in which they did */
+  int order;      /* order of the polynomials */
+  Lanes step;     /* the step, which the functions below shorten */
+  Mask shortened; /* lanes in which they did so */
 };
 
-/* Takes back what was shortened outside of the lanes. */
+/* Undoes the changes outside the lanes. */
 LANES_INLINE void lane_limit_keep(struct SeriesLimit *limit, struct SeriesLimit before, Mask lanes) {
   limit->step = lanes_select(lanes, limit->step, before.step);
   limit->shortened = before.shortened | (limit->shortened & lanes);
@@ -27,11 +27,14 @@ LANES_INLINE void lane_limit_keep(struct SeriesLimit *limit, struct SeriesLimit 
     lane_limit_keep(limit, before_limit, condition);                                                                   \
   } while (0)
 
-/* Lets the rule shorten the step where u may go further than the bound from u_0. other: NULL where there is none. */
+/* Applies the rule in lanes where the excursion of u from u_0 may exceed the bound. other: a second row, or NULL. */
 void lane_limit(struct SeriesLimit *limit, SingleLimit *rule, Lanes bound, const Lanes *u, const Lanes *other,
                 Lanes number);
 
-/* The rules let u go at least so far: functions that grow like exp, and those that mind where 0 is. */
+/*
+ * Excursions that no rule limits: LANE_LIMIT_RANGE of arguments of exp and the like, LANE_LIMIT_SHARE of the distance
+ * to 0. Both lie below the limits of series_limit.c, so that results are the same.
+ */
 #define LANE_LIMIT_RANGE LANES_OF(4.0)
 #define LANE_LIMIT_SHARE 0.9
 

@@ -1,4 +1,4 @@
-/* What include/real.h says, over lanes: with it, generated functions are those of several runs at once. */
+/* include/real.h for lanes: with it, generated functions compute several runs at once. */
 #ifndef REAL_H
 #define REAL_H
 
@@ -15,7 +15,7 @@ typedef Mask Condition;
 
 #define ANYWHERE(condition) any_lane(condition)
 
-/* The lanes of which the functions below refused a condition; whoever calls them empties it before. */
+/* Lanes in which REQUIRE() failed since the caller last cleared it. */
 extern _Thread_local Mask lanes_refused;
 #define REQUIRE(condition, number) (lanes_refused |= ~(condition))
 

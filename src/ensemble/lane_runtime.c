@@ -1,4 +1,4 @@
-/* The parts of the runtime of FMUs that lanes take, compiled over them. */
+/* The parts of the FMU's runtime that ensembles use, compiled for lanes. */
 #include "generated.h"
 
 /* NOLINTBEGIN(bugprone-suspicious-include) */

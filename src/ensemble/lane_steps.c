@@ -7,12 +7,12 @@
 
 _Thread_local Mask lanes_refused;
 
-/* The one method that hands over to another where a system is stiff (single/single_run.c). */
+/* the method that switches to another if the system is stiff (single/single_run.c) */
 extern const struct Solver solver_auto;
 
 /* --- Memory ------------------------------------------------------------------------------------------------------- */
 
-/* The next count rows of a block. */
+/* Returns the next count rows of a block. */
 static Lanes *take(Lanes **block, size_t count) {
   Lanes *rows = *block;
   *block += count;
@@ -64,7 +64,7 @@ static void measure_scales(struct LaneSteps *steps) {
     steps->unit[i] = 1.0 / lanes_larger(lanes_absolute(steps->x[i][0]), LANES_OF(lagrangian.steps.nominal[i]));
 }
 
-/* The change of state variable i from the origin to s after it. */
+/* Returns the change of state variable i from the origin to s after it; Horner's rule in s^2, twice. */
 static Lanes change(const struct LaneSteps *steps, size_t i, Lanes s) {
   const Lanes *x = steps->x[i], square = s * s;
   int j = steps->order;
@@ -76,7 +76,7 @@ static Lanes change(const struct LaneSteps *steps, size_t i, Lanes s) {
   return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
 }
 
-/* The same with its time derivative there. */
+/* Does the same, with the time derivative at s. */
 static Lanes change_and_rate(const struct LaneSteps *steps, size_t i, Lanes s, Lanes *rate) {
   const Lanes *x = steps->x[i], square = s * s;
   int j = steps->order;
@@ -99,36 +99,46 @@ void lane_steps_take_state(struct LaneSteps *steps, Lanes time) {
     steps->state[i] = steps->x[i][0] + (change(steps, i, time - steps->origin) + steps->low[i]);
 }
 
-/* --- The promise of the last coefficients -------------------------------------------------------------------------- */
+/*
+ * --- Prediction of the step
+ * ------------------------------------------------------------------------------------------
+ */
 
-/* The largest coefficients of an order, in units of the variables' scales. */
+/* Returns the largest coefficient of an order, in units of the scales. */
 static Lanes norm(const struct LaneSteps *steps, int order) {
   Lanes largest = {0};
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     Lanes size = lanes_absolute(steps->x[i][order]) * steps->unit[i];
-    largest = lanes_select(size <= largest, largest, size); /* a NaN is taken */
+    largest = lanes_select(size <= largest, largest, size); /* a NaN is kept */
   }
   return largest;
 }
 
-/* A whole number of less than 2^51 as a double, by the bits of its sum with one in which the last bit counts ones. */
+/* Adding it to a whole number below 2^51 puts that into the low bits of the sum. */
 static const double whole_numbers = 0x1.8p52;
 
-/* The logarithm to base 2 of a number that is not negative, to 0.01. */
+/* Returns the base-2 logarithm of a nonnegative number with an error below 0.01. */
 static Lanes rough_logarithm(Lanes x) {
   Bits bits = (Bits)x, exponent = (bits >> 52) + (Bits)LANES_OF(whole_numbers);
   Lanes mantissa = (Lanes)((bits & 0xfffffffffffffu) | (uint64_t)1023 << 52); /* from 1 to 2 */
   return ((Lanes)exponent - whole_numbers) - 1022.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
 }
 
-/* 2^x to 1 %, for |x| < 1000. */
+/*
+ * Returns 2^x to 1 %, for
+ * x
+ *  < 1000.
+ */
 static Lanes rough_power_of_two(Lanes x) {
   Lanes sum = x + whole_numbers, rest = x - (sum - whole_numbers);
   Lanes power = (Lanes)(((Bits)sum + 1023) << 52);
   return power * (1.0 + rest * (0.693 + rest * (0.24 + rest * 0.055)));
 }
 
-/* Where the last two terms that do not vanish are as small as the tolerance asks; 0 where they are not finite. */
+/*
+ * Returns the predicted step, from the last two coefficients that do not both vanish; see taylor_reach.c. 0 if they
+ * are not finite.
+ */
 static Lanes promised_step(const struct LaneSteps *steps) {
   Lanes last = norm(steps, steps->order), before = norm(steps, steps->order - 1);
   Lanes share = LANES_OF(1.0 / steps->order), share_before = LANES_OF(1.0 / (steps->order - 1));
@@ -159,8 +169,8 @@ struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time) {
 }
 
 /*
- * The right side of the equations of motion at s after the origin, at the state that steps->change leads to, with each of
- * its numbers made larger or smaller by the share. Returns the lanes where it does not exist.
+ * Evaluates the right side of the equations at s after the origin, at the state x_0 + steps->change. share: relative
+ * perturbation of the state variables, with alternating signs. Returns the lanes in which it does not exist.
  */
 static Mask right_side(struct LaneSteps *steps, Lanes s, double share, Lanes *derivative) {
   for (size_t i = 0; i < lagrangian.state_count; i++) {
@@ -173,18 +183,18 @@ static Mask right_side(struct LaneSteps *steps, Lanes s, double share, Lanes *de
   return lanes_refused;
 }
 
-/* The defect that is allowed over a step, as a change in units of the variables' scales. */
+/* Returns the allowed defect times the step, in units of the scales. */
 static Lanes allowed_defect(const struct LaneSteps *steps) {
   double size = local_tolerance(steps->tolerance);
   return lanes_select(steps->is_limited, LANES_OF(size), LANES_OF(defect_margin * (steps->order + 1) * size));
 }
 
-/* Both where the second is no number or larger. */
+/* Returns the larger one; INFINITY if size is NaN. */
 static Lanes larger_or_infinite(Lanes largest, Lanes size) {
   return lanes_select(size <= largest, largest, lanes_select(size < INFINITY, size, LANES_OF(INFINITY)));
 }
 
-/* The largest defect at s, as the change that it makes over s in units of the variables' scales and of what is allowed. */
+/* Returns the largest defect at s, times s, in units of the scales and of the allowed one. */
 static Lanes defect(struct LaneSteps *steps, Lanes s) {
   size_t first = lagrangian.coordinate_count, states = lagrangian.state_count;
   Lanes largest = {0};
@@ -199,7 +209,7 @@ static Lanes defect(struct LaneSteps *steps, Lanes s) {
   return lanes_select(refused, LANES_OF(INFINITY), largest / allowed_defect(steps));
 }
 
-/* The same, and inside the step where that is short for another reason than its coefficients. */
+/* Does the same; if the coefficients do not limit the step, also inside it. */
 static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
   Lanes inside = {0};
   for (int i = 0; any_lane(steps->is_limited) && i < DEFECT_PLACES; i++)
@@ -208,7 +218,7 @@ static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
   return lanes_select(steps->is_limited, larger_or_infinite(end, inside), end);
 }
 
-/* What rounding of the state at s, where defect() has just been, makes of the right side, in the units of defect(). */
+/* Returns the effect of rounding the state at s on the right side, in units of defect(), which came before. */
 static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
   Lanes largest = {0};
   Mask refused = right_side(steps, s, 4.0 * DBL_EPSILON, steps->rate);
@@ -222,24 +232,25 @@ static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
 
 /* --- The step ------------------------------------------------------------------------------------------------------ */
 
-/* The next origin is a number, so that the time does not drift. */
+/* Rounds the step so that the next origin is exact, and time does not drift. */
 static Lanes exact_reach(const struct LaneSteps *steps, Lanes step) {
   return steps->origin + step - steps->origin;
 }
 
-/* Steps below are none in a time of so many digits. */
+/* True for steps below the resolution of time. */
 static Mask is_too_short(const struct LaneSteps *steps, Lanes step) {
   return step <= 8.0 * DBL_EPSILON * lanes_absolute(steps->origin);
 }
 
-/* By how much a step is shortened whose defect has the size. */
+/* Returns the factor that shortens a step with this defect. */
 static double shortening(double size, int order) {
   return fmin(fmax(0.9 * pow(size, -1.0 / (order + 1)), 0.1), 0.8);
 }
 
 /*
- * Shortens the steps of the lanes until their defects are small, and measures these at their ends. Returns the lanes in
- * which they stay large. A defect that rounding explains stays in a shorter step too.
+ * Shortens steps until their defects are accepted, and returns the lanes in which that fails. A defect within the
+ * rounding error is accepted, as shorter steps do not reduce it. Ends, as each round shortens a step by a factor of at
+ * most 0.8, down to the resolution of time.
  */
 static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
   Mask lost = active & ~(step > 0.0);
@@ -261,10 +272,7 @@ static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
   return lost;
 }
 
-/*
- * Lanes that come so near to a point without a series that a step across it may be shorter: the FMU knows how to cross, or
- * says what is there.
- */
+/* Returns lanes so close to a singular point that a step across it may be shorter; the FMU handles them. */
 static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *limit) {
   Lanes crossing = LANES_OF(crossing_share * steps->length);
   if (!any_lane(limit->shortened)) return (Mask){0};
@@ -274,8 +282,8 @@ static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *
 }
 
 /*
- * Lanes in which fast modes may have bounded so many steps, one after another, that the FMU would try another method; see
- * methods/stiffness.c.
+ * Returns lanes in which so many consecutive steps may be limited by fast modes that the FMU would try another method;
+ * see methods/stiffness.c.
  */
 static Mask may_be_stiff(struct LaneSteps *steps) {
   enum { FAST_STEPS = 12 };
@@ -304,7 +312,7 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
   return left | (active & may_be_stiff(steps));
 }
 
-/* Where many steps of the length that the coefficients promise hardly move the state, it is stiff. */
+/* Returns the stagnating lanes: stiff ones, in which many steps of the predicted length hardly move the state. */
 static Mask crawls(struct LaneSteps *steps, Lanes moved) {
   steps->path += lanes_select(steps->is_limited, (Lanes){0}, moved);
   steps->steps += lanes_select(steps->is_limited, (Lanes){0}, LANES_OF(1.0));

@@ -1,6 +1,7 @@
 /*
- * Taylor series of several runs, a lane for each: what methods/taylor.c does for one run, by the same rule
- * (methods/taylor_rule.h). All have one order, as it follows from the tolerance, and each has its own time and step.
+ * The Taylor method for several runs, a vector lane for each: the algorithm of methods/taylor.c and taylor_reach.c
+ * with the same rule (methods/taylor_rule.h). All lanes share the order, which follows from the tolerance; each has
+ * its own time and step. Branches become masks, so that a lane's results do not depend on other lanes.
  */
 #ifndef LANE_STEPS_H
 #define LANE_STEPS_H
@@ -8,45 +9,46 @@
 #include "lane_system.h"
 
 struct LaneSteps {
-  void *memory; /* of all rows */
+  void *memory; /* memory of all rows */
   int order;
-  double margin;                           /* see taylor_rule.h */
-  double tolerance;                        /* relative */
-  double longest;                          /* that a step may be */
-  double length;                           /* of the runs */
-  Lanes origin, reach;                     /* of the series: their time and how far they are right */
-  Lanes *parameter, *prepared, *constants; /* constants: the inputs */
-  Lanes *unit; /* one over the size of each state variable, or over its nominal value where that is larger */
-  Lanes *low;  /* what rounding left of the state at the origin */
+  double margin;    /* see taylor_rule.h */
+  double tolerance; /* relative */
+  double longest;   /* longest step, in s */
+  double length;    /* length of the runs, in s */
+  /* time of the series' origin, and length of the step in which they are valid, in s */
+  Lanes origin, reach;
+  Lanes *parameter, *prepared, *constants; /* constants: the inputs, which are constant in a run */
+  Lanes *unit; /* 1 / scale of each state variable; the scale is its size, or its nominal value if that is larger */
+  Lanes *low;  /* compensation of the state at the origin: the low part of its sum */
   Series *x, *input, *work;   /* x[i][0] is the state at the origin */
-  Lanes *derivative, *change; /* at the end of the reach, where they were measured; see taylor.h */
-  Lanes *state, *rate;        /* a state that is looked at, and scratch */
-  Lanes *point_work;          /* of generated functions */
-  Mask is_limited;            /* the step is short for another reason than the size of its coefficients */
-  Lanes fast;                 /* how many of the last steps fast modes may have bounded, one after another */
-  Lanes path, steps;          /* of the last steps that are not, how far they moved the state, and how many */
+  Lanes *derivative, *change; /* at the end of the step, from the defect check; see taylor.h */
+  Lanes *state, *rate;        /* the state at which functions are evaluated, and scratch */
+  Lanes *point_work;          /* workspace of generated functions */
+  Mask is_limited;            /* the coefficients do not limit the step; a bound or a defect does */
+  Lanes fast;                 /* number of last consecutive steps that fast modes may have limited */
+  Lanes path, steps;          /* of recent steps that the coefficients limit: sum of the state's changes, and number */
 };
 
-/* Rows for everything; false where there is no memory. */
+/* Allocates all rows. Returns false if memory is exhausted. */
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length);
 void lane_steps_destroy(struct LaneSteps *steps);
 
 /*
- * Takes up what lanes have at the origin: the values of their parameters and inputs, and x[i][0]. For the other lanes it
- * computes again what they have. Returns the lanes that refuse a parameter.
+ * Prepares parameters, and evaluates the derivatives at the origin x[i][0], in all lanes; unchanged lanes get the same
+ * values again. Returns the lanes that reject a parameter.
  */
 Mask lane_steps_start(struct LaneSteps *steps);
 
-/* The series about the origin and their reach, 0 in lanes that are not active. Returns those in which there is none. */
+/* Computes the series about the origin and their reach; 0 in inactive lanes. Returns the lanes that need the FMU. */
 Mask lane_steps_expand(struct LaneSteps *steps, Mask active);
 
-/* Moves the origin to the end of the reach. Returns the lanes in which many steps have hardly moved the state. */
+/* Moves the origin to the end of the step. Returns the lanes that stagnate. */
 Mask lane_steps_move(struct LaneSteps *steps);
 
-/* For generated functions, at a time and at steps->state. */
+/* Returns the point of generated functions at a time and at steps->state. */
 struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time);
 
-/* steps->state at a time within the reach. */
+/* Evaluates the state at a time within the step into steps->state. */
 void lane_steps_take_state(struct LaneSteps *steps, Lanes time);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * The generated system over lanes: include/lagrangian.h with the types of this folder. The system of one run stands beside it in
- * the same library (single/single_run.h), so that what both have gets a name of its own here.
+ * The generated system for lanes: include/lagrangian.h with the types of this folder. The same library has the system
+ * for single runs (single/single_run.h), so that names of both get a prefix here.
  */
 #ifndef LANE_SYSTEM_H
 #define LANE_SYSTEM_H

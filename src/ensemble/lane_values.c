@@ -22,7 +22,7 @@ static bool asks_for_accelerations(const struct Ensemble *ensemble) {
   return false;
 }
 
-/* What result() takes, at steps->state, in lanes that are not lost. */
+/* Returns the accelerations for result(), at steps->state; *is_lost: lanes without. */
 static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *is_lost) {
   struct LaneSteps *steps = events->steps;
   if (lagrangian.constraints.accelerations != NULL) {

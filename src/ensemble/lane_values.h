@@ -1,17 +1,17 @@
-/* What the FMU's variables are in lanes. */
+/* Values of the FMU's variables in lanes. */
 #ifndef LANE_VALUES_H
 #define LANE_VALUES_H
 
 #include "ensemble.h"
 #include "lane_events.h"
 
+/* True if a run can vary, or sample, the variable. */
 bool lane_values_can_vary(const struct ScalarVariable *variable);
 bool lane_values_can_tell(const struct ScalarVariable *variable);
 
 /*
- * What is asked at a time of each lane and at steps->state, for those that have reached it: their runs' and times' places are
- * given by lane.
- * Returns the lanes in which something is not finite.
+ * Samples the asked variables at a time of each lane and at steps->state, in the reached lanes. run, place: of each
+ * lane, the run and the index of the time. Returns the lanes in which a value is not finite.
  */
 Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
                       const size_t *run, const size_t *place);

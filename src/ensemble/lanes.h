@@ -1,7 +1,6 @@
 /*
- * Numbers of several runs side by side, a lane for each: vectors of the compiler, as wide as the processor's. LANES is how
- * many there are. What is done to one lane never depends on another or on how many there are, so that a run has the same
- * results among any others and on any processor.
+ * Vectors with a number for each of LANES runs, as wide as the processor's vectors. Operations on a lane never depend
+ * on other lanes or on LANES, so that a run has the same results in any ensemble and on any processor.
  */
 #ifndef LANES_H
 #define LANES_H
@@ -15,14 +14,14 @@
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double))));
 
-/* Of each lane all bits or none, as comparisons give it; and the bits of a number. */
+/* The result of a comparison: all bits of a lane are 1 or 0. Bits: the bits of a number. */
 typedef int64_t Mask __attribute__((vector_size(LANES * sizeof(int64_t))));
 typedef uint64_t Bits __attribute__((vector_size(LANES * sizeof(uint64_t))));
 
-/* The same number in all lanes; lanes stay what they are. */
+/* A number in all lanes; vectors are unchanged. */
 #define LANES_OF(number) ((number) - (Lanes){0})
 
-/* Likewise, in the initializer of an array that is static. */
+/* The same in a static initializer. */
 #if LANES == 8
 #define LANES_CONSTANT(number)                                                                                         \
   { number, number, number, number, number, number, number, number }
@@ -48,7 +47,7 @@ LANES_INLINE Lanes lanes_absolute(Lanes a) {
   return (Lanes)((Mask)a & INT64_MAX);
 }
 
-/* Of a NaN and a number the second; both are never NaN in what is compared here. */
+/* Return the second operand if either is NaN, which callers exclude. */
 LANES_INLINE Lanes lanes_larger(Lanes a, Lanes b) {
   return lanes_select(a > b, a, b);
 }

@@ -1,3 +1,8 @@
+/*
+ * Assembles a system in memory: encodes the routines as instruction tables, fills struct Lagrangian with metadata and
+ * with the interpreter's functions, and sets the parts of the runtime that the linker selects in an FMU. Nothing is
+ * freed, as a process has one system.
+ */
 #include "assembly.h"
 
 #include <string.h>
@@ -27,7 +32,7 @@ static const struct {
   const struct Solver *solver;
 } solvers[] = {{"taylor", &solver_taylor}, {"radau", &solver_radau}, {"auto", &solver_auto}, {"exact", &solver_exact}};
 
-/* NULL where it is SUNDIALS'. */
+/* Returns the solver; NULL for those of SUNDIALS. */
 static const struct Solver *solver_named(const char *name) {
   for (size_t i = 0; i < sizeof solvers / sizeof *solvers; i++)
     if (strcmp(solvers[i].name, name) == 0) return solvers[i].solver;

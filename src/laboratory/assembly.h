@@ -1,7 +1,7 @@
-/* A program laid out in memory, as a system that the runtime solves. */
+/* Links a program to the runtime in memory, without a compiler. */
 #pragma once
 
 #include "program/program.h"
 
-/* Makes it the runtime's system; guid lasts as long. Returns NULL, or the name of a method that the laboratory does not have. */
+/* Makes the program the runtime's system; keeps guid. Returns NULL, or the name of a method that is not available. */
 const char *assemble(const struct Program *program, const char *guid);

@@ -1,3 +1,7 @@
+/*
+ * Each function binds the spaces of its table to arrays in a frame and runs the table
+ * (src/runtime/support/instructions.c). The interpreter decodes an opcode once for a run of equal instructions.
+ */
 #include "interpreter.h"
 
 #include <math.h>
@@ -12,13 +16,13 @@ static struct Frame frame_of(const struct Point *point, const struct Seed *seed,
   return frame;
 }
 
-/* Functions that fill a target by one table. */
+/* Runs a function that fills a target. */
 static int fill(enum FunctionName name, const struct Point *point, const struct Seed *seed, double *target) {
   struct Frame frame = frame_of(point, seed, target);
   return instructions_run(&frame, interpreter.code[name]);
 }
 
-/* The same with accelerations that are given. */
+/* Does the same with given accelerations. */
 static void fill_with(enum FunctionName name, const struct Point *point, const double *acceleration, double *target) {
   struct Frame frame = frame_of(point, NULL, target);
   frame.base[SPACE_ACCELERATION] = (double *)acceleration;
@@ -101,7 +105,7 @@ static void switching_values(const struct Point *point, const double *accelerati
   fill_with(FUNCTION_SWITCHING_VALUES, point, acceleration, value);
 }
 
-/* Arrays of series are rows of numbers to the instructions. */
+/* Binds the spaces of series, which are arrays of numbers for the interpreter. */
 static void set_rows(struct Frame *frame, const double *time, const void *input, const void *x, const void *w) {
   frame->base[SPACE_TIME_ROW] = (double *)time;
   frame->base[SPACE_ROW] = (double *)w;
@@ -157,7 +161,7 @@ static void output_series(const struct Point *point, int order, const Series *in
     instructions_run_order(&frame, interpreter.order[FUNCTION_OUTPUT_SERIES], k);
 }
 
-/* The value in the result's place of the targets of its table. */
+/* Runs the table of a result and returns its value; NAN without a table. */
 static double value_of(const struct RoutineTables *tables, struct Frame *frame, size_t result) {
   double *value = &interpreter.values[tables->place[result]];
   *value = NAN;
@@ -180,7 +184,7 @@ static double result_along(const struct Point *point, const struct Seed *seed, c
   return value_of(&interpreter.results_along, &frame, number);
 }
 
-/* NULL where the system has no such function. */
+/* Sets a field, to NULL if the system does not need the function. */
 #define SET(field, name, function) (field) = has_function(program, name) ? (function) : NULL
 
 static void set_constraint_functions(struct ConstraintTable *constraints, const struct Program *program) {

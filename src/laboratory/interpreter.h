@@ -1,15 +1,15 @@
 /*
- * The functions of a system, carried out from tables in memory in place of generated C. There is one system, as in an FMU.
+ * The functions of struct Lagrangian, executed from tables instead of generated C, for the one system of the process.
  */
 #pragma once
 
 #include "instructions.h"
 #include "program/tables/encoding.h"
 
-/* The runtime's `lagrangian` in the laboratory: its sources are compiled with this name for it. */
+/* The runtime's sources are compiled with this name in place of `lagrangian`. */
 extern const struct Lagrangian *system_in_memory;
 
-/* A check of limits for each of some functions. */
+/* The checks of a step limit. */
 struct Limits {
   struct LimitCheck *checks;
   size_t count;
@@ -17,16 +17,17 @@ struct Limits {
 
 struct Interpreter {
   struct InstructionTables tables;
-  const uint32_t *code[FUNCTION_COUNT];        /* of functions of one routine, and of series the coefficients 0 */
-  const uint32_t *order[FUNCTION_COUNT];       /* of series: the coefficients k */
-  struct RoutineTables results, results_along; /* as encode_all() made them */
-  double *values;                              /* workspace for the targets of one of these */
-  size_t coordinate_count, prepared_count;     /* without the locals of prepare() */
-  size_t mass_row;                             /* as in struct SeriesProgram */
+  /* table of each function with one routine; of series: for the coefficients 0 */
+  const uint32_t *code[FUNCTION_COUNT];
+  const uint32_t *order[FUNCTION_COUNT];       /* of series: table for the coefficients k */
+  struct RoutineTables results, results_along; /* from encode_all() */
+  double *values;                              /* workspace for the targets of a table of results */
+  size_t coordinate_count, prepared_count;     /* counts; prepared_count excludes the local variables of prepare() */
+  size_t mass_row;                             /* see struct SeriesProgram */
   struct Limits limits, watched_limits;
 };
 
 extern struct Interpreter interpreter;
 
-/* Sets the functions of the program's system, which the interpreter carries out; switches: as pointed to from there, or NULL. */
+/* Sets the functions that the program has, in system and switches; NULL for others. switches may be NULL. */
 void set_functions(struct Lagrangian *system, struct SwitchTable *switches, const struct Program *program);

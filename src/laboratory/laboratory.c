@@ -20,7 +20,7 @@ static const char *text_in(const xmlBufferPtr buffer) {
   return (const char *)xmlBufferContent(buffer);
 }
 
-/* False where there is too little memory. */
+/* Creates the descriptions and the GUID. Returns false if memory is exhausted. */
 static bool describe(const struct Program *program, const struct Summary *summary, char *guid) {
   xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), page = xmlBufferCreate();
   struct Drawing drawing = drawing_of(program->model);

@@ -1,11 +1,11 @@
-/* What is done lane by lane, with the functions that FMUs have for one run. */
+/* Functions that are applied lane by lane, compiled for one run. */
 #ifndef SINGLE_LANE_H
 #define SINGLE_LANE_H
 
 /* series_power() of include/series.h */
 double single_power(int k, double n, const double *a, const double *c);
 
-/* A function of include/series_limit.h: what it leaves of the step; rules take of the arguments what they need. */
+/* A function of include/series_limit.h: returns the shortened step. Each rule uses the arguments that it needs. */
 typedef double SingleLimit(int order, double step, const double *u, const double *other, double number);
 
 SingleLimit single_limit_exponential, single_limit_hyperbolic, single_limit_tanh, single_limit_tangent;

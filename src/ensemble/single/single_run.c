@@ -10,26 +10,29 @@
 #include "instance/projection.h"
 #include "stepping/start.h"
 
-/* So many events in a run are for the FMU, which may find that they have no end. */
+/* Events in a run above which the FMU takes over, which detects Zeno behaviour. */
 enum { EVENT_LIMIT = 100000 };
 
-/* What is kept of each lane. */
+/* State of the event search in each lane. */
 struct LaneCourse {
   struct EventProgress progress;
-  double *state, *parameter; /* behind the last event */
+  double *state, *parameter; /* after the last event */
 };
 
 struct SingleRun {
   struct Instance instance;
   struct CommunicationStep step; /* the whole run */
-  struct LaneCourse *courses;    /* of the lanes, and behind them their numbers */
-  /* Of the lane that was taken last: the origin and the order of its series, the state and the coefficients behind it. */
+  struct LaneCourse *courses;    /* of the lanes; their numbers follow in the same block */
+  /* Of the last loaded lane: origin, order, state and coefficients of its series. */
   double origin, *state;
   int order;
-  Series *series; /* with what rounding left of the state as the first coefficients */
+  Series *series; /* [i][0] is the compensation of the state, [i][k] the coefficient k */
 };
 
-/* --- The solver, whose steps are made elsewhere ----------------------------------------------------------------------- */
+/*
+ * --- A solver without steps of its own
+ * --------------------------------------------------------------------------------
+ */
 
 static bool create_nothing(struct Instance *instance) {
   (void)instance;
@@ -40,7 +43,7 @@ static void destroy_nothing(struct Instance *instance) {
   (void)instance;
 }
 
-/* As taylor_change() of methods/taylor.h. */
+/* See taylor_change() of methods/taylor.h. */
 static double change(const double *x, int order, double s) {
   int j = order;
   double square = s * s, first = x[j], second = x[j - 1];
@@ -59,7 +62,7 @@ static bool interpolate_lane(struct Instance *instance, double time, double *sta
   return true;
 }
 
-/* The names that the system's table gives to its method. */
+/* the names in the system's table */
 const struct Solver solver_taylor = {
     .name = "a lane", .create = create_nothing, .destroy = destroy_nothing, .interpolate = interpolate_lane};
 const struct Solver solver_auto = {
@@ -95,7 +98,7 @@ static bool ends_with_zeros(const struct SingleRun *run) {
   return true;
 }
 
-/* Its polynomials for interpolate_lane(), which reads them many times. */
+/* Copies the lane's polynomials, which interpolate_lane() reads many times. */
 static void take_series(struct SingleRun *run, const struct LaneView *lane) {
   run->origin = lane->origin;
   run->order = lane->order;
@@ -108,7 +111,7 @@ static void take_series(struct SingleRun *run, const struct LaneView *lane) {
   while (run->order > 2 && ends_with_zeros(run)) run->order--;
 }
 
-/* The instance becomes the lane's run, in its last step. */
+/* Loads the lane's run into the instance, in its last step. */
 static void take(struct SingleRun *run, const struct LaneView *lane) {
   take_values(run, lane);
   take_numbers(run->instance.prepared, lagrangian.prepared_count, lane->prepared, lane->stride);
@@ -214,7 +217,7 @@ void single_run_go_on(struct SingleRun *run, const struct LaneView *lane) {
   for (size_t i = 0; i < lagrangian.state_count; i++) lane->low[i * lane->stride] = 0.0;
 }
 
-/* Brings the instance's state back to the constraints. */
+/* Projects the instance's state onto the constraints. */
 static bool project(struct SingleRun *run, const struct LaneView *lane, double time) {
   take(run, lane);
   return solver_project(&run->instance, time, run->instance.state) == NULL;

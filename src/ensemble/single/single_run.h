@@ -1,6 +1,6 @@
 /*
- * The FMU's own runtime, for what is done lane by lane: starts, events and constraints. It sees a lane as a run whose
- * solver's last step are the series of the lane.
+ * The FMU's own runtime, for lanes one by one: starts, events and constraints. It treats a lane as a run whose last
+ * step has the lane's series.
  */
 #ifndef SINGLE_RUN_H
 #define SINGLE_RUN_H
@@ -8,61 +8,58 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The numbers of one lane, each of which lies so many behind the one before it. */
+/* The numbers of one lane: consecutive ones are stride apart. */
 struct LaneView {
-  size_t number; /* of the lane */
+  size_t number; /* index of the lane */
   size_t stride;
   int order;
-  double origin, reach; /* of the series */
+  double origin, reach; /* time of the series' origin, and length of their step, in s */
   double *series;       /* state_count rows of SERIES_LENGTH coefficients */
-  double *low;          /* state_count: what rounding left of the state at the origin */
+  double *low;          /* state_count: compensation of the state at the origin */
   double *parameter, *prepared, *input;
 };
 
-/* What the next event does to a lane. */
+/* The result of a search for an event. */
 enum LaneEvent {
-  NO_EVENT,     /* none up to the end of the reach */
-  EVENT,        /* the lane goes on from its time with what single_run_go_on() gives it */
-  EVENT_UNKNOWN /* it cannot be told: the run is one for the FMU alone */
+  NO_EVENT,     /* none up to the end of the step */
+  EVENT,        /* the lane continues with single_run_go_on() */
+  EVENT_UNKNOWN /* the search failed, and the FMU must do the run */
 };
 
 struct SingleRun;
 
-/* For runs in so many lanes, from time 0 to an end. NULL where there is no memory. */
+/* Creates the state of runs from time 0 to end, in s. Returns NULL if memory is exhausted. */
 struct SingleRun *single_run_create(size_t lanes, double tolerance, double end);
 void single_run_destroy(struct SingleRun *run);
 
-/* Whether lanes have anything for the functions below to do. */
+/* True if the system has events or constraints; otherwise the functions below are not needed. */
 bool single_run_is_needed(void);
 
-/*
- * From the start values in a lane to the state and the modes with which its run begins. False where there are none; the FMU
- * says why.
- */
+/* Finds the first state and modes from a lane's start values. Returns false if that fails; the FMU reports why. */
 bool single_run_start(struct SingleRun *run, const struct LaneView *lane);
 
-/* The first event in the reach of the lane, with its time, by the rules of events/passing.c. */
+/* Finds the first event in the lane's step and its time, by the rules of events/passing.c. */
 enum LaneEvent single_run_find_event(struct SingleRun *run, const struct LaneView *lane, double *time);
 
-/* Tells that there is no event in the reach. */
+/* Records that the step has no event. */
 void single_run_pass_quietly(struct SingleRun *run, const struct LaneView *lane);
 
-/* Lets the lane have the state and the modes behind the event that was found in it last. */
+/* Stores the state and modes after the last found event in the lane. */
 void single_run_go_on(struct SingleRun *run, const struct LaneView *lane);
 
-/* Up to which time events were looked for in the lane. */
+/* Returns the time up to which the lane was searched for events. */
 double single_run_searched(const struct SingleRun *run, size_t lane);
 
 /*
- * Brings a state at a time in the reach back to the constraints that hold in the lane. False where that cannot be. The state's
- * numbers lie as those of the lane.
+ * Projects a state at a time in the step onto the closed constraints. The state has the stride of the lane. Returns
+ * false if that fails.
  */
 bool single_run_project(struct SingleRun *run, const struct LaneView *lane, double time, double *state);
 
-/* The same with the state at the origin. */
+/* Does the same with the state at the origin. */
 bool single_run_keep_constraints(struct SingleRun *run, const struct LaneView *lane);
 
-/* Whether what must hold where a run ends does so at a time and a state, whose numbers lie likewise. */
+/* True if the checks at the end of a run succeed at this time and state, which has the stride of the lane. */
 bool single_run_may_end(struct SingleRun *run, const struct LaneView *lane, double time, const double *state);
 
 #endif
