@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 
-/* The text without [index], wherever it stands. */
+/* Returns the text without any "[index]". */
 static char *without_index(const char *text, size_t index) {
   char *subscript = format_text("[%zu]", index), *copy = copy_text(text), *place = copy;
   size_t length = strlen(subscript);
@@ -13,14 +13,14 @@ static char *without_index(const char *text, size_t index) {
   return copy;
 }
 
-/* Whether the name ends with [index], or is a derivative of one that does. */
+/* True if the name ends with "[index]", or is the derivative of such a name. */
 static bool is_element(const char *name, size_t index) {
   char *end = format_text(strncmp(name, "der(", 4) == 0 ? "[%zu])" : "[%zu]", index);
   size_t length = strlen(name), end_length = strlen(end);
   return length > end_length && strcmp(name + length - end_length, end) == 0;
 }
 
-/* Whether the texts are the same, each but for its own index. */
+/* True if the texts are equal apart from their own indices. */
 static bool are_same_text(const char *a, size_t index_of_a, const char *b, size_t index_of_b) {
   if (a == NULL || b == NULL) return a == b;
   char *first = without_index(a, index_of_a), *second = without_index(b, index_of_b);
@@ -31,7 +31,7 @@ static bool are_same_number(double a, double b) {
   return a == b || (isnan(a) && isnan(b));
 }
 
-/* Whether one declaration can hold for the first element and that of the index, but for the start. */
+/* True if one declaration can hold for element 1 and this element, apart from the start value. */
 static bool are_alike(const struct InterfaceVariable *a, const struct InterfaceVariable *b, size_t index) {
   const struct ScalarVariable *first = &a->entry, *second = &b->entry;
   return first->kind == second->kind && first->type == second->type && first->is_output == second->is_output &&
@@ -49,7 +49,7 @@ static bool has_variable(const struct Interface *interface, const char *name) {
   return false;
 }
 
-/* Whether there is an element of this index of the array of the first one, wherever it stands. */
+/* True if the interface has an element of this index of the array of `first`, anywhere. */
 static bool has_element(const struct Interface *interface, const char *first, size_t index) {
   for (size_t i = 0; i < interface->count; i++) {
     const char *name = interface->variables[i].entry.name;
@@ -58,7 +58,10 @@ static bool has_element(const struct Interface *interface, const char *first, si
   return false;
 }
 
-/* How many elements of one array begin with the variable; 0 where it begins none. Indicators stay scalars for importers. */
+/*
+ * Returns the number of elements of the array that begins with the variable; 0 for none. Event indicators stay scalars,
+ * as importers expect.
+ */
 static size_t count_elements(const struct Interface *interface, size_t place) {
   const struct InterfaceVariable *first = &interface->variables[place];
   const char *name = first->entry.name;
@@ -72,7 +75,7 @@ static size_t count_elements(const struct Interface *interface, size_t place) {
   return has_element(interface, name, count + 1) ? 0 : count;
 }
 
-/* Whether a variable of the same index is of an array of so many elements. */
+/* True if the variable of this kind and index begins an array of count elements. */
 static bool begins_array(const struct Interface *interface, enum VariableKind kind, size_t index, size_t count) {
   return interface->variables[interface_find(interface, kind, index)].array_count == count;
 }
@@ -82,7 +85,7 @@ void arrays_find(struct Interface *interface) {
     struct InterfaceVariable *variable = &interface->variables[i];
     if (variable->is_further_element) continue;
     size_t count = count_elements(interface, i);
-    /* An array of states has one of derivatives, and the other way round. */
+    /* An array of derivatives needs an array of states. */
     if (variable->entry.kind == VARIABLE_DERIVATIVE && count > 0 &&
         !begins_array(interface, VARIABLE_STATE, variable->entry.index, count))
       continue;

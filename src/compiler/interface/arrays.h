@@ -4,14 +4,14 @@
 #include "interface/interface.h"
 
 /*
- * Marks the variables q[1], q[2], ... q[N] that follow each other, as <for> makes them, and der(q[1]), ... with them, as the
- * elements of one array where they differ in their start values alone and no other variable has the array's name. Where
- * several variables of one <for> stand by turns among the states, they remain scalars.
+ * Finds arrays: consecutive variables q[1], q[2], ... q[N], as <for> makes them, and der(q[1]), ... with them. They
+ * must differ in their start values alone, and no other variable may have the array's name. If several variables of one
+ * <for> alternate among the states, they remain scalars.
  */
 void arrays_find(struct Interface *interface);
 
-/* The name of the variable, or of the array that begins with it. */
+/* Returns the name of the variable, or of the array that begins with it. */
 char *array_name(const struct InterfaceVariable *variable);
 
-/* Its description; NULL for none. */
+/* Returns its description; NULL for none. */
 char *array_description(const struct InterfaceVariable *variable);

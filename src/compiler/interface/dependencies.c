@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
-/* Steps for a symbol that something depends on, which is put in order and written. */
+/* Steps of graph_work() for a symbol in a list, which is sorted and written. */
 enum { LIST_WORK = 10 };
 
 struct SymbolList {
@@ -32,7 +32,7 @@ static void note(struct Dependencies *dependencies, size_t symbol, enum Dependen
   if (kind > dependencies->of[symbol]) dependencies->of[symbol] = kind;
 }
 
-/* How an operation depends on one of its operands, which stands beside the other. */
+/* Returns how an operation depends on one of its operands; other is the other operand. */
 static enum Dependency step_of(const struct Graph *graph, enum Operation operation, Node other) {
   if (operation == ADD) return CONSTANT_FACTOR;
   if (operation != MULTIPLY) return DEPENDENT;
@@ -40,7 +40,10 @@ static enum Dependency step_of(const struct Graph *graph, enum Operation operati
   return graph_is_constant_in_time(graph, other) ? TUNABLE_FACTOR : DEPENDENT;
 }
 
-/* Follows the node, on which something depends in this way, down to its symbols: the way is as good as its worst step. */
+/*
+ * Adds the symbols below a node on which something depends by kind. A path to a symbol is as good as its worst step;
+ * the symbol gets the worst of its paths.
+ */
 static void descend(struct Dependencies *dependencies, Node target, enum Dependency kind) {
   const struct Graph *graph = dependencies->graph;
   const struct Cone *cone = graph->cone;
@@ -60,7 +63,7 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
   }
 }
 
-/* The symbols of all residuals of a block, in a list that is made once. */
+/* Returns the symbols in all residuals of a block; the list is made once. */
 static const struct SymbolList *symbols_of(struct Dependencies *dependencies, size_t number) {
   const struct Graph *graph = dependencies->graph;
   const struct InertiaBlock *block = &dependencies->equations->inertia->blocks[number];
@@ -78,7 +81,7 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
   return list;
 }
 
-/* What an acceleration depends on, for what depends on it in this way. */
+/* Adds the symbols on which an acceleration depends, for a value that depends on it by kind. */
 static void follow_acceleration(struct Dependencies *dependencies, size_t coordinate, enum Dependency kind) {
   const struct Equations *equations = dependencies->equations;
   if (graph_limit(dependencies->graph) != NULL) return;
@@ -92,7 +95,7 @@ static void follow_acceleration(struct Dependencies *dependencies, size_t coordi
   for (size_t i = 0; i < list->count; i++) note(dependencies, list->numbers[i], DEPENDENT);
 }
 
-/* What the start values of the states that were found follow from. */
+/* Adds the symbols in start values of the states that were found. */
 static void follow_starts(struct Dependencies *dependencies) {
   const struct Model *model = dependencies->model;
   size_t found = dependencies->count;

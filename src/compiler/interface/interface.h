@@ -1,6 +1,6 @@
 /*
- * The variables of the FMU in the order of their value references. Those of one kind stand together, in the order of their
- * indices.
+ * The variables of the FMU, in the order of their value references. Variables of a kind are consecutive, in the order
+ * of their indices.
  */
 #pragma once
 
@@ -9,39 +9,39 @@
 
 struct InterfaceVariable {
   struct ScalarVariable entry;    /* as in the generated table */
-  const char *unit, *description; /* NULL where unknown */
-  const char *display_unit;       /* NULL where none was given */
-  double nominal;                 /* NAN where none was given */
+  const char *unit, *description; /* NULL if unknown */
+  const char *display_unit;       /* NULL if none was given */
+  double nominal;                 /* NAN if none was given */
   Node node;                      /* the value; ZERO for statistics */
-  Node start;                     /* of a state whose start value follows from parameters; else ZERO */
-  bool is_moved_at_start;         /* a state that constraints may move as initialization ends */
-  bool is_continued;              /* a result that is computed together with the one before: components of one thing */
-  size_t array_count;             /* elements of the array that begins with this variable; 0 where none does */
-  bool is_further_element;        /* of an array that began before */
+  Node start;                     /* of a state whose start value is an expression; else ZERO */
+  bool is_moved_at_start;         /* a state that constraints may change at the end of initialization */
+  bool is_continued;       /* a result that is evaluated together with the one before, as components of a vector */
+  size_t array_count;      /* number of elements of the array that begins here; 0 for none */
+  bool is_further_element; /* an element of an array that began before */
 };
 
-enum { OUTPUT_ORDER = 20 }; /* the highest derivative of outputs that have Taylor series */
+enum { OUTPUT_ORDER = 20 }; /* highest derivative of outputs with Taylor series */
 
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;
-  size_t count_in_fmi2;                 /* FMI 3.0 has more: event indicators, and time where nothing depends on it */
-  size_t first[VARIABLE_INDICATOR + 1]; /* the place of the first variable of each kind */
+  size_t count_in_fmi2;                 /* FMI 3.0 also has event indicators, and time even if nothing depends on it */
+  size_t first[VARIABLE_INDICATOR + 1]; /* index of the first variable of each kind */
   size_t state_count, result_count;
   bool depends_on_time;
   int output_derivative_order;
 };
 
-/* Whether initialization computes the state, from its start value among others. */
+/* True if initialization computes the state, from its start value among others. */
 static inline bool starts_nearby(const struct InterfaceVariable *variable) {
   return has_following_start(&variable->entry) || variable->is_moved_at_start;
 }
 
-/* The place in the table of the variable of this kind and index, which there is. */
+/* Returns the index in the table of the variable of this kind and index, which must exist. */
 size_t interface_find(const struct Interface *interface, enum VariableKind kind, size_t index);
 
-/* The relative tolerance of the solver. */
+/* Returns the relative tolerance of the solver, 1e-8 by default. */
 double interface_tolerance(const struct Model *model);
 
-/* How many steps a solver may take in one communication step. */
+/* Returns the largest number of solver steps in a communication step; 0 if not limited. */
 long interface_max_steps(const struct Model *model);

@@ -26,7 +26,7 @@ static void set_units(struct InterfaceVariable *variable, const struct Variable 
   if (source->display_unit != NULL && variable->unit != NULL) variable->display_unit = source->display_unit;
 }
 
-/* The names of what the node depends on. */
+/* Returns the names of the symbols below the node. */
 static char *names_below(const struct Model *model, Node node) {
   struct SymbolNames names = {0};
   symbol_names_add(&names, model->graph, &node, 1);
@@ -60,7 +60,7 @@ static struct InterfaceVariable *append_result(struct Interface *interface, cons
   return variable;
 }
 
-/* They are results, computed when they are read. */
+/* Appends calculated parameters as results, which are computed when read. */
 static void append_calculated(struct Interface *interface, const struct Model *model) {
   for (size_t i = 0; i < model->calculated.count; i++) {
     const struct Variable *source = &model->calculated.items[i];
@@ -71,7 +71,7 @@ static void append_calculated(struct Interface *interface, const struct Model *m
   }
 }
 
-/* NULL where FMI has no unit of the dimension. */
+/* Returns a unit; NULL if FMI cannot express the dimension. */
 static char *unit_of_dimension(struct Dimension dimension) {
   return dimension_is_whole(dimension) ? unit_text(dimension) : NULL;
 }
@@ -83,7 +83,7 @@ static void append_derivative(struct Interface *interface, const struct Variable
   variable->unit = unit_of_dimension(dimension_multiply(state->dimension, unit_of("s"), -1.0));
 }
 
-/* Whether two components are of one thing, and both or neither rest on accelerations, which cannot always be had. */
+/* True if both are components of one vector, and both or neither depend on accelerations, which may be unavailable. */
 static bool belong_together(const struct Graph *graph, const struct InterfaceVariable *a,
                             const struct InterfaceVariable *b) {
   const char *end = strrchr(a->entry.name, '.');
@@ -100,7 +100,7 @@ static void append_places(struct Interface *interface, const struct Model *model
   }
 }
 
-/* As a force or torque is written; other generalized forces in base units. */
+/* Returns N or N.m for forces and torques, base units for other generalized forces. */
 static const char *unit_of_force(struct Dimension dimension) {
   static const char *const names[] = {"N", "N.m"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
@@ -117,7 +117,7 @@ static void append_reactions(struct Interface *interface, const struct Model *mo
   }
 }
 
-/* That of a friction which slides belongs to no constraint. */
+/* Returns the force at a constraint's index, with the sliding force of a friction, which is not a constraint force. */
 static Node whole_force(const struct Model *model, size_t constraint, Node force) {
   for (size_t i = 0; i < model->switches.friction_count; i++)
     if (model->switches.frictions[i].constraint == constraint)
@@ -125,13 +125,13 @@ static Node whole_force(const struct Model *model, size_t constraint, Node force
   return force;
 }
 
-/* In the constraint's own unit, force times it is an energy, or a power where it is of velocities. */
+/* Appends the constraint forces. Force times constraint is an energy, or a power for constraints of velocities. */
 static void append_constraint_forces(struct Interface *interface, const struct Model *model,
                                      const struct Equations *equations) {
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     const char *description = constraint->description != NULL ? constraint->description : constraint->name;
-    bool is_of_joint = constraint->force_name != NULL; /* whose description is that of the force */
+    bool is_of_joint = constraint->force_name != NULL; /* its description is that of the force */
     char *text = is_of_joint ? copy_text(description) : format_text("force of the constraint: %s", description);
     Node force = equations->explicit_form ? equations->acceleration[equations->count + i] : model->unknowns.forces[i];
     if (constraint->force_share != ZERO) force = multiply(model->graph, constraint->force_share, force);
@@ -166,7 +166,7 @@ static void append_modes(struct Interface *interface, const struct Model *model)
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     bool is_in_plane = switches->frictions[i].plane.axis != NO_PLANE;
-    if (switches->frictions[i].plane.axis == ACROSS) continue; /* it slides as the one along */
+    if (switches->frictions[i].plane.axis == ACROSS) continue; /* shares the mode of the friction along */
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
     append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
                 is_in_plane ? "1 while it slides, 0 while it sticks"
@@ -203,7 +203,7 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   return uses;
 }
 
-/* Whether the pieces of an energy may differ where they meet, or change with something else than the coordinates. */
+/* True if the potential energy may jump between its pieces, or its modes depend on more than the coordinates. */
 static bool steps_in_time(const struct Model *model) {
   const struct Graph *graph = model->graph;
   bool steps = false;
@@ -218,7 +218,10 @@ static bool steps_in_time(const struct Model *model) {
   return steps;
 }
 
-/* Tells a law where totalEnergy has one that its reader can use: see energies.h. scripts/sweep.py goes by the endings. */
+/*
+ * Returns the description of totalEnergy, which names the conservation law if there is one, see energies.h.
+ * scripts/sweep.py reads its ending.
+ */
 static const char *total_energy_description(const struct Model *model) {
   const struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
@@ -233,14 +236,14 @@ static const char *total_energy_description(const struct Model *model) {
                   : "kinetic and potential energy; constant";
 }
 
-/* Higher derivatives than the first are read from Taylor series, which end at a kink. */
+/* Returns the highest derivative of outputs. Those above the first come from Taylor series, which end at a kink. */
 static int output_derivative_order(const struct Model *model, const struct Equations *equations) {
   if (equations->method != NULL && equations->method->series == FIRST_TERMS) return 1;
   if (depend_on_constraint_force(model, equations->outputs, model->outputs.count)) return 1;
   return kink_of(model->graph, equations->outputs, model->outputs.count) == NULL ? OUTPUT_ORDER : 1;
 }
 
-/* Whether a constraint of the block holds from the start; contacts are open then, and move nothing. */
+/* True if a constraint of the block is permanent. Contacts are open at the start, and change nothing then. */
 static bool is_held_at_start(const struct Model *model, const struct InertiaBlock *block) {
   bool is_held = false;
   for (size_t i = 0; i < block->count; i++) {
@@ -251,7 +254,7 @@ static bool is_held_at_start(const struct Model *model, const struct InertiaBloc
   return is_held;
 }
 
-/* Those of coordinates that stand in constraints and are not fixed. */
+/* Marks the states of coordinates in permanent constraints, unless they are fixed. */
 static void mark_moved_states(struct Interface *interface, const struct Model *model,
                               const struct Equations *equations) {
   size_t n = equations->count;
@@ -262,7 +265,7 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   }
 }
 
-/* Whether a constraint, contact or friction acts on the coordinate, by itself or by way of others. */
+/* True if constraints, contacts or frictions act on the coordinate, directly or through others. */
 static bool is_constrained(const struct Equations *equations, size_t coordinate) {
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, coordinate);
   size_t i = 0;
@@ -270,7 +273,7 @@ static bool is_constrained(const struct Equations *equations, size_t coordinate)
   return i < block->count;
 }
 
-/* Those that impacts, projection on constraints, or events may set. */
+/* Marks the states that impacts, projection or events may change. */
 static void mark_reinitialized_states(struct Interface *interface, const struct Model *model,
                                       const struct Equations *equations) {
   size_t n = equations->count;
@@ -287,7 +290,7 @@ static void mark_reinitialized_states(struct Interface *interface, const struct 
   }
 }
 
-/* What FMI 2.0 asks for by a function alone. */
+/* Appends the event indicators, which FMI 2.0 has as a function only. */
 static void append_indicators(struct Interface *interface, const struct SwitchingExpressions *switching) {
   for (size_t i = 0; switching != NULL && i < switching->indicator_count; i++) {
     append(interface, VARIABLE_INDICATOR, i, format_text("eventIndicator[%zu]", i + 1),
@@ -302,7 +305,7 @@ static void append_time(struct Interface *interface, const struct Model *model) 
   time->node = model->time;
 }
 
-/* What systems with coordinates have in addition. */
+/* Appends the variables of systems with coordinates. */
 static void append_mechanics(struct Interface *interface, const struct Model *model,
                              const struct Equations *equations) {
   append_places(interface, model, equations);
@@ -315,13 +318,16 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   mark_reinitialized_states(interface, model, equations);
 }
 
-/* The expression where one stands for itself; in trees each would hold all of the tree. */
+/*
+ * Returns the expression of an acceleration. In trees its symbol stands for it, as each expression would contain the
+ * whole tree.
+ */
 static Node acceleration_of(const struct Model *model, const struct Equations *equations, size_t i) {
   bool is_in_tree = !equations->explicit_form && inertia_block_of(equations->inertia, i)->tree != NULL;
   return is_in_tree ? model->unknowns.accelerations[i] : equations->acceleration[i];
 }
 
-/* Coordinates, velocities and the states behind them, then the derivatives of each. */
+/* Appends coordinates, velocities and first-order states, then the derivatives of all. */
 static void append_states(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
   size_t n = model->coordinates.count;
   append_list(interface, model, &model->coordinates, VARIABLE_STATE, 0);

@@ -3,5 +3,5 @@
 
 #include "interface/interface.h"
 
-/* All of them, without arrays: see arrays.h. */
+/* Returns all variables, without arrays; see arrays.h. */
 struct Interface *interface_create(const struct Model *model, const struct Equations *equations);

@@ -16,7 +16,7 @@ static void add_name(struct NodeNames *names, Node node, const char *name) {
   names->named[names->named_count++] = node;
 }
 
-/* Names the nodes of the variables, as they are in expressions and as they are shown; numbers and single variables need no name. */
+/* Names the nodes of the variables, with and without the modes of branches. Numbers and symbols need no name. */
 static void add_names(struct NodeNames *names, const struct Model *model, const struct VariableList *list) {
   const struct Graph *graph = model->graph;
   for (size_t i = 0; i < list->count && names->named_count < SHOWN_LIMIT; i++) {
@@ -28,10 +28,13 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
   }
 }
 
-/* The names of the first calculated parameters and definitions. These do not occur in linearized equations. */
+/*
+ * Returns the names of the first calculated parameters and definitions. Definitions do not occur in linearized
+ * equations.
+ */
 static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
-  for (size_t i = 0; i < model->definitions.count; i++) /* makes the nodes that are shown, which the names count */
+  for (size_t i = 0; i < model->definitions.count; i++) /* makes all nodes before they are counted */
     without_branches(model, model->definitions.items[i].node);
   for (size_t i = 0; i < model->calculated.count; i++) without_branches(model, model->calculated.items[i].node);
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
@@ -41,7 +44,7 @@ static struct NodeNames author_names(const struct Model *model) {
   return names;
 }
 
-/* The expression as it is, or multiplied out where that is shorter to read. */
+/* Returns the expression, or its reduced fraction if that has a shorter text. */
 static Node readable(const struct Model *model, const struct NodeNames *names, Node node) {
   struct Graph *graph = model->graph;
   node = without_branches(model, node);
@@ -53,7 +56,7 @@ static Node readable(const struct Model *model, const struct NodeNames *names, N
   return shorter ? expanded : node;
 }
 
-/* K a of all rows, where trees have no mass matrix; NULL where none has. */
+/* Returns K a for all rows; NULL if there are no trees, whose K is not formed. */
 static Node *product_of_trees(const struct Model *model, const struct Equations *equations) {
   const struct Inertia *inertia = equations->inertia;
   if (equations->explicit_form || !inertia_has_trees(inertia)) return NULL;
@@ -64,14 +67,14 @@ static Node *product_of_trees(const struct Model *model, const struct Equations 
   return product;
 }
 
-/* Row i of M a and the forces of constraints, or the acceleration itself. */
+/* Returns row i of M a + J^T F, or the acceleration itself. */
 static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
                           const Node *product, size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   Node sum = ZERO;
-  if (block->tree != NULL) return without_branches(model, product[i]); /* which nothing makes short */
+  if (block->tree != NULL) return without_branches(model, product[i]); /* not shortened: it is too long */
   for (size_t k = 0; k < block->count; k++) {
     Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));

@@ -6,7 +6,10 @@
 #include "algebra/cone.h"
 #include "base/memory.h"
 
-/* C allows 4095 characters in a string, and a message has its use with fewer. */
+/*
+ * LENGTH_LIMIT: bytes of a list; C guarantees literals of 4095, and shorter messages are easier to read. WORD_BITS:
+ * symbols in a sweep.
+ */
 enum { LENGTH_LIMIT = 1000, WORD_BITS = 64 };
 
 static void add_symbol(struct SymbolNames *names, size_t symbol) {
@@ -26,7 +29,10 @@ void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, cons
     if (graph->vertices[cone->nodes[i]].operation == SYMBOL) add_symbol(names, graph->vertices[cone->nodes[i]].left);
 }
 
-/* below: of each member of the cone, bit k where it depends on the (first + k)-th symbol of all; gives their number. */
+/*
+ * Fills below: bit k of a member of the cone is set if it depends on the (first + k)-th symbol of the cone. Returns the
+ * number of symbols.
+ */
 static size_t find_symbols_below(const struct Graph *graph, size_t first, uint64_t *below) {
   const struct Cone *cone = graph->cone;
   size_t symbols = 0;

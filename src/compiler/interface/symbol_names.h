@@ -1,19 +1,22 @@
-/* The names of the symbols that expressions depend on, as a list for messages. */
+/* Names of the symbols on which expressions depend, for messages. */
 #pragma once
 
 #include "algebra/graph.h"
 
-/* Symbols by their numbers in the graph, ascending. */
+/* Symbols by their indices in the graph, ascending. */
 struct SymbolNames {
   size_t *symbols;
   size_t count;
 };
 
-/* Adds those of count expressions. */
+/* Adds the symbols of count expressions. */
 void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
 
-/* Adds to names[i] those of nodes[i], which have much in common: cheaper than one after the other. */
+/*
+ * Adds to names[i] the symbols of nodes[i]. Faster than one at a time if the nodes share subexpressions: each sweep
+ * treats 64 symbols.
+ */
 void symbol_names_add_each(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
 
-/* "m, l"; a long list ends with "...". */
+/* Returns a list such as "m, l"; a long one ends with "...". */
 char *symbol_names_text(const struct SymbolNames *names, const struct Graph *graph);
