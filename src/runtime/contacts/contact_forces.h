@@ -1,25 +1,25 @@
-/* Whether the forces of contacts at rest, with the frictions that slide on them, have a solution, and one alone. */
+/* Existence and uniqueness of the forces of contacts at rest, with the frictions that slide on them. */
 #ifndef CONTACT_FORCES_H
 #define CONTACT_FORCES_H
 
 #include "events/settlement.h"
 
 /*
- * Opens and closes contacts at rest as the only solution says; *again where that changes any. NULL, or, after logging the
- * contact and the friction, the reason why the motion cannot go on.
+ * Opens and closes contacts at rest according to the unique solution; sets *again if any changed. Returns NULL, or,
+ * after logging contact and friction, the reason why the motion cannot go on.
  */
 const char *contact_forces_settle(struct Settlement *settlement, bool *again);
 
 /*
- * Logs a contact that closes whatever its impulse, with one that opposes it: prescribed motions crush what is between them.
- * Returns the reason why the motion cannot go on.
+ * Logs a contact that closes whatever its impulse, and one that opposes it: prescribed motions crush a body between
+ * them. Returns the reason why the motion cannot go on.
  */
 const char *contact_forces_refuse_crushed(struct Settlement *settlement, size_t contact);
 
-/* Logs a contact that closes, and whose gap no force changes. */
+/* Logs a contact that closes and whose gap no force changes. */
 void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact);
 
-/* Where the motion ends: whether friction jams a contact that slides, which is logged. */
+/* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */
 bool contact_forces_explain(struct Settlement *settlement);
 
 #endif

@@ -1,4 +1,4 @@
-/* Small systems of linear equations, of which many are tried. */
+/* Solution of small linear systems. */
 #ifndef ELIMINATION_H
 #define ELIMINATION_H
 
@@ -6,8 +6,8 @@
 #include <stddef.h>
 
 /*
- * The solution takes the place of the right sides, which are the last of the n + 1 numbers of each of the n rows. False where
- * the matrix, whose numbers are to be of the size of 1, is singular.
+ * Solves n equations by Gauss elimination. Each of the n rows has n + 1 numbers, the last one its right side, which the
+ * solution replaces. The matrix should be scaled to a size of 1. False if it is singular.
  */
 bool solve_by_elimination(size_t n, double *rows);
 

@@ -1,12 +1,13 @@
-/* Whether an impact could come out in another way, where frictions act along lines. */
+/* Other outcomes of an impact, with frictions along lines. */
 #ifndef IMPACT_OUTCOMES_H
 #define IMPACT_OUTCOMES_H
 
 #include "contacts/pushes.h"
 
 /*
- * As has_other_impulses in struct FrictionLaws: all combinations of what leaves, presses, sticks and slides are tried. False for
- * more than eight pushes, of which too many would have to be.
+ * True if other impulses also fulfil the law of impacts, as has_other_impulses of struct FrictionLaws. Tries all
+ * combinations of contacts that open or press and frictions that stick or slide. False for more than eight impulses,
+ * whose combinations are too many.
  */
 bool impact_has_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                        const double *impulse);

@@ -1,12 +1,12 @@
-/* Frictions at rest whose forces follow from forces of constraints: the one motion that their law allows. */
+/* Frictions at rest whose forces follow from constraint forces: the only motion that Coulomb's law allows. */
 #ifndef JAMS_H
 #define JAMS_H
 
 #include "events/settlement.h"
 
 /*
- * Sets the modes of frictions at rest, and of the branches that have switched, to the only ones with which accelerations and
- * forces agree. False where there are none, or too many to try, or more than one motion, which it logs.
+ * Sets the modes of frictions at rest, and of branches that have switched, to the only consistent ones. False if there
+ * are none, too many to try, or several motions, which it logs.
  */
 bool jams_resolve(struct Settlement *settlement);
 

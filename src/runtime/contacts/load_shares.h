@@ -1,12 +1,12 @@
-/* What touches at rest shares the load. */
+/* Contacts that touch at rest share the load. */
 #ifndef LOAD_SHARES_H
 #define LOAD_SHARES_H
 
 #include "events/settlement.h"
 
 /*
- * Closes, once in an event, contacts that touch at rest without a force because others hold them, and press as all share their
- * load; *again where there are any. NULL, or the reason why the motion cannot go on.
+ * Closes contacts that touch at rest without a force, because others carry the load, if they press once all share it;
+ * at most once an event. Sets *again if there are any. Returns NULL, or the reason why the motion cannot go on.
  */
 const char *contacts_share_load(struct Settlement *settlement, bool *again);
 

@@ -1,4 +1,4 @@
-/* How fast frictions slide, along a line or in a plane. */
+/* Sliding speeds of frictions, along a line or in a plane. */
 #ifndef PLANES_H
 #define PLANES_H
 
@@ -7,20 +7,20 @@
 #include "evaluation/evaluate.h"
 #include "events/settlement.h"
 
-/* Speeds up to this are those of what rests; importers keep constraints less well. */
+/* Returns the speed up to which a friction is at rest; larger for importers, which keep constraints less well. */
 static inline double resting_speed(const struct Settlement *settlement) {
   double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
   return share * largest_scale(settlement->state, lagrangian.coordinate_count);
 }
 
-/* The speed of a friction in a plane, which is the one along. */
+/* Returns the speed of a friction in a plane. along: its first one. */
 static inline double speed_in_plane(const struct Settlement *settlement, size_t along) {
   const double *value = settlement->value;
   return hypot(value[friction_place(settlement->switches, along, FRICTION_VELOCITY)],
                value[friction_place(settlement->switches, along + 1, FRICTION_VELOCITY)]);
 }
 
-/* How fast a friction slides, whichever way. */
+/* Returns the sliding speed of a friction. */
 static inline double sliding_speed(const struct Settlement *settlement, size_t friction) {
   size_t plane = plane_of(settlement->switches, friction);
   if (plane < settlement->switches->plane_count)

@@ -1,6 +1,6 @@
 /*
- * What contacts and frictions do to the velocities: the pushes of some of them, contacts first, and how these answer to one
- * another.
+ * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix J M^-1
+ * J^T. Contacts come first, then the frictions that rest on them.
  */
 #ifndef PUSHES_H
 #define PUSHES_H
@@ -9,19 +9,19 @@
 #include "instance/held.h"
 
 struct Pushes {
-  size_t contact_count, friction_count, count; /* count: of both */
-  size_t *member;                              /* which contacts, then which frictions, of the table */
-  double *velocities;                          /* count rows: the change of the velocities by each push of 1 */
-  double *mobility;                            /* count rows: the change of the rates by each push of 1 */
-  double *rate;                                /* of the gaps, then the velocities of the frictions */
-  double rounding;                             /* what it may make of any rate */
-  double *coefficient; /* friction_count rows: what each contact's push of 1 lets the friction push */
+  size_t contact_count, friction_count, count; /* count: the sum of both */
+  size_t *member;                              /* indices of contacts, then of frictions, in the switch table */
+  double *velocities;                          /* count rows: change of the velocities by each unit impulse */
+  double *mobility;                            /* count rows: Delassus matrix */
+  double *rate;                                /* of the gaps, and the velocities of the frictions */
+  double rounding;                             /* rounding error bound of the rates */
+  double *coefficient; /* friction_count rows: friction limit by a unit impulse of each contact */
   void *block;
 };
 
 /*
- * Those of the contacts that take part, and of the frictions that do and rest on them; at the rates in settlement->value,
- * while constraints hold as the modes say. False, and nothing is allocated, where M is singular or there is no memory.
+ * Collects the contacts that take part, and the frictions on them that do, at the rates in settlement->value; active
+ * constraints hold. False, and nothing is allocated, if M is singular or memory is missing.
  */
 bool pushes_create(struct Settlement *settlement, struct Pushes *pushes);
 void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
@@ -38,7 +38,7 @@ static inline double contact_value(const struct Settlement *settlement, size_t c
   return settlement->value[contact_place(settlement->switches, contact, part)];
 }
 
-/* What a closed contact presses with; below 0 where it pulls. */
+/* Returns the force of a closed contact; negative if it pulls. */
 static inline double contact_force(const struct Settlement *settlement, size_t contact) {
   size_t constraint = settlement->switches->contacts[contact].constraint;
   return settlement->acceleration[lagrangian.coordinate_count + constraint];
@@ -48,22 +48,25 @@ static inline bool friction_sticks(const struct Settlement *settlement, size_t f
   return friction_holds(settlement->instance, friction);
 }
 
-/* mode: the sign of its velocity, which one in a plane does not look at; 0 for one that sticks. */
+/* Sets the mode of a friction: the sign of its velocity, which one in a plane ignores, or 0 for sticking. */
 void set_friction(struct Settlement *settlement, size_t friction, double mode);
 
-/* What a friction that slides pushes against its velocity by a force of 1: its sign, or the component of a direction. */
+/*
+ * Returns the component of a unit force of sliding friction: the sign of the velocity, or a component of the slip
+ * direction.
+ */
 double sliding_share(const struct Settlement *settlement, size_t friction);
 
-/* Whether the friction follows from the force of the contact. */
+/* True if the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
 
-/* Whether the gap is 0, but for rounding. */
+/* True if the gap is 0 within rounding. */
 bool is_touching(const struct Settlement *settlement, size_t contact);
 
-/* Whether it is closed, or touches without coming nearer or parting. */
+/* True if the contact is closed, or touches and neither approaches nor opens. */
 bool contact_is_at_rest(const struct Settlement *settlement, size_t contact);
 
-/* Whether the flight of a contact that parts at this rate would be lost in what rounding, or the method, makes of it. */
+/* True if the bounce of a contact that opens at this rate is smaller than the errors of rounding and of the method. */
 bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate);
 
 #endif

@@ -8,20 +8,21 @@
 #include "instance/held.h"
 #include "instance/time_laws.h"
 
+/* Switches of one branch in an event resolution before it counts as endless. */
 enum { FLIP_LIMIT = 8 };
 
 static const char without_end[] = "a mode changes back and forth there without end";
 
 static const char jammed[] = "a friction and a constraint jam each other";
 
-/* In s: an importer who is back at the zero sooner would get no further. */
+/* In s: an importer that is back at a zero sooner makes no progress. */
 static const double soonest_return = 1e-6;
 
 static double sign_with_noise(double value, double noise) {
   return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
 }
 
-/* Whether the indicator is the velocity of a friction that is given, which has not been at rest when the event began. */
+/* True if the indicator is the velocity of a friction with prescribed motion, which moved when the event began. */
 static bool is_driven(const struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
   bool is_driven = false;
@@ -32,8 +33,8 @@ static bool is_driven(const struct Settlement *settlement, size_t branch) {
 }
 
 /*
- * Where its zero was located, it may be left as far below as the search takes for rounding; what a drive has brought to rest has the
- * rounding of its way there.
+ * Returns the rounding error bound of a branch. At a located zero it includes the floor of the search. So it does for a
+ * prescribed motion that has come to rest, whose velocity has the rounding error of its path.
  */
 static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
   double noise = settlement_noise(settlement, branch, branch_rate_place(settlement->switches, branch));
@@ -41,7 +42,7 @@ static double noise_of_branch(const struct Settlement *settlement, size_t branch
   return noise * (is_rough ? FLOOR_IN_NOISE : 1.0);
 }
 
-/* Whether an event has left it a little beyond 0, and it comes back to the sign of its mode. */
+/* True if an event has left it a little beyond 0, and its rate leads back to the sign of its mode. */
 static bool comes_back(const struct Settlement *settlement, size_t branch, double mode, double noise) {
   size_t rate = branch_rate_place(settlement->switches, branch);
   double value = settlement->value[branch];
@@ -49,15 +50,15 @@ static bool comes_back(const struct Settlement *settlement, size_t branch, doubl
          mode * settlement->value[rate] > settlement->noise[rate];
 }
 
-/* Whether it goes through a 0 at which it rests: where a piece ends or a friction sticks there, a side stays. */
+/* True if a branch at a located zero crosses it. The sign of an event's expression stays after other changes. */
 static bool passes(const struct Settlement *settlement, size_t branch) {
   bool rests = settlement->switches->branches[branch].is_side && settlement->changed;
   return is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
 }
 
 /*
- * Whether an indicator that is at 0 without a rate rests there, as a velocity does: a friction has come to stick in this settlement,
- * or a drive has brought the velocity of one to rest.
+ * True if an indicator at 0 without a rate stays there: a friction has begun to stick in this event, or a prescribed
+ * motion has come to rest.
  */
 static bool stays_at_zero(const struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
@@ -67,7 +68,7 @@ static bool stays_at_zero(const struct Settlement *settlement, size_t branch) {
   return rests;
 }
 
-/* The sign that an indicator has next: of itself, or, where it is 0, of its rate. */
+/* Returns the next sign of an indicator: its own, or at 0 that of its rate. */
 static double branch_mode(const struct Settlement *settlement, size_t branch) {
   size_t rate = branch_rate_place(settlement->switches, branch);
   double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
@@ -75,16 +76,16 @@ static double branch_mode(const struct Settlement *settlement, size_t branch) {
   if (comes_back(settlement, branch, mode, noise)) return mode;
   double sign = sign_with_noise(settlement->value[branch], noise);
   if (sign != 0.0) return sign;
-  /* What an event has set is not what rounding has left, however small. */
+  /* After a jump, even the smallest rate counts: it is not left by rounding. */
   sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
   if (sign != 0.0) return sign;
   if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
-  /* What was set to rest at 0 is there, wherever it comes from. */
+  /* Values that were set to 0, without a rate, are at rest, whatever their sign was. */
   bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
   return was_set || stays_at_zero(settlement, branch) ? 0.0 : mode;
 }
 
-/* Where neither side of a zero leads away from it. */
+/* Logs a branch both of whose signs lead back to its zero; returns the reason. */
 static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
   const struct FrictionLaws *laws = settlement->switches->friction_laws;
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
@@ -130,7 +131,10 @@ const char *branches_check(struct Settlement *settlement) {
   return NULL;
 }
 
-/* At a kink of a gap the piece to which the motion goes is needed before impacts; a side that starts at 0 has none yet. */
+/*
+ * Returns the sign of a branch at the start. At a kink of a gap, the rate gives the piece, which impacts need. An
+ * event's expression at 0 has no sign yet.
+ */
 static double sign_at_start(const struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
   size_t rate = branch_rate_place(switches, branch);
@@ -153,7 +157,7 @@ static void guess_branches(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Point point = instance_point(instance);
   double *value = settlement_of(instance).value;
-  /* Of a mass that a sign decides on, 0 leaves nothing. */
+  /* With a mode of 0, a mass could be 0. */
   for (size_t i = 0; i < switches->branch_count; i++)
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
   for (size_t round = 0; round <= switches->branch_count; round++) {

@@ -1,4 +1,8 @@
-/* Chebyshev polynomials of degree 8 through what is sampled in a window of time. */
+/*
+ * Interpolation by Chebyshev polynomials of degree 8 in a window of time (L. N. Trefethen: Approximation Theory and
+ * Approximation Practice, 2013). s in [-1, 1] is the time in the window; T_k(s) is at most 1 in size, so coefficients
+ * bound the polynomial.
+ */
 #ifndef CHEBYSHEV_H
 #define CHEBYSHEV_H
 
@@ -6,32 +10,38 @@
 
 enum { CHEBYSHEV_DEGREE = 8, CHEBYSHEV_NODES };
 
-/* The time of a node, from 0, the end of the window, to 8, its beginning; node 4 is the middle. */
+/* Returns the time of a node: node 0 is the end of the window, 8 its start, 4 its middle. */
 Real chebyshev_time(Real from, Real to, int node);
 
-/* Those of all. */
+/* Computes the times of all nodes. */
 void chebyshev_times(Real from, Real to, Real *times);
 
-/* The coefficients c[CHEBYSHEV_NODES] of the polynomial through f[CHEBYSHEV_NODES] at the nodes. */
+/* Computes the coefficients c[CHEBYSHEV_NODES] of the polynomial with values f[CHEBYSHEV_NODES] at the nodes. */
 void chebyshev_coefficients(const Real *f, Real *c);
 
-/* How far the polynomial may go from its first coefficient. */
+/* Returns a bound of |p(s) - c[0]|: the sum of the other |c[k]|. */
 Real chebyshev_range(const Real *c);
 
-/* The last coefficients, and what they may have of the range for a polynomial that is the function. */
+/*
+ * Returns |c[7]| + |c[8]|, an estimate of the interpolation error; and its largest ratio to the range of a resolved
+ * function.
+ */
 Real chebyshev_tail(const Real *c);
 static const double chebyshev_resolved = 1e-4;
 
-/* The coefficients of its derivative, by a place from -1 to 1, and what the tail may make of it, and of its own derivative. */
+/*
+ * Computes the coefficients d of dp/ds. The constants bound the effect of the tail on the first and second derivatives:
+ * four times those of Markov's inequalities.
+ */
 void chebyshev_derivative(const Real *c, Real *d);
 static const double chebyshev_tail_of_derivative = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE;
 static const double chebyshev_tail_of_curvature =
     4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * (CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE - 1) / 3.0;
 
-/* The value at a place from -1, the beginning of the window, to 1. */
+/* Returns p(s). */
 Real chebyshev_value(const Real *c, Real place);
 
-/* Its coefficients of powers of the time from the middle on, in a window of twice the half length. */
+/* Computes the coefficients by powers of the time from the middle of a window of length 2 half. */
 void chebyshev_powers(const Real *c, Real half, Real *power);
 
 #endif

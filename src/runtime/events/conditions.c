@@ -3,7 +3,7 @@
 #include "evaluation/evaluate.h"
 #include "instance/time_laws.h"
 
-/* Of an expression that passes 0. */
+/* True if the event waits for zero crossings of an expression. */
 static bool has_side(const struct EventFacts *event) {
   return event->passage != PASSAGE_HOLDS && event->passage != PASSAGE_SAMPLES;
 }
@@ -25,8 +25,8 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
 }
 
 /*
- * Conditions as they are before events, all of them or those of contacts alone. Of an expression it is the side of 0 on which it
- * was last.
+ * Stores the conditions before events: all, or those that contacts decide. For an expression it is the last nonzero
+ * sign.
  */
 static void note_conditions(struct Settlement *settlement, bool all) {
   const struct SwitchTable *switches = settlement->switches;
@@ -48,7 +48,7 @@ void conditions_begin(struct Settlement *settlement) {
   }
 }
 
-/* An event may have turned an expression round before it came to the other side: that keeps its side. */
+/* Stores the last nonzero signs of expressions. A sign stays if an event turned its expression back before 0. */
 static void keep_sides(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
@@ -58,7 +58,7 @@ static void keep_sides(const struct Settlement *settlement) {
   }
 }
 
-/* An expression that has only been at 0 passes nothing. */
+/* True if the event happens. There is no crossing without a previous nonzero sign. */
 static bool happens(const struct Settlement *settlement, size_t event) {
   const struct EventFacts *facts = &settlement->switches->events[event];
   double condition = settlement->value[condition_place(settlement->switches, event)],
@@ -69,7 +69,7 @@ static bool happens(const struct Settlement *settlement, size_t event) {
   return (rises && facts->passage != PASSAGE_FALLS) || (falls && facts->passage != PASSAGE_RISES);
 }
 
-/* What two events both set; NULL for nothing. */
+/* Returns an assignment that two events share; NULL for none. */
 static const struct AssignmentFacts *rival_assignment(const struct SwitchTable *switches, const struct EventFacts *one,
                                                       const struct EventFacts *other) {
   for (size_t i = one->first_assignment; i < one->first_assignment + one->assignment_count; i++)
@@ -84,7 +84,7 @@ static const char *attribute_of(const struct EventFacts *event) {
   return event->passage == PASSAGE_SAMPLES ? "every" : "when";
 }
 
-/* Logs two events that happen at once and set the same. Whether there are any. */
+/* Logs an event that happens at the same time and sets the same variable; true if there is one. */
 static bool find_rivals(const struct Settlement *settlement, size_t event) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t k = 0; k < event; k++) {
@@ -103,8 +103,8 @@ static bool find_rivals(const struct Settlement *settlement, size_t event) {
 }
 
 /*
- * Whether the zero of an expression was located, and no coordinate has been set since: the expression is there, and has not come
- * to the other side. What turns it back, as the event itself, makes no further passage.
+ * True if the zero of an expression was located, and no coordinate has been set since. The expression is then at 0 and
+ * not beyond it; if the event itself turns it back, that is no second crossing.
  */
 static bool is_at_zero(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -112,14 +112,14 @@ static bool is_at_zero(const struct Settlement *settlement) {
   return is_located && switches->branches[settlement->indicator].is_side && !settlement->moved;
 }
 
-/* The next passage of what happened at 0 begins there. */
+/* Lets the next crossing of events that happened at 0 begin there. */
 static void begin_at_zero(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->event_count; i++)
     if (settlement->happened[i] != 0.0 && settlement->switches->events[i].passage == PASSAGE_BOTH)
       settlement->condition[i] = 0.0;
 }
 
-/* Logs a sample whose period is no positive time; whether there is one. */
+/* Logs a sample whose period is not positive; true if there is one. */
 static bool find_endless_sample(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->sample_count; i++) {
@@ -140,7 +140,7 @@ const char *conditions_happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
   if (find_endless_sample(settlement)) return "there are no samples";
-  /* What contacts and frictions come to at the start has held before. */
+  /* Conditions that contacts and frictions fulfil from the start on have not just become true. */
   if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
   settlement->has_started = true;
   bool at_zero = is_at_zero(settlement);

@@ -1,15 +1,15 @@
-/* The <event> elements: each happens when its condition comes to hold. */
+/* <event> elements: each happens when its condition becomes true. */
 #ifndef CONDITIONS_H
 #define CONDITIONS_H
 
 #include "events/settlement.h"
 
-/* Conditions and sides from which the settlement sets out. */
+/* Stores the conditions and signs at the start of an event resolution. */
 void conditions_begin(struct Settlement *settlement);
 
 /*
- * Lets events happen whose condition has come to hold, all with the values before them; *again where there are any. NULL, or
- * the reason why they cannot.
+ * Lets all events happen whose conditions have become true, with the values before them; sets *again if there are any.
+ * Returns NULL, or the reason why they cannot.
  */
 const char *conditions_happen(struct Settlement *settlement, bool *again);
 

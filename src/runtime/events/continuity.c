@@ -7,7 +7,7 @@
 #include "evaluation/services.h"
 #include "instance/projection.h"
 
-/* In units of the scales of the state: less of a change may be rounding. */
+/* In units of the scales of the state: a smaller change may be a rounding error. */
 static const double least_kink = 1e-6;
 
 const char constraints_not_kept[] = "the constraints cannot be kept at an event";
@@ -47,7 +47,7 @@ double continuity_allowed_share(const struct Settlement *settlement) {
   return least_kink + 4.0 * settlement->overshoot * change;
 }
 
-/* The largest jump among so many energies or momenta, of those from first on, as a share of their size. */
+/* Returns the largest jump among count energies or momenta from first on, relative to their size. */
 static double share_of_jump(const struct Settlement *settlement, size_t first, size_t count) {
   size_t place = energy_place(settlement->switches) + first;
   const double *before = settlement->energy + first, *behind = settlement->value + place;
@@ -59,10 +59,7 @@ static double share_of_jump(const struct Settlement *settlement, size_t first, s
   return jump;
 }
 
-/*
- * Where an energy or a momentum jumps as the motion comes to a place, the velocities would have to jump with it, by a law
- * that the system does not tell.
- */
+/* Logs an energy or momentum that jumps: nothing determines how the velocities would have to jump with it. */
 static const char *check_energy(const struct Settlement *settlement) {
   bool by_events = settlement->jumped || settlement->set_mode || settlement->occasion == AT_CHANGE;
   if (settlement->energetic == NULL || by_events || settlement->occasion == AT_START) return NULL;
@@ -77,7 +74,7 @@ static const char *check_energy(const struct Settlement *settlement) {
   return "an energy jumps";
 }
 
-/* Evaluates value[] at any velocities, which tell pieces of gaps from one another, with a branch in one of its pieces. */
+/* Evaluates value[] for one piece of a branch, at arbitrary velocities, at which pieces of gaps differ. */
 static bool values_of_piece(struct Settlement *settlement, size_t branch, double piece, double *value) {
   struct Instance *instance = settlement->instance;
   size_t n = lagrangian.coordinate_count;
@@ -91,7 +88,7 @@ static bool values_of_piece(struct Settlement *settlement, size_t branch, double
   return true;
 }
 
-/* The contact whose gap differs in the pieces of a branch; contact_count for none. */
+/* Returns the contact whose gap differs between the pieces of a branch; contact_count for none. */
 static size_t find_corner(struct Settlement *settlement, size_t branch) {
   const struct SwitchTable *switches = settlement->switches;
   const double *one = settlement->value, *other = settlement->other_noise;
@@ -120,7 +117,7 @@ bool continuity_explain_corner(struct Settlement *settlement, size_t branch) {
   return true;
 }
 
-/* Whether the constraints hold as before in the branches that were switched to. */
+/* Checks that the constraints hold after branches have switched. Returns NULL, or the reason. */
 static const char *check_constraints(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   bool may_turn = may_turn_gaps(settlement) && !settlement->jumped;

@@ -10,15 +10,16 @@
 #include "events/settlement.h"
 #include "instance/projection.h"
 
+/* Steps of Newton's method to the end of a piece, or to a zero. */
 enum { APPROACH_LIMIT = 20 };
 
-/* Expressions of events that an importer has passed at once, one after another. */
+/* Expressions of events that an importer may pass in one step. */
 enum { LATE_LIMIT = 8 };
 
-/* A little further than to the zero itself, where rounding may leave a state beyond it. */
+/* Relative excess of the step back to a zero, so that rounding does not leave the state beyond it. */
 static const double surplus = 64.0 * DBL_EPSILON;
 
-/* How long before the motion was at the end of the piece that it has left furthest; 0 for none, NAN where it is unknown. */
+/* Returns the time in s since the motion left its pieces, the longest one; 0 if it has left none, NAN if unknown. */
 static double time_beyond(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double time = 0.0;
@@ -38,7 +39,7 @@ bool exchange_come_back(struct Instance *instance, struct Point *point) {
   double *state = settlement.rounded;
   memcpy(state, point->state, lagrangian.state_count * sizeof *state);
   point->state = state;
-  /* There are none here, and none are needed where places and times end the pieces. */
+  /* Accelerations do not exist here; pieces that end at positions and times need none. */
   memset(settlement.acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement.acceleration);
   for (int i = 0; i < APPROACH_LIMIT; i++) {
     settlement.switches->switching_values(point, settlement.acceleration, settlement.value);
@@ -51,10 +52,10 @@ bool exchange_come_back(struct Instance *instance, struct Point *point) {
   return false;
 }
 
-/* Those that have no value beyond the end of a piece have that of its end. */
+/* Gives indicators without a value beyond the end of a piece their values at its end. */
 static void complete_indicators(struct Instance *instance, double *value) {
   size_t count = indicator_count(lagrangian.switches);
-  double *completed = instance->switching_work + count; /* the first so many may be the values */
+  double *completed = instance->switching_work + count; /* before it, values may be stored */
   struct Point point = instance_point(instance);
   bool lacks = false;
   for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
@@ -64,16 +65,19 @@ static void complete_indicators(struct Instance *instance, double *value) {
     if (isnan(value[i])) value[i] = completed[i];
 }
 
-/* How far beyond 0 an importer is told of a zero: at most, and in units of what rounding makes of the indicator. */
+/* Distance beyond 0 at which a zero is reported: the largest one, and in units of the rounding error bound. */
 static const double largest_shift = 1e-11, shift_in_noise = 1e5;
 
-/* Of an indicator that rounding the state changes by noise, its own operations by rounding; of neither, the largest. */
+/* Returns the shift for rounding error bounds by the state (noise) and by the indicator's operations (rounding). */
 static double shift_of(double noise, double rounding) {
   double shift = fmax(shift_in_noise * noise, FLOOR_IN_NOISE * rounding);
   return shift > 0.0 && shift < largest_shift ? shift : largest_shift;
 }
 
-/* shift[i] of each indicator, with workspace. Small ones, as of a gap in large units, are shifted by less. */
+/*
+ * Computes shift[i] of each indicator; workspace follows. Small indicators, such as gaps in large units, get small
+ * shifts.
+ */
 static void find_shifts(struct Instance *instance, const double *value, double *shift) {
   size_t count = indicator_count(lagrangian.switches);
   double *rounding = shift + count, *rounded = rounding + count;
@@ -85,14 +89,14 @@ static void find_shifts(struct Instance *instance, const double *value, double *
 }
 
 /*
- * What an importer is told keeps its sign until the indicator is a little beyond 0, so that it is not 0 behind an event
- * (FMI 2.0, section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 leaves it on either side.
+ * A reported indicator keeps its sign until it is a little beyond 0, so that it is not 0 after an event (FMI 2.0,
+ * section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 is reported on leaving it to either side.
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   if (!indicators_at(instance, instance->situation->time, instance->state, value)) return false;
   size_t count = indicator_count(lagrangian.switches);
-  double *shift = instance->switching_work + count; /* the first so many may be the values */
+  double *shift = instance->switching_work + count; /* before it, values may be stored */
   complete_indicators(instance, value);
   find_shifts(instance, value, shift);
   for (size_t i = 0; i < count; i++) {
@@ -112,12 +116,13 @@ bool exchange_is_due(struct Instance *instance) {
 }
 
 /*
- * Events that look both ways. An importer is beyond the zero of their expression when it asks, and what turns the motion back there
- * would pass the zero again on the way back. The motion is taken back to the zero by its Taylor polynomial of second order, goes
- * through the event as in co-simulation, and forward again for the same time. Both errors are of third order in the lateness.
+ * Events that wait for crossings in both directions. An importer is beyond the zero of the expression when it asks. If
+ * the event turned the motion back there, it would cross the zero again. So the state goes back to the zero by its
+ * Taylor polynomial of second order, passes the event as in co-simulation, and goes forward by the same time. The
+ * errors are of third order in this time.
  */
 
-/* Whether an event looks both ways, and the importer came to the present state by integration. */
+/* True if an event waits for both directions, and the importer has integrated to the present state. */
 static bool may_turn_back(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool looks_both_ways = false;
@@ -125,7 +130,7 @@ static bool may_turn_back(const struct Instance *instance) {
   return looks_both_ways && switches->has_sides && instance->situation->changed != CHANGED_VALUES;
 }
 
-/* In s: how long ago an expression was 0 that has left its side; 0 for none. */
+/* Returns the time in s since an expression crossed 0; 0 if it has not. */
 static double lateness_of(const struct Settlement *settlement, size_t branch) {
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
   double side = mode_of(settlement, facts->mode), value = settlement->value[branch];
@@ -133,7 +138,7 @@ static double lateness_of(const struct Settlement *settlement, size_t branch) {
   return facts->is_side && side * value < 0.0 && side * rate < 0.0 ? value / rate : 0.0;
 }
 
-/* The expression that was passed first; branch_count for none. */
+/* Returns the expression that crossed first; branch_count for none. */
 static size_t find_late_branch(const struct Settlement *settlement) {
   size_t passed = settlement->switches->branch_count;
   double longest = 0.0;
@@ -146,7 +151,7 @@ static size_t find_late_branch(const struct Settlement *settlement) {
   return passed;
 }
 
-/* Moves the state by a time, with the accelerations that were evaluated last. */
+/* Moves the state by a time in s, with the accelerations of the last evaluation. */
 static void move_by(struct Settlement *settlement, double duration) {
   const double *acceleration = settlement_accelerations(settlement);
   double *position = settlement->state, *velocity = position + lagrangian.coordinate_count;
@@ -157,7 +162,7 @@ static void move_by(struct Settlement *settlement, double duration) {
   settlement->time += duration;
 }
 
-/* Moves the state back to the zero of a branch. False where that is not found. */
+/* Moves the state back to the zero of a branch by Newton's method. False if it does not converge. */
 static bool go_to_zero(struct Settlement *settlement, size_t branch) {
   for (int i = 0; i < APPROACH_LIMIT; i++) {
     double rate = settlement->value[branch_rate_place(settlement->switches, branch)];
@@ -170,7 +175,10 @@ static bool go_to_zero(struct Settlement *settlement, size_t branch) {
   return false;
 }
 
-/* Goes through the event at the first zero that was passed. *passes where there was one. NULL, or the reason why it cannot. */
+/*
+ * Handles the event at the first zero that was crossed; sets *passes if there was one. Returns NULL, or the reason for
+ * a failure.
+ */
 static const char *pass_late(struct Instance *instance, bool *passes, bool *changed) {
   double time = instance->situation->time, *state = instance->event_state, *before = state + lagrangian.state_count;
   size_t size = lagrangian.state_count * sizeof *state;
@@ -194,7 +202,7 @@ static const char *pass_late(struct Instance *instance, bool *passes, bool *chan
   return NULL;
 }
 
-/* What an importer sets in event mode may jump. */
+/* Lets frictions slide whose velocities an importer has set in event mode. */
 static void release_frictions(struct Instance *instance) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
   if (laws == NULL || instance->situation->changed != CHANGED_VALUES) return;
@@ -202,12 +210,12 @@ static void release_frictions(struct Instance *instance) {
   if (settlement_evaluate(&settlement)) laws->release(&settlement);
 }
 
-/* What an integrator may leave of the constraints, in units of the scales of the state; a state further away was set. */
+/* Largest residual by an integrator, in units of the scales of the state; a state further away was set. */
 static const double largest_deviation = 1e-3;
 
 /*
- * Takes the state onto the constraints of the present modes before these are judged: what an integrator leaves of them is no
- * motion, and a closed contact would take a rate of -1e-6 m/s of its gap for an impact. So small a change of a parameter is followed, too.
+ * Projects the state for the present modes before these are judged. The residual of an integrator is no motion: a
+ * closed contact would take a rate of -1e-6 m/s for an impact. The state follows small changes of parameters likewise.
  */
 static void return_to_constraints(struct Instance *instance, bool *changed) {
   double *state = instance->event_state;

@@ -6,15 +6,18 @@
 #include "evaluation/services.h"
 #include "instance/held.h"
 
-/* A state is not told from others nearer than the last digit of this share of its nominal value. */
+/* The rounding error of a state is at least that of this fraction of its nominal value. */
 static const double least_share = 0.1;
 
-/* Roundings make up to so many times what one of them makes. */
+/* Ratio of a rounding error bound to the change by one perturbation. */
 static const double noise_of_difference = 8.0;
-/* A sum with larger terms may swallow a step of one last digit, and shows one of so many. */
+/*
+ * Factor of the second pattern: a sum with larger terms may lose a change in the last digit, and keeps one of this
+ * size.
+ */
 static const double further = 8.0;
 
-/* The relative rounding of an operation, that of the library's functions included. */
+/* Relative rounding error of an operation or a library function. */
 static const double rounding_of_operation = DBL_EPSILON;
 
 bool indicator_is_force(const struct Instance *instance, size_t indicator) {
@@ -25,7 +28,7 @@ bool indicator_is_force(const struct Instance *instance, size_t indicator) {
   return friction_holds(instance, indicator - frictions);
 }
 
-/* Whether indicators are forces: some constraint of a contact or friction holds, or branches turn by one. */
+/* True if indicators need forces: a contact is closed, a friction sticks, or a branch switches by a force. */
 static bool feels_forces(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool holds = switches->feels_forces;

@@ -1,3 +1,14 @@
+/*
+ * Events in a communication step. After each solver step, events_pass() searches it for the first event, window by
+ * window (window.c, search.c). The first window is a little longer than the time between the last two events, and each
+ * next one is twice as long: a solver step may reach far beyond the next event. The state at the event comes from the
+ * dense output. settle() finds the modes and the state after it, and the solver restarts there.
+ *
+ * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding
+ * stop the motion. If zeros cannot be separated, the solver restarts with steps shorter by NEARER, at most NEARER_LIMIT
+ * times in a row. If windows may hide something however short they are, UNSURE_LIMIT of them stop the motion. So every
+ * communication step ends.
+ */
 #include "events/passing.h"
 
 #include <float.h>
@@ -14,26 +25,27 @@
 #include "events/window.h"
 #include "instance/time_laws.h"
 
-/* So many events within rounding have no end. */
+/* Consecutive events within rounding after which the motion stops. */
 enum { EVENT_LIMIT = 30 };
-/* Room for the words that name an indicator. */
+/* Length of the name of an indicator in messages. */
 enum { NAME_SIZE = 200 };
-/* So many windows in a communication step that may hide something have no end. */
+/* Windows in a communication step that may hide something, after which the motion stops. */
 enum { UNSURE_LIMIT = 1000 };
 
-/* Events of the same indicator that come nearer than this share of the time may gather. */
+/* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
 static const double crowding_share = 1e-6;
 
-/* Where events lie too close in a step of the solver, it is made so many times as short, and so often in a row. */
+/* If events are too close together, the solver's step is divided by the first, at most so often in a row. */
 enum { NEARER = 64, NEARER_LIMIT = 8 };
 
 /*
- * How far beyond a communication step its series is searched: so many communication steps, or so many times as far as it is
- * known, and up to which share of the time to an event, which is looked for again in its own communication step.
+ * Limits of a search beyond the communication step: in communication steps; relative to the part of the solver's step
+ * that is already searched. The last one is the fraction of the time to an event up to which the result is kept: the
+ * event is located in its own communication step.
  */
 static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
 
-/* What is looked at first, in units of the time between the last two events. */
+/* Length of the first window, relative to the time between the last two events. */
 static const double window_share = 1.25;
 
 static const char gathering[] =
@@ -43,7 +55,7 @@ static const char flutter[] = "a contact opens and closes there without end";
 static const char too_close[] = "events lie closer there than can be told";
 static const char no_modes[] = "with these parameters there is no acceleration there";
 
-/* The modes at a time, and what is calculated from them. NULL, or the reason why there are none. */
+/* Finds the modes at a time, and the values that depend on them. Returns NULL, or the reason for a failure. */
 static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
                             size_t indicator) {
   bool changed;
@@ -59,7 +71,7 @@ bool events_start(struct Instance *instance) {
   return problem == NULL;
 }
 
-/* What has no values is reported by others. */
+/* The caller reports a failed evaluation. */
 bool events_part(struct Instance *instance, double time) {
   const struct ContactLaws *contacts = lagrangian.switches->contact_laws;
   const struct FrictionLaws *frictions = lagrangian.switches->friction_laws;
@@ -82,7 +94,7 @@ const char *events_update(struct Instance *instance, bool *changed) {
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
   const struct TimeLaws *times = lagrangian.switches->time_laws;
   bool is_due = situation->waiting_event == 0 && times != NULL && times->is_due(instance);
-  /* Otherwise the modes agree already, and that of what goes from 0 is known from its event alone. */
+  /* Otherwise the modes agree already; the sign of an indicator that leaves 0 is known from its event alone. */
   if (situation->waiting_event == 0 && situation->changed != CHANGED_VALUES && !is_due) return NULL;
   enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
@@ -93,7 +105,7 @@ const char *events_update(struct Instance *instance, bool *changed) {
   return problem;
 }
 
-/* Lets the solver start anew at a time, in the state event_state. */
+/* Restarts the solver at a time, from the state in event_state. */
 static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step, double time) {
   const struct Solver *solver = lagrangian.solver;
   situation_begin(instance->situation, time);
@@ -101,7 +113,7 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
   return is_done ? NULL : "there is no memory for the solver";
 }
 
-/* The communication step ends before an event, whose modes the importer asks for. */
+/* Ends the communication step before an event, at which the importer asks for the modes. */
 static const char *stop_at_event(struct Instance *instance, struct CommunicationStep *step, double time,
                                  size_t indicator) {
   instance->situation->waiting_event = (int32_t)indicator + 1;
@@ -111,24 +123,21 @@ static const char *stop_at_event(struct Instance *instance, struct Communication
 }
 
 /*
- * Goes through an event, whose state is in event_state, or ends the step before it. NULL, or the reason why the motion ends
- * there.
+ * Handles an event, whose state is in event_state, or ends the step before it. Returns NULL, or the reason why the
+ * motion ends there.
  */
 static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
                               size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
   const struct SampleFacts *sample = sample_of(lagrangian.switches, indicator);
-  double moment = sample != NULL ? sample_time(instance, sample) : time; /* the same to rounding */
+  double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal to rounding */
   const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
   const char *obstacle = start_anew(instance, step, time);
   return problem != NULL ? problem : obstacle;
 }
 
-/*
- * Looks for the next event up to an end, in windows that begin somewhat longer than the last two events lay apart: the
- * solver's step may reach far beyond the next one. False where there is none. The time is NAN where that cannot be told.
- */
+/* Finds the next event up to an end. False if there is none. *time is NAN if it cannot be located. */
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double window = window_share * progress->distance;
@@ -150,17 +159,20 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
   return false;
 }
 
-/* Whether a search may go beyond the communication step: nothing hangs on inputs whose polynomials end with it. */
+/* True if the search may go beyond the communication step: the motion does not depend on inputs that end with it. */
 static bool may_go_further(const struct Instance *instance, const struct CommunicationStep *step,
                            const struct EventProgress *progress) {
   const struct Situation *situation = instance->situation;
   const struct Span *last = &situation->last_step;
-  bool is_new = last->start == step->start; /* as where values are set before each communication step */
+  bool is_new = last->start == step->start; /* as if values are set before each communication step */
   bool begins = progress->searched <= fmax(step->start, last->start) && progress->count == 0;
   return last->end > step->end && begins && !is_new && !situation->input_derivatives_set;
 }
 
-/* Searches a series that serves many communication steps for more than one of them, so that the next need not do it. */
+/*
+ * Searches a solver step that serves many communication steps beyond the present one, so that the next ones need no
+ * search.
+ */
 static void search_further(struct Instance *instance, const struct CommunicationStep *step,
                            struct EventProgress *progress) {
   struct Situation *situation = instance->situation;
@@ -183,8 +195,8 @@ static void search_further(struct Instance *instance, const struct Communication
 }
 
 /*
- * Far from the start of a long step the solver's polynomial is rounded by its largest numbers, which hides bounces that are tiny
- * against them: it starts anew from the last time that is known, with shorter steps. False where that does not help.
+ * Restarts the solver with shorter steps at the last known time. Far from the start of a long step, the rounding of its
+ * polynomial may hide tiny bounces. False if that does not help.
  */
 static bool go_nearer(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
   double reach = (instance->situation->last_step.end - progress->searched) / NEARER;
@@ -200,12 +212,12 @@ static bool is_of_contact(size_t indicator) {
   return indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
 }
 
-/* Bounces of contacts come to rest by themselves, however slowly; what <event> makes of one does not. */
+/* True for bounces of contacts, which come to rest by themselves; those that an <event> makes do not. */
 static bool is_bounce(const struct Instance *instance, size_t indicator) {
   return is_of_contact(indicator) && !indicator_is_force(instance, indicator);
 }
 
-/* Takes an event into the progress of the step. */
+/* Updates the progress of the step by an event. */
 static void count_event(const struct Instance *instance, const struct CommunicationStep *step, double time,
                         size_t indicator, struct EventProgress *progress) {
   double since_last = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
@@ -223,7 +235,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->searched = time;
 }
 
-/* What an indicator is of, in words. */
+/* Writes the name of an indicator's element. */
 static void name_indicator(size_t indicator, char *text, size_t size) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t friction = indicator - friction_indicator(switches, 0);
@@ -235,7 +247,7 @@ static void name_indicator(size_t indicator, char *text, size_t size) {
   else snprintf(text, size, "the friction '%s'", switches->frictions[friction].name);
 }
 
-/* The step ends before what cannot be told. */
+/* Ends the step before an event that cannot be resolved. */
 static const char *lose(struct Instance *instance, struct EventProgress *progress, size_t indicator) {
   char name[NAME_SIZE];
   progress->is_lost = true;
@@ -258,7 +270,7 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
   return too_close;
 }
 
-/* True, after logging it, where events gather in a corner of a gap. */
+/* True, after logging it, if the events accumulate at a corner of a gap. */
 static bool is_at_corner(struct Instance *instance, double time, size_t indicator) {
   if (indicator >= lagrangian.switches->branch_count) return false;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return false;
@@ -266,7 +278,10 @@ static bool is_at_corner(struct Instance *instance, double time, size_t indicato
   return continuity_explain_corner(&settlement, indicator);
 }
 
-/* The step ends at events that do not end: an importer in event mode, whose step began at one, would go on from one more. */
+/*
+ * Ends the step at events without end. An importer in event mode would go on by one more event at each step; so the
+ * step has not advanced for it.
+ */
 static const char *refuse_gathering(struct Instance *instance, const struct CommunicationStep *step,
                                     struct EventProgress *progress, size_t indicator) {
   char name[NAME_SIZE];
@@ -286,7 +301,7 @@ static const char *refuse_gathering(struct Instance *instance, const struct Comm
   return flutter;
 }
 
-/* Whether a sample is meant to be at the end of the communication step, which rounding has made a little earlier. */
+/* True if a sample is due at the end of the communication step, which rounding has made a little earlier. */
 static bool ends_at_sample(const struct Instance *instance, double end, size_t *branch) {
   for (size_t i = 0; i < lagrangian.switches->sample_count; i++) {
     *branch = lagrangian.switches->samples[i].branch;
@@ -295,7 +310,6 @@ static bool ends_at_sample(const struct Instance *instance, double end, size_t *
   return false;
 }
 
-/* Search, pass, settle, go on. */
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->situation->last_step.end, step->end), time;
   size_t indicator = 0;
@@ -333,7 +347,7 @@ const char *events_check(struct Instance *instance, double time) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
   if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
   struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
-  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* told by others */
+  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* the caller reports it */
   bool pushes = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
     for (size_t part = FRICTION_FORCE; part <= FRICTION_FORCE_BACK; part += FRICTION_FORCE_BACK - FRICTION_FORCE)

@@ -1,10 +1,10 @@
-/* How a communication step goes through events: the solver starts anew behind each of them. */
+/* Communication steps through events: the solver restarts after each of them. */
 #ifndef PASSING_H
 #define PASSING_H
 
 #include "instance/event_laws.h"
 
-/* The functions of the same names in struct EventLaws. */
+/* Implement the functions of these names in struct EventLaws. */
 bool events_start(struct Instance *instance);
 bool events_part(struct Instance *instance, double time);
 bool events_settle_change(struct Instance *instance, double time);

@@ -1,3 +1,26 @@
+/*
+ * Search for events: finds the first time in a window at which an indicator g_i(t) leaves its sign s_i, along the
+ * solver's dense output (L. F. Shampine, S. Thompson: Event location for ordinary differential equations, Computers and
+ * Mathematics with Applications 39, 2000, describe the problem).
+ *
+ * f(t) = s_i g_i(t) - floor is sampled at the nine nodes of its Chebyshev polynomial of degree 8. The polynomial's
+ * coefficients bound it over the whole window, not at samples alone (judge_signs()). It has no zero if c_0 exceeds the
+ * sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
+ * throughout, or if f is not negative at first and concave. The last two coefficients estimate the interpolation error,
+ * which must be small and is allowed for. Otherwise the window is halved, with new samples. So pairs of close zeros,
+ * and zeros at the very start, are found with any solver.
+ *
+ * window.h makes sure that the window is so short that no function in the indicators can hide between samples. So an
+ * event can be missed only within rounding, or if the estimate of the interpolation error fails.
+ *
+ * A single zero is located by Newton's method on the polynomial, and then by the Illinois method (M. Dowell, P.
+ * Jarratt: A modified regula falsi method, BIT 11, 1971) with a bisection at every third step. The search ends:
+ * halvings are limited to DEPTH_LIMIT, windows to WINDOW_LIMIT, and refinement stops at neighbouring doubles. Usually
+ * it costs nine evaluations of all indicators, and a few more for each zero.
+ *
+ * Indicators are uncertain by rounding. An event may leave one below 0 by that much: the floor is what it may fall to
+ * without another event.
+ */
 #include "events/search.h"
 
 #include <float.h>
@@ -11,31 +34,32 @@
 #include "events/window.h"
 #include "instance/time_laws.h"
 
-/* Windows that a search may look at. Where one that is not exact takes more than a few, it is left to the exact one. */
+/* Windows that a search may look at. A search that need not be exact leaves windows that take more to the exact one. */
 enum { WINDOW_LIMIT = 5000, FEW_WINDOWS = 24 };
 
+/* Halvings of a window; steps of the Illinois method; of Newton's method on polynomials; evaluations at its zero. */
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
-/* A step of Newton's method as short as this, of windows from -1 to 1, ends where the next one would not count. */
+/* Newton steps on [-1, 1] end below this length: the next one would be lost in rounding. */
 static const double near_zero = 1e-6;
 
-/* How far the slope leads beyond a zero: the next value then lies on the other side. */
+/* Factor of the step along the slope, so that the next value lies on the other side of the zero. */
 static const double overshoot = 1.1;
 
 struct Search {
   struct Instance *instance;
-  double *state, *rounded; /* state_count each */
-  double *values;          /* one a indicator */
-  double *samples;         /* CHEBYSHEV_NODES rows of them */
-  double *held;            /* the same with states on the constraints, where has_held */
-  double *exact;           /* one a indicator */
-  double *noise;           /* what rounding may make of each */
-  int windows;             /* that may still be looked at */
-  bool is_exact;           /* times are found to rounding, else ones a little before */
+  double *state, *rounded; /* state_count each: workspace */
+  double *values;          /* one for each indicator */
+  double *samples;         /* CHEBYSHEV_NODES rows of values */
+  double *held;            /* the same at projected states, if has_held */
+  double *exact;           /* one for each indicator: values at the start */
+  double *noise;           /* rounding error bounds of the indicators */
+  int windows;             /* number that may still be looked at */
+  bool is_exact;           /* times are found to rounding; else times before them */
   bool has_held;
-  bool projects;    /* states onto the constraints: what they hold at 0 is not what rounding makes of it */
-  double departure; /* the sign of what left 0 last */
-  double floor;     /* what an event has left of an indicator below 0, by rounding */
+  bool projects;    /* project states, so that indicators held at 0 by constraints stay 0 */
+  double departure; /* sign of the last indicator that left 0 */
+  double floor;     /* value to which the present indicator may fall without an event */
 };
 
 size_t search_work_count(void) {
@@ -57,7 +81,7 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
-/* The values at a time; NAN where there are none. */
+/* Evaluates the indicators at a time; NAN if they do not exist. */
 static void sample(struct Search *search, double time, double *values) {
   size_t count = indicator_count(lagrangian.switches);
   bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
@@ -66,7 +90,7 @@ static void sample(struct Search *search, double time, double *values) {
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
-/* Those at the nodes of a window; states: there, NULL where they are not all known. */
+/* Evaluates them at the nodes of a window. states: at the nodes; NULL if they are not all available. */
 static void sample_window(struct Search *search, double from, double to, const double *states) {
   double times[CHEBYSHEV_NODES];
   size_t count = indicator_count(lagrangian.switches);
@@ -95,9 +119,10 @@ static void measure_noise(struct Search *search, double time) {
   }
 }
 
+/* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the window must be halved. */
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
-/* f: values at the nodes, positive while the mode stays. */
+/* Judges f by its values at the nodes; it is positive while the mode stays. */
 static enum Verdict judge_signs(const double *f, double noise) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
@@ -105,28 +130,28 @@ static enum Verdict judge_signs(const double *f, double noise) {
     missing += isnan(f[k]) ? 1 : 0;
     if (!(fabs(f[k]) <= largest)) largest = isnan(f[k]) ? INFINITY : fabs(f[k]);
   }
-  if (missing > CHEBYSHEV_DEGREE) return STAYS; /* a branch inside of a piece that is closed */
+  if (missing > CHEBYSHEV_DEGREE) return STAYS; /* of an inactive piece of a branch */
   if (largest <= noise) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
   double reach = chebyshev_range(c);
-  if (reach <= noise) return f[0] < -noise ? FALLS : STAYS; /* unless it has fallen, it does not, whatever it is */
+  if (reach <= noise) return f[0] < -noise ? FALLS : STAYS; /* constant within rounding */
   double tail = chebyshev_tail(c);
   if (c[0] - reach > 2.0 * tail) return STAYS;
   if (tail > chebyshev_resolved * reach + noise) return UNKNOWN;
   chebyshev_derivative(c, d);
   double margin = chebyshev_tail_of_derivative * tail;
-  if (d[0] - chebyshev_range(d) > margin) return STAYS; /* it rises */
+  if (d[0] - chebyshev_range(d) > margin) return STAYS; /* f rises */
   if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
   chebyshev_derivative(d, curvature);
   bool is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
   if (!is_concave || f[CHEBYSHEV_DEGREE] < 0.0) return UNKNOWN;
-  if (f[0] >= -noise) return STAYS; /* as a body that is thrown */
-  /* One that leaves 0 and is back before the next node: rounding at its start would pass for the fall. */
+  if (f[0] >= -noise) return STAYS; /* f rises first, as the height of a thrown body */
+  /* If f leaves 0 and returns before the next node, rounding at the start could be taken for the fall. */
   return fmax(f[CHEBYSHEV_DEGREE], f[CHEBYSHEV_DEGREE - 1]) > noise ? FALLS : UNKNOWN;
 }
 
-/* A time, and f there: what is looked for less its floor. */
+/* A time, and the value of f there. */
 struct Sample {
   double time, f;
 };
@@ -136,8 +161,8 @@ static struct Sample sample_at(struct Search *search, size_t indicator, double s
 }
 
 /*
- * Narrows the two sides of a fall to where the polynomial through f, the values at the nodes, has it: its slope leads from one
- * side to the other, and a little beyond, so that both come near.
+ * Narrows the bracket of a fall around the zero of the polynomial through f, the values at the nodes. Steps along its
+ * slope, a little beyond the zero, bring both ends close.
  */
 static void narrow_fall(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
                         struct Sample *before, struct Sample *behind) {
@@ -162,10 +187,9 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
 }
 
 /*
- * Where f falls through 0, between a time before, where it is not negative, and one behind: of the two neighbouring times the
- * one where it is smaller, or the later one of a branch, where the next piece has a value, and of a force: what gives way
- * there moves in its direction, and not back by what the force still lacks.
- * By the Illinois method, with every third step a bisection.
+ * Locates the fall of f through 0 between before, where it is not negative, and behind. Returns the neighbouring time
+ * with the smaller value. For branches it is the later one, at which the next piece exists. So it is for forces: what
+ * gives way must move in its own direction. Uses the Illinois method, with a bisection at every third step.
  */
 static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;
@@ -203,8 +227,8 @@ static double refine_fall(struct Search *search, size_t indicator, double sign, 
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth);
 
 /*
- * The first time up to an end at which f = sign times the indicator less the floor falls below 0, from its values at the nodes
- * of a window that reaches to the end or further; INFINITY where it does not.
+ * Returns the first time up to end at which f falls below 0, from its values at the nodes of a window to end or beyond;
+ * INFINITY if there is none.
  */
 static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
                             double to, double end, int depth) {
@@ -222,7 +246,7 @@ static double first_fall_in(struct Search *search, size_t indicator, double sign
   return isfinite(first) ? first : first_fall(search, indicator, sign, middle, end, depth - 1);
 }
 
-/* The same in a window that was not looked at yet. */
+/* The same in a window without samples. */
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
   double f[CHEBYSHEV_NODES];
   if (--search->windows < 0) return INFINITY;
@@ -231,8 +255,8 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
 }
 
 /*
- * Where an indicator that rests at 0 leaves it: the last of some times at which it is still 0, with the sign that it has
- * then. INFINITY where it stays.
+ * Returns the last node at which an indicator at rest at 0 still is 0, and sets departure to its next sign; INFINITY if
+ * it stays at 0.
  */
 static double first_departure(struct Search *search, size_t indicator, double from, double to) {
   size_t count = indicator_count(lagrangian.switches);
@@ -245,10 +269,13 @@ static double first_departure(struct Search *search, size_t indicator, double fr
   return INFINITY;
 }
 
-/* How far a tangent may lead, as a share of the scale of the state. */
+/* Longest extrapolation along a tangent, as a fraction of the scale of the state. */
 static const double tangent_share = 1e-9;
 
-/* The time along the tangent, rate, from the state at last->end to the first zero of an indicator; INFINITY for none. */
+/*
+ * Returns the time along the tangent, rate, from the state at last->end to the first zero of an indicator; INFINITY for
+ * none.
+ */
 static double tangent_to_zero(struct Search *search, double time, const double *rate, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   double way = INFINITY, share = INFINITY, least = 8.0 * DBL_EPSILON * fabs(time);
@@ -270,8 +297,8 @@ static double tangent_to_zero(struct Search *search, double time, const double *
 }
 
 /*
- * The branch whose zero the state has passed by no more than rounding, which no search tells from none: its piece may have
- * no value there. branch_count for none.
+ * Returns the branch whose zero the state has passed by rounding, which the search ignores: its piece may end there.
+ * branch_count for none.
  */
 static size_t find_passed(struct Search *search, double time) {
   size_t count = lagrangian.switches->branch_count;
@@ -298,7 +325,7 @@ bool search_for_jump(struct Instance *instance, double *time, double *state, siz
   return true;
 }
 
-/* Whether it is the velocity of a friction that slides along a line. */
+/* True if the indicator is the velocity of a friction that slides along a line. */
 static bool is_of_sliding(const struct Search *search, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t first = friction_indicator(switches, 0);
@@ -307,8 +334,9 @@ static bool is_of_sliding(const struct Search *search, size_t indicator) {
 }
 
 /*
- * What an indicator may fall to without an event, that begins at a value: what an event, or the method, has made of it. The
- * method errs where it begins, too, in the velocity of what begins to slide and in the gap of what is lifted.
+ * Returns the value to which an indicator may fall without an event, from its value at the start: an event, or the
+ * method, may have left it below 0. The method's errors count for a velocity that begins to slide and for a gap that
+ * lifts.
  */
 static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
   double noise = FLOOR_IN_NOISE * search->noise[indicator], error = 0.0;
@@ -318,8 +346,8 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
 }
 
 /*
- * Whether it is a velocity that is 0 within rounding while constraints hold: they may be what holds it, and in a long step
- * rounding of the accelerations shows in it. A gap is left at once.
+ * True for a velocity that is 0 within rounding while constraints are active: they may keep it at 0. In a long step,
+ * rounding of the accelerations would show in it. A gap is left at once.
  */
 static bool may_be_held(const struct Search *search, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -327,7 +355,7 @@ static bool may_be_held(const struct Search *search, size_t indicator) {
   return !is_gap && fabs(search->exact[indicator]) <= search->noise[indicator] && solver_is_held(search->instance);
 }
 
-/* The values of one indicator at the nodes, with states on the constraints: those of all are found at once. */
+/* Sets the samples of one indicator to those at projected states, which are computed for all at once. */
 static void hold_nodes(struct Search *search, size_t indicator, double from, double to) {
   size_t count = indicator_count(lagrangian.switches);
   for (size_t k = 0; k < CHEBYSHEV_NODES && !search->has_held; k++)
@@ -338,8 +366,8 @@ static void hold_nodes(struct Search *search, size_t indicator, double from, dou
 }
 
 /*
- * The time of the first sample up to an end, and its branch; INFINITY where all are later. One that lies before the beginning was
- * passed by the rounding of communication points, and happens there.
+ * Returns the time of the first sample up to an end, and its branch; INFINITY if all are later. A sample before from
+ * was passed by rounding of communication points, and happens at from.
  */
 static double first_sample(const struct Instance *instance, double from, double to, size_t *branch) {
   double first = INFINITY;
@@ -362,7 +390,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   bool knows_noise = false;
   sample_window(&search, from, to, samples);
   *time = first_sample(instance, from, to, indicator);
-  bool leaves = false; /* it is a zero at which the indicator rested */
+  bool leaves = false; /* the zero is one that an indicator at rest leaves */
   for (size_t i = 0; i < count; i++) {
     if (sample_of(lagrangian.switches, i) != NULL) continue;
     double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
@@ -378,7 +406,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     double found = sign == 0.0 ? first_departure(&search, i, from, to)
                                : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);
     bool is_lost = search.windows < 0;
-    /* What it leaves with is known once what falls there too has switched, such as a friction. */
+    /* An indicator at rest gets its sign after the others at this time have switched, such as a friction. */
     if (!is_lost && !(found < *time) && !(leaves && found == *time && sign != 0.0)) continue;
     *time = is_lost ? NAN : found;
     *indicator = i;

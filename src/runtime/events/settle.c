@@ -1,3 +1,14 @@
+/*
+ * Event resolution: consistent modes, velocities and state after an event. Several mechanisms may act at once: impacts
+ * and contacts that close or open, pieces of functions, frictions that stick or slip, and <event> elements. Each round
+ * evaluates everything and tries the mechanisms in the order of actions[], up to the first that changes something. The
+ * rounds end when none does: then all modes agree with the state. A mode that keeps switching is an error of its own,
+ * and so are more than ROUND_LIMIT rounds. A round costs a few evaluations of the accelerations, which also bound their
+ * rounding errors.
+ *
+ * Then velocities are projected onto the constraints, and the result is checked: energies and positions must not jump
+ * where no event sets them, and contacts and frictions must obey their laws.
+ */
 #include "events/settle.h"
 
 #include <string.h>
@@ -44,7 +55,10 @@ static const char *tell_friction_modes(struct Settlement *settlement, bool *agai
   return laws == NULL || laws->tell(settlement, again) ? NULL : no_accelerations;
 }
 
-/* An importer comes to an event a little late: velocities that stick from it on are at rest before their side is asked for. */
+/*
+ * Switches the signs of the expressions of events. An importer comes to an event late: velocities that stick from it on
+ * are brought to rest first.
+ */
 static const char *switch_sides(struct Settlement *settlement, bool *again) {
   if (!settlement->switches->has_sides) return NULL;
   if (!settlement->lags) return branches_switch(settlement, true, again);
@@ -53,13 +67,13 @@ static const char *switch_sides(struct Settlement *settlement, bool *again) {
   return settlement_push(settlement) ? NULL : constraints_not_kept;
 }
 
-/* What a round tries in turn, up to the first that changes something. */
+/* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Settlement *settlement, bool *again) = {
     act_by_contacts,    switch_pieces,       act_by_frictions, settle_contact_forces,
     let_touching_share, tell_friction_modes, switch_sides,     conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
-/* One round; *again where it changed something. */
+/* Makes one round; sets *again if it changed something. */
 static const char *settle_once(struct Settlement *settlement, bool *again) {
   const char *problem = NULL;
   *again = false;
@@ -79,7 +93,7 @@ static const char *settle_in_rounds(struct Settlement *settlement) {
   return problem;
 }
 
-/* Modes as the signs of the start values say, or what the solver has left of the constraints. */
+/* Sets the modes to the signs of the start values, or projects the state that the solver has left. */
 static const char *begin_settlement(struct Settlement *settlement) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
   if (settlement->occasion != AT_START) return continuity_begin(settlement);
@@ -89,13 +103,13 @@ static const char *begin_settlement(struct Settlement *settlement) {
   return laws->check_gaps(settlement);
 }
 
-/* Velocities that have jumped keep the constraints. */
+/* Projects velocities that have jumped onto the constraints. */
 static const char *push(struct Settlement *settlement) {
   bool has_to_keep = settlement->jumped && lagrangian.constraints.projection != NULL;
   return has_to_keep && !settlement_push(settlement) ? constraints_not_kept : NULL;
 }
 
-/* What must hold of contacts and frictions behind an event. */
+/* Checks contacts and frictions after an event. Returns NULL, or the violated law. */
 static const char *check_laws(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   const char *problem = NULL;
@@ -106,8 +120,8 @@ static const char *check_laws(struct Settlement *settlement) {
 }
 
 /*
- * As the modes say: the last that looked at forces may have tried others. In exchange the event mode itself takes up what an
- * importer went too far.
+ * Projects the state for the final modes: the last forces may be those of modes that were tried. An importer that
+ * integrates projects its state itself, in event mode.
  */
 static const char *keep_on_constraints(const struct Settlement *settlement) {
   bool has_to_keep = settlement->occasion != AT_START && settlement->occasion != IN_EXCHANGE;
@@ -122,7 +136,7 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
   struct Settlement settlement = settlement_at(instance, time, state, AT_CHANGE);
   struct Point point = solver_point(instance, time, state);
   size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
-  /* Beside a jam forces may be too large to be told: without any. */
+  /* Near a jam, forces may be too large to be determined: evaluate without them. */
   memset(settlement.acceleration, 0, rows * sizeof *settlement.acceleration);
   memset(settlement.noise, 0, settlement_value_count(lagrangian.switches) * sizeof *settlement.noise);
   lagrangian.switches->switching_values(&point, settlement.acceleration, settlement.value);
@@ -130,8 +144,8 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
 }
 
 /*
- * Logs a friction that jams a contact, or a constraint, as where it makes the equations of motion singular; false where none
- * does.
+ * Logs a friction that jams a contact or a constraint, as where it makes the equations of motion singular. False if
+ * none does.
  */
 static bool explain_jam(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
@@ -144,7 +158,7 @@ static bool explain_jam(struct Settlement *settlement) {
   return jams;
 }
 
-/* What has no accelerations by its own mass matrix is told as that. */
+/* Logs that accelerations are missing for the frictions. A singular mass matrix is reported as such. */
 static void blame_frictions(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (switches->friction_count > 0 && settlement->instance->singular == 0)

@@ -1,22 +1,18 @@
-/*
- * The modes behind an event. Rounds of the following go on until one changes nothing: contacts; branches of pieces; frictions
- * that stick or slip; the sides of the expressions of events; and these events, each of which happens when its condition comes
- * to hold.
- */
+/* Event resolution: the modes and the state after an event (settle.c). */
 #ifndef SETTLE_H
 #define SETTLE_H
 
 #include "instance/event_laws.h"
 
 /*
- * Brings the modes into agreement with the state at a time, with impacts and events, which change the state. indicator is the one
- * whose sign changed, for AT_EVENT. changed tells whether anything did. NULL, or the reason why the motion cannot go on, after
- * logging what is to blame.
+ * Brings the modes into agreement with the state at a time. Impacts and events may change the state. indicator: the one
+ * whose sign changed, for AT_EVENT. Sets *changed if anything changed. Returns NULL, or the reason why the motion
+ * cannot go on, after logging the cause.
  */
 const char *settle(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                    bool *changed);
 
-/* Logs which contact friction jams at a state where the motion ends; false where it jams none. */
+/* Logs which contact friction jams at a state where the motion ends; false if it jams none. */
 bool settle_explain(struct Instance *instance, double time, double *state);
 
 #endif

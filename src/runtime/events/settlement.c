@@ -17,7 +17,7 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* Returns how many numbers there are; without a workspace they are counted alone. */
+/* Assigns the parts of the workspace, and returns its size; with work NULL the size alone. */
 static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = settlement_value_count(switches), indicators = indicator_count(switches);
@@ -25,7 +25,7 @@ static size_t lay_out_settlement(struct Settlement *settlement, double *work) {
     double **place;
     size_t count;
   } parts[] = {
-      /* These begin with 0. */
+      /* initially 0 */
       {&settlement->largest, values},
       {&settlement->flips, indicators},
       {&settlement->rate, switches->branch_count},
@@ -103,7 +103,7 @@ static void add_noise(struct Settlement *settlement, size_t place, double noise)
   settlement->noise[place] = fmax(settlement->noise[place], noise);
 }
 
-/* What a jump leaves of a velocity is rounded as what it had before, in a system of equations that may be nearly singular. */
+/* Rounding error of a velocity after a jump, relative to its size before: the equations may be nearly singular. */
 static const double rounding_of_jumps = 1e-11;
 
 static void measure_velocity(struct Settlement *settlement, size_t place) {
@@ -116,7 +116,10 @@ static bool values_rounded(struct Settlement *settlement, bool otherwise, double
   return settlement_values(settlement, settlement->rounded, value);
 }
 
-/* Where large terms cancel, roundings of the state may be swallowed. */
+/*
+ * Adds the rounding errors of the values' own operations, which perturbations of the state may miss where large terms
+ * cancel.
+ */
 static void take_roundings(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double *rounding = settlement->rounding;
@@ -134,7 +137,7 @@ static double holding_force(const struct Settlement *settlement, size_t friction
   return settlement->acceleration[lagrangian.coordinate_count + constraint];
 }
 
-/* Rounding in one way may leave a difference as it is; what it does in another is measured at the beginning of an event. */
+/* Perturbs in two patterns, so that the errors cannot cancel in both; the second one is evaluated once an event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
   double *noise = settlement->noise, *other = settlement->other_noise, factor, other_factor = 0.0;

@@ -1,4 +1,7 @@
-/* An event on its way: what finds the modes and the state behind it shares this. */
+/*
+ * State of an event resolution in progress (settle.c), shared by the files that find modes and the state after an
+ * event.
+ */
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
@@ -10,143 +13,149 @@ struct Settlement {
   double time;
   double *state;
   enum Occasion occasion;
-  size_t indicator;           /* for AT_EVENT */
-  double *value, *noise;      /* value[], and what rounding may make of it */
-  double *other_noise;        /* by rounding in another way, at the beginning of the event */
-  double *force_noise;        /* what rounding may make of the force of each friction's constraint */
-  double *began;              /* the mode of each friction, at the beginning of the event */
-  double *largest;            /* of velocities and rates in value[], since the start of the event */
-  double *condition;          /* as it was before the last change */
-  double *happened;           /* 1 of each event that happened in this round, else 0 */
-  double *flips, *was_opened; /* of each branch and friction; of each contact: -1 where it closed again by its force */
-  double *rate;               /* of each branch, before it flipped last; 0 where it did not */
-  double *takes_part;         /* of each contact, then of each friction: 1 in what pushes.h looks at, else 0 */
-  double *acceleration;       /* and forces of constraints */
+  size_t indicator;           /* of the event, for AT_EVENT */
+  double *value, *noise;      /* value[] of the switch table, and its rounding error bounds */
+  double *other_noise;        /* rounding error bounds by the second pattern, at the start of the event */
+  double *force_noise;        /* rounding error bound of the force of each friction's constraint */
+  double *began;              /* mode of each friction at the start of the event */
+  double *largest;            /* of velocities and rates in value[] since the start of the event */
+  double *condition;          /* value of each condition before the last change */
+  double *happened;           /* 1 for each event that happened in this round, else 0 */
+  double *flips, *was_opened; /* switches in the event; contacts: 1 opened, -1 closed by force, else 0 */
+  double *rate;               /* of each branch before its last switch; 0 if it has not switched */
+  double *takes_part;         /* of each contact, then each friction: 1 if in struct Pushes, else 0 */
+  double *acceleration;       /* accelerations, then constraint forces */
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;
-  const struct BranchFacts *switched;  /* the branch that was first; NULL for none */
-  double overshoot;                    /* in s: how long ago its indicator was 0 */
-  const struct BranchFacts *energetic; /* the first that holds energies; NULL for none */
-  double *energy;                      /* energies and momenta before it */
-  bool changed, jumped;                /* jumped: velocities, or coordinates did */
-  bool moved, thrown, set_mode;        /* an event has set coordinates; coordinates or velocities; a mode */
-  bool lags;                           /* frictions have changed, and velocities were not taken to what holds since */
-  bool came_to_rest;                   /* contacts have, in the last round of them */
-  bool is_evaluated;                   /* value[] and the noise are there */
-  bool has_started;                    /* contacts and frictions are as they start, for AT_START */
-  bool has_shared;                     /* what touches at rest shares the load */
-  bool has_several_motions;            /* frictions have, which was logged */
+  const struct BranchFacts *switched;  /* the first branch that switched; NULL for none */
+  double overshoot;                    /* time in s since its indicator was 0 */
+  const struct BranchFacts *energetic; /* the first with holds_energy; NULL for none */
+  double *energy;                      /* energies and momenta before it switched */
+  bool changed, jumped;                /* jumped: velocities or coordinates have */
+  bool moved, thrown, set_mode;        /* events have set coordinates; coordinates or velocities; a mode */
+  bool lags;                           /* frictions have switched, and velocities were not projected since */
+  bool came_to_rest;                   /* contacts have, in their last round */
+  bool is_evaluated;                   /* value[] and noise are valid */
+  bool has_started;                    /* contacts and frictions have their modes of the start, for AT_START */
+  bool has_shared;                     /* contacts at rest share the load */
+  bool has_several_motions;            /* several motions of the frictions were logged */
   bool has_searched_jam;               /* all modes of frictions at rest were tried */
-  bool has_found_forces;               /* modes were set by the forces of all at rest at once */
+  bool has_found_forces;               /* modes were set from a solution for all forces at rest */
   int impacts, lifts;
   struct {
-    size_t friction;        /* that has switched, where nothing else has changed since; friction_count for none */
-    double mode, certainty; /* which it had, and by how many times rounding it left that */
+    size_t friction;        /* that switched, if nothing else has changed since; else friction_count */
+    double mode, certainty; /* its mode before, and how many rounding errors supported leaving it */
   } last;
 };
 
-/* What a message is logged with where the motion cannot go on: a start is an error, a step is discarded. */
+/* Returns the status of messages if the motion cannot go on: an error at the start, else a discarded step. */
 static inline enum Status settlement_status(const struct Settlement *settlement) {
   return settlement->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
 }
 
 struct Pushes;
 
-/* What contacts do; FMUs without any do not hold it. */
+/* Contacts; FMUs without any do not link them. */
 struct ContactLaws {
   /*
-   * One impact, or contacts that come to rest, or one that parts; *again where there was any. NULL, or the reason why the
-   * motion cannot go on.
+   * Handles one impact, contacts that come to rest, or one that opens; sets *again if there was any. Returns NULL, or
+   * the reason why the motion cannot go on.
    */
   const char *(*act)(struct Settlement *settlement, bool *again);
   /*
-   * Behind frictions: opens and closes contacts at rest as the only solution for their forces says. NULL, or the reason why
-   * there is none.
+   * After frictions: opens and closes contacts at rest according to the unique solution for their forces. Returns NULL,
+   * or the reason why there is none.
    */
   const char *(*settle_forces)(struct Settlement *settlement, bool *again);
-  /* Behind those: closes what touches at rest and shares the load; *again where there is any. NULL, or as above. */
+  /*
+   * After those: closes contacts that touch at rest, so that they share the load; sets *again if there are any. Returns
+   * as above.
+   */
   const char *(*share_load)(struct Settlement *settlement, bool *again);
-  /* Moves start values that penetrate contacts by their rounding; false where velocities do not follow. */
+  /* Moves start values that penetrate contacts by rounding; false if velocities cannot follow. */
   bool (*lift_start)(struct Settlement *settlement);
-  /* Opens contacts that were moved apart, before constraints are kept; false after logging one that was pushed in. */
+  /* Opens contacts that were moved apart, before the projection; false after logging one that penetrates. */
   bool (*part)(struct Settlement *settlement);
-  /* Logs a contact that is penetrated; NULL where there is none, else the reason to refuse it. */
+  /* Logs a contact that is penetrated. Returns NULL if there is none, else the reason to stop. */
   const char *(*check_gaps)(const struct Settlement *settlement);
-  /* Logs the contact that jams where the solver stopped; false where none does. */
+  /* Logs the contact that jams where the solver stopped; false if none does. */
   bool (*explain)(struct Settlement *settlement);
 };
 
-/* What frictions do; FMUs without any do not hold it. */
+/* Frictions; FMUs without any do not link them. */
 struct FrictionLaws {
-  /* One friction that begins to stick or to slide; *again where there was any. NULL, or the reason why there is no mode. */
+  /*
+   * Lets one friction stick or slide; sets *again if there was any. Returns NULL, or the reason why there is no
+   * consistent mode.
+   */
   const char *(*act)(struct Settlement *settlement, bool *again);
-  /* Brings the modes that are told up to date; *again where that changed any. False where there are no accelerations. */
+  /* Updates the reported modes; sets *again if any changed. False if the accelerations do not exist. */
   bool (*tell)(struct Settlement *settlement, bool *again);
-  /* Logs that something, as accelerations, is not found for the frictions, of which there are some. */
+  /* Logs that something, such as accelerations, is missing for the frictions; there must be some. */
   void (*blame)(const struct Settlement *settlement, const char *missing);
-  /* Logs a friction whose force is negative; NULL where there is none, else the reason to refuse it. */
+  /* Logs a friction with a negative force. Returns NULL if there is none, else the reason to stop. */
   const char *(*check)(struct Settlement *settlement);
-  /* Lets frictions slide that stick at a velocity which is not 0. */
+  /* Lets frictions slide that stick at a nonzero velocity. */
   void (*release)(struct Settlement *settlement);
-  /* Finds the one motion of frictions that follow from forces; false where there is none. As jams_resolve(). */
+  /* Finds the unique motion of frictions that follow from forces; false if there is none (jams_resolve()). */
   bool (*resolve_jam)(struct Settlement *settlement);
-  /* Logs a friction that jams a constraint; false where none does. As frictions_explain_jam(). */
+  /* Logs a friction that jams a constraint; false if none does (frictions_explain_jam()). */
   bool (*explain_jam)(struct Settlement *settlement, size_t branch);
-  /* Sets the modes of frictions in planes to what start values say, as guess in struct EventLaws; NULL without any. */
+  /* Sets the modes of frictions in planes from start values, as guess of struct EventLaws; NULL without any. */
   void (*guess)(struct Instance *instance);
-  /* Lets the friction in a plane slide, or stick; NULL without any. */
+  /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Settlement *settlement, size_t plane, bool slides);
   /*
-   * The impulse of each push where some are of frictions in a plane, such that the rates, and those that the impulses add, fulfil
-   * the law of impacts. False where none is found. NULL without any.
+   * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact, such that the rates
+   * after it fulfil the law of impacts. False if none are found. NULL without frictions in planes.
    */
   bool (*find_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                         double *impulse);
-  /* Whether other impulses than these fulfil the law at the rates, and make another motion. */
+  /* True if other impulses also fulfil the law of impacts, with another motion. */
   bool (*has_other_impulses)(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                              const double *impulse);
 };
 
-/* The numbers in value[]. */
+/* Returns the numbers in value[]. */
 size_t settlement_value_count(const struct SwitchTable *switches);
 
-/* Numbers of workspace, and where they are. */
+/* Return the numbers of workspace, and a settlement in it. */
 size_t settlement_work_count(void);
 struct Settlement settlement_of(struct Instance *instance);
 
-/* At a time and a state, for an occasion. */
+/* Returns a settlement at a time and a state, for an occasion. */
 struct Settlement settlement_at(struct Instance *instance, double time, double *state, enum Occasion occasion);
 
-/* Brings all values up to date with the modes and the state; false where there are no accelerations. */
+/* Evaluates all values and rounding error bounds for the present modes and state. False without accelerations. */
 bool settlement_evaluate(struct Settlement *settlement);
 
-/* The values at a state, without what rounding may make of them. */
+/* Evaluates the values at a state, without rounding error bounds. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
 
 /*
- * Evaluates value[] at a point as if there were no accelerations, and no force but that of one constraint; constraints.count for
+ * Evaluates value[] at a point with accelerations of 0, and no force but that of one constraint; constraints.count for
  * none.
  */
 void settlement_values_of_force(const struct Settlement *settlement, const struct Point *point, size_t constraint,
                                 double force, double *value);
 
-/* The accelerations as the last evaluation left them. */
+/* Returns the accelerations of the last evaluation. */
 const double *settlement_accelerations(const struct Settlement *settlement);
 
-/* Moves the velocities onto the constraints that hold, the least in the metric of M. False where there is none. */
+/* Projects the velocities onto the active constraints, by the least change in the metric of M. False if that fails. */
 bool settlement_push(struct Settlement *settlement);
 
-/* Whether anything moves along a constraint that holds, as settlement_push() found: in a plane nothing moves across it. */
+/* True if velocities change along an active constraint, by settlement_push(); false if its row of J is 0. */
 bool settlement_moves(const struct Settlement *settlement, size_t constraint);
 
-/* Moves the coordinates onto the constraints that hold, the least in the metric of M. False where that cannot be. */
+/* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */
 bool settlement_move(struct Settlement *settlement);
 
 static inline bool is_hit(const struct Settlement *settlement, size_t indicator) {
   return settlement->occasion == AT_EVENT && settlement->indicator == indicator;
 }
 
-/* Whether gaps may have jumped or turned, by a branch or a mode. */
+/* True if a branch or a mode may have changed gaps or their rates. */
 static inline bool may_turn_gaps(const struct Settlement *settlement) {
   return settlement->switched != NULL || settlement->set_mode;
 }
@@ -157,11 +166,11 @@ static inline double mode_of(const struct Settlement *settlement, size_t mode) {
 
 void settlement_set_mode(struct Settlement *settlement, size_t mode, double value);
 
-/* What is tried out in between leaves no mode behind. */
+/* Save and restore the modes, around trials of others. */
 void settlement_keep_modes(struct Settlement *settlement);
 void settlement_restore_modes(struct Settlement *settlement);
 
-/* What rounding of the state and the time leaves of a value that changes at a rate. */
+/* Returns the rounding error bound of a value, with the rounding of time at its rate. */
 double settlement_noise(const struct Settlement *settlement, size_t place, size_t rate);
 
 #endif

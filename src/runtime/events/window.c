@@ -1,3 +1,16 @@
+/*
+ * Windows for the search for events. A hill such as exp(-(x/w)^2) may be flat where a window begins, and lie between
+ * its samples. So a window must be short enough for every elementary function in the indicators.
+ *
+ * The states at the Chebyshev nodes of the window, by the dense output of any solver, give polynomials of degree 8 in
+ * the time from its middle. Forces and accelerations in the indicators are expanded likewise. series_limit.h bounds
+ * each function over the disc around the middle: the arguments' polynomials must not move so far that the function
+ * changes by more than a factor of e^5, or meets a singularity. A polynomial whose last coefficients are not small does
+ * not describe the motion, and shortens the window, too.
+ *
+ * An attempt costs nine states and a series of order 8. A failed one shortens the window to between 1/8 and 1/2. So the
+ * loop ends, at the resolution of time at the latest.
+ */
 #include "events/window.h"
 
 #include <float.h>
@@ -9,26 +22,26 @@
 #include "events/chebyshev.h"
 #include "events/indicators.h"
 
-/* What the last coefficients may have of all, for a polynomial that is the motion. */
+/* Largest ratio of the last coefficients to the range of a polynomial that describes the motion. */
 static const double resolved_motion = 1e-3;
 
-/* What of the largest force is noise, and more where rounding of the state makes more. */
+/* Rounding error of forces relative to the largest one; more if rounding of the state makes more. */
 static const double force_noise = 1e-10;
 
 struct Window {
   struct Instance *instance;
   double from, to;
-  double *states, *accelerations; /* CHEBYSHEV_NODES rows */
-  double *rounded;                /* a state, then the accelerations there */
+  double *states, *accelerations; /* CHEBYSHEV_NODES rows each */
+  double *rounded;                /* a state, and then the accelerations there */
   Series *x, *input, *work;
-  const char *function; /* or the constraint that shortens it; NULL for none */
+  const char *function; /* or constraint that limits the window; NULL for none */
 };
 
 size_t window_sample_count(void) {
   return CHEBYSHEV_NODES * lagrangian.state_count;
 }
 
-/* The states at the nodes of a window, a row each; NULL where they are not all known. */
+/* Computes the states at the nodes of a window, a row each; NULL if they are not all available. */
 static const double *sample_states(struct Instance *instance, double from, double to) {
   double times[CHEBYSHEV_NODES], *states = instance->switching_work;
   chebyshev_times(from, to, times);
@@ -53,7 +66,7 @@ static struct Window window_of(struct Instance *instance, double from, double to
   return window;
 }
 
-/* The accelerations and forces, where they are looked at. False where there are none. */
+/* Evaluates the accelerations and forces in the indicators, if there are any. False if they do not exist. */
 static bool sample_accelerations(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count;
   for (int node = 0; node < CHEBYSHEV_NODES && count > 0; node++) {
@@ -66,7 +79,7 @@ static bool sample_accelerations(const struct Window *window) {
   return true;
 }
 
-/* The largest of them: what is left of one at rest, where others cancel in it, is their noise. */
+/* Returns the largest of them: a force near 0, where large ones cancel, has their rounding error. */
 static double largest_acceleration(const struct Window *window) {
   size_t count = CHEBYSHEV_NODES * lagrangian.switches->watched_acceleration_count;
   double largest = 0.0;
@@ -75,8 +88,8 @@ static double largest_acceleration(const struct Window *window) {
 }
 
 /*
- * What rounding of the state makes of them in the middle: just before a body rolls or rests, the direction of its friction in a
- * plane is that of a velocity of which little more than rounding is left.
+ * Returns their rounding error by rounding of the state in the middle. It is large just before a body rolls or rests:
+ * the slip direction is then that of a velocity near rounding.
  */
 static double noise_in_window(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count, middle = CHEBYSHEV_NODES / 2;
@@ -93,7 +106,7 @@ static double noise_in_window(const struct Window *window) {
   return noise;
 }
 
-/* The series about the middle of one of the sampled numbers; false where its polynomial is not the motion, up to noise. */
+/* Expands a sampled quantity about the middle. False if its polynomial does not describe it, up to noise. */
 static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double noise,
                            double *series) {
   double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];
@@ -104,7 +117,10 @@ static bool expand_sampled(const struct Window *window, const double *samples, s
   return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, noise);
 }
 
-/* False where one is not resolved: the force of a constraint, if there is such, shortens the window. */
+/*
+ * Expands the accelerations and forces. False if one is not resolved; a constraint's force is named in
+ * window->function.
+ */
 static bool expand_accelerations(struct Window *window, double noise) {
   size_t count = lagrangian.switches->watched_acceleration_count, i = count;
   bool is_resolved = true;
@@ -118,7 +134,7 @@ static bool expand_accelerations(struct Window *window, double noise) {
   return is_resolved;
 }
 
-/* Half the length of a window about the same middle that hides nothing; 0 where that is not known. */
+/* Returns half the length of a window about the same middle that hides nothing; 0 if unknown. */
 static double sure_half(struct Window *window) {
   const struct SwitchTable *switches = lagrangian.switches;
   double middle = chebyshev_time(window->from, window->to, CHEBYSHEV_NODES / 2);

@@ -1,4 +1,4 @@
-/* The law of impacts with Coulomb's cone, for pushes that contacts and frictions share; see cone_impulses.c. */
+/* The law of impacts with Coulomb's friction cone (cone_impulses.c). */
 #ifndef CONES_H
 #define CONES_H
 
@@ -7,22 +7,21 @@
 struct Cones {
   const struct Settlement *settlement;
   const struct Pushes *pushes;
-  const double *rate; /* of each push before the impact */
+  const double *rate; /* of each impulse, before the impact */
   double *impulse;
-  double *
-      scale; /* of each push: what an impulse of 1 changes its own rate by, in a plane the most that it does; 0 for none */
+  double *scale; /* change of the own rate by each unit impulse, in a plane the largest; 0 if there is none */
 };
 
-/* The rate of a push behind the impact. */
+/* Returns the rate of an impulse after the impact. */
 double cones_rate_behind(const struct Cones *cones, size_t row);
 
-/* What the contacts let a friction push. */
+/* Returns the friction limit, from the impulses of the contacts. */
 double cones_limit(const struct Cones *cones, size_t row);
 
-/* How many rows the push at a row has that are one in the law: 2 for a friction in a plane. */
+/* Returns the number of rows of the impulse at a row: 2 for a friction in a plane. */
 size_t cones_row_count(const struct Cones *cones, size_t row);
 
-/* The largest impulse, as the rate that it makes by itself. */
+/* Returns the largest impulse, as the rate that it makes alone. */
 double cones_largest(const struct Cones *cones);
 
 #endif

@@ -1,10 +1,10 @@
-/* Full pivoting, for Gauss elimination. */
+/* Complete pivoting for Gauss elimination. */
 #ifndef PIVOTING_H
 #define PIVOTING_H
 
 #include <stddef.h>
 
-/* A matrix by rows, with the number of each column of it: columns change places. */
+/* A matrix by rows, and the original index of each column, since columns are exchanged. */
 struct Pivoting {
   size_t rows, columns;
   double *matrix, *order;
@@ -13,8 +13,8 @@ struct Pivoting {
 void pivoting_begin(const struct Pivoting *pivoting);
 
 /*
- * The largest element from row and column k on comes to their crossing, from *row, with which row k has changed places. Returns its
- * size.
+ * Moves the largest element from row and column k on to position (k, k). *row: the row with which row k was exchanged.
+ * Returns the size of the element.
  */
 double pivoting_take(const struct Pivoting *pivoting, size_t k, size_t *row);
 

@@ -5,8 +5,8 @@
 #include "planes/plane_state.h"
 
 /*
- * One that sticks and comes to its limit: those that can take what it carries share all of it, within their limits, or begin to
- * slide together. False where they cannot, or need not.
+ * Handles a sticking friction that reaches its limit: the frictions that can take its load share it within their
+ * limits, or begin to slide together. False if they cannot, or need not.
  */
 bool plane_loads_share(struct Settlement *settlement, size_t plane);
 

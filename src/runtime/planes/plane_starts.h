@@ -1,14 +1,13 @@
-/* In which direction friction in a plane begins to slide. */
+/* Direction in which friction in a plane begins to slide. */
 #ifndef PLANE_STARTS_H
 #define PLANE_STARTS_H
 
 #include "planes/plane_state.h"
 
 /*
- * Turns the headings of all that are at rest and begin to slide until each accelerates along its own, *changed where any was not
- * so. *stays is one
- * that accelerates against it in each direction, so that it has to stick; plane_count for none. False where there are no
- * accelerations, or no headings.
+ * Rotates the slip directions of all frictions that begin to slide until each accelerates along its own; sets *changed
+ * if one did not. *stays: a friction that accelerates against every direction, and must stick; plane_count for none.
+ * False if accelerations or directions do not exist.
  */
 bool plane_headings_find(struct Settlement *settlement, bool *changed, size_t *stays);
 

@@ -1,6 +1,6 @@
 /*
- * How frictions in planes share a load that does not determine their forces: so that each is within its limit, with something
- * to spare.
+ * Shares of frictions in planes in a load that does not determine their forces: each stays within its limit, with a
+ * margin.
  */
 #ifndef SHARED_LOADS_H
 #define SHARED_LOADS_H
@@ -8,26 +8,29 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Of so many planes, each with the forces along and across, in units of its limit. */
+/* Forces along and across for count planes, in units of their limits. */
 struct SharedLoad {
   size_t rows, count;
-  double *lever; /* rows by rows, with what a force of 1 does, 2 count of them; this does not last */
-  double *share; /* forces that carry the load at first, then others that do */
+  double *lever; /* rows x 2 count: effect of each unit force; overwritten */
+  double *share; /* forces that carry the load: first any, then those found */
   double *work;
 };
 
 size_t shared_load_bytes(size_t rows, size_t count);
 
-/* Where all of it is in a block of so many bytes. */
+/* Divides a block of shared_load_bytes() among the parts. */
 struct SharedLoad shared_load_in(void *block, size_t rows, size_t count);
 
-/* LOAD_OVERCOMES: some forces are the only ones that carry it, or all go beyond the limits. LOAD_IS_AT_LIMIT: but for rounding. */
+/*
+ * LOAD_OVERCOMES: the only forces that carry the load, or all, exceed the limits. LOAD_IS_AT_LIMIT: equal within
+ * rounding.
+ */
 enum LoadSharing { LOAD_IS_SHARED, LOAD_IS_AT_LIMIT, LOAD_OVERCOMES };
 
-/* Where there are forces within the limits, these leave much of what can be left; else those of which the largest is least. */
+/* Finds forces within the limits that leave a large margin; if there are none, those whose largest is least. */
 enum LoadSharing shared_load_carry(struct SharedLoad *load);
 
-/* The size of a plane's force. */
+/* Returns the size of a plane's force. */
 double shared_load_size(const struct SharedLoad *load, size_t plane);
 
 #endif
