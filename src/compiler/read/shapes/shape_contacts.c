@@ -9,7 +9,7 @@
 #include "read/shapes/tangents.h"
 #include "read/space/forces.h"
 
-/* m/s: below, friction is a damper. */
+/* m/s: default regularization of friction, which is proportional to the velocity below it. */
 static const double usual_creep = 1e-3;
 
 struct Law {
@@ -51,12 +51,12 @@ static void check_attributes(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "a <contact> with stiction and without friction; expected friction=\"...\" beside it");
 }
 
-/* What a shape is that touches planes alone though it is neither flat nor round; NULL for others. */
+/* Returns the name of a type that can touch planes only, other than boxes and cylinders; NULL for other types. */
 static const char *only_on_planes(const struct ContactShape *shape) {
   return shape->type == SHAPE_MESH ? "a mesh" : shape->type == SHAPE_ELLIPSOID ? "an ellipsoid" : NULL;
 }
 
-/* Whether both shapes are there, and have touches. */
+/* Finds both shapes. Returns false after reporting that one is missing or that they cannot touch. */
 static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
   shapes[0] = shape_of_attribute(reader, node, "between");
   shapes[1] = shape_of_attribute(reader, node, "and");
@@ -88,21 +88,21 @@ size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
   return find_shapes(reader, node, shapes) ? count_touches(shapes[0], shapes[1]) : 0;
 }
 
-/* Of the material of a side, along the base's axes. */
+/* Returns the velocity of the material of a shape at a point, along the base's axes. */
 static struct Vector velocity_of_point(struct Graph *graph, const struct Side *side, struct Vector point) {
   struct Vector lever = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
   struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, lever);
   return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
 }
 
-/* Of the first side against the second at a touch, along the base's axes. */
+/* Returns the velocity of the first shape relative to the second one at a touch, along the base's axes. */
 static struct Vector sliding_of_touch(struct Graph *graph, const struct ShapeContact *contact,
                                       const struct Touch *touch) {
   return vector_subtract(graph, velocity_of_point(graph, &contact->first, touch->point),
                          velocity_of_point(graph, &contact->second, touch->point));
 }
 
-/* True if coordinates move the shapes against each other: towards each other, along the surfaces or by a rotation. */
+/* True if coordinates move the shapes relative to each other at the touch: in translation or rotation. */
 static bool moves_touch(struct Graph *graph, const struct ShapeContact *contact, const struct Touch *touch) {
   const struct Pose *first = &contact->first.pose, *second = &contact->second.pose;
   struct Vector spin = vector_subtract(graph, matrix_apply(graph, &first->rotation, first->angular_velocity),
@@ -114,7 +114,10 @@ static bool moves_touch(struct Graph *graph, const struct ShapeContact *contact,
   return moves;
 }
 
-/* Reports shapes that nothing moves; rigid ones need a coordinate along the normal, which gives the pressing force. */
+/*
+ * Returns false after reporting shapes without relative motion. Rigid contacts also need a coordinate along the normal,
+ * which determines the normal force.
+ */
 static bool check_motion(struct Reader *reader, xmlNodePtr node, const struct ShapeContact *contact) {
   struct Graph *graph = reader->model->graph;
   const char *first = contact->first.shape->name, *second = contact->second.shape->name;
@@ -171,7 +174,10 @@ struct Grip read_grip(struct Reader *reader, xmlNodePtr node) {
   return grip;
 }
 
-/* stiffness depth (1 + damping d depth/dt) while they overlap, and 0 where that would pull. */
+/*
+ * Returns the normal force stiffness depth (1 + damping d depth/dt) during contact, and 0 if that is negative: contacts
+ * do not pull.
+ */
 static Node pressing_force(struct Reader *reader, long line, const struct Law *law, Node gap) {
   struct Scope *scope = reader->scope;
   struct Graph *graph = scope->graph;
@@ -183,7 +189,10 @@ static Node pressing_force(struct Reader *reader, long line, const struct Law *l
   return choose_node(graph, is_apart, ZERO, force);
 }
 
-/* The force on the first side. */
+/*
+ * Returns the force on the first shape: the normal force N and the friction -mu N v / sqrt(v^2 + creep^2) against the
+ * tangential velocity v.
+ */
 static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, const struct ShapeContact *contact,
                                     const struct Touch *touch, Node pressing) {
   struct Vector force = vector_scale(graph, pressing, touch->normal);
@@ -196,7 +205,7 @@ static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, 
   return vector_subtract(graph, force, vector_scale(graph, factor, sliding));
 }
 
-/* On what a side is part of, at a point. */
+/* Adds a force at a point of a shape to its frame or particle. */
 static void add_force_on(struct Reader *reader, long line, const struct Side *side, struct Vector point,
                          struct Vector force) {
   struct Graph *graph = reader->model->graph;

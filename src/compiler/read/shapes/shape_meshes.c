@@ -9,7 +9,7 @@
 #include "read/meshes/mesh_file.h"
 #include "read/names/names.h"
 
-/* One number for all axes, or three. */
+/* Reads one factor for all axes, or three. */
 static bool read_scale(struct Reader *reader, xmlNodePtr node, double scale[3]) {
   static const char blanks[] = " \t\r\n";
   char *text = attribute(node, "scale");
@@ -53,7 +53,7 @@ struct Mesh *mesh_of_shape(struct Reader *reader, xmlNodePtr node) {
 bool prepare_corners(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape) {
   struct Mesh *mesh = shape->mesh;
   if (shape->type != SHAPE_MESH || (mesh != NULL && mesh->corner_count > 0)) return true;
-  if (mesh == NULL) return false; /* told already */
+  if (mesh == NULL) return false; /* the error has been reported */
   if (!mesh_find_corners(mesh)) {
     report_at(
         reader, node,

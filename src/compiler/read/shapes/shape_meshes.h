@@ -1,10 +1,13 @@
-/* <shape type="mesh">: what it reads of files. */
+/* Meshes of <shape type="mesh">. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* Reads the mesh that the element names, once for all that name it in the same scale; NULL after reporting what is wrong. */
+/* Returns the mesh of an element; equal files and scales share one mesh. NULL after reporting an error. */
 struct Mesh *mesh_of_shape(struct Reader *reader, xmlNodePtr node);
 
-/* Finds the corners at which a mesh touches, and tells where these are not all; false after reporting that it is flat. */
+/*
+ * Finds the corners at which a mesh touches and warns if they are incomplete. Returns false after reporting a flat
+ * mesh.
+ */
 bool prepare_corners(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape);

@@ -10,10 +10,10 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-/* A measure of a shape, and the types that have it. */
+/* A dimension of a shape, and the types that have it, as bits. */
 struct Measure {
   const char *name;
-  unsigned types, needing; /* those that must have it */
+  unsigned types, needing; /* types that require it */
 };
 
 #define TYPE(type) (1u << (type))
@@ -44,7 +44,7 @@ static enum ShapeType type_of(xmlNodePtr node) {
   enum ShapeType type = SHAPE_PLANE;
   for (size_t i = 0; i < SHAPE_TYPES; i++)
     if (attribute_is(node, "type", shape_type_names[i])) type = (enum ShapeType)i;
-  return type; /* the schema refuses others */
+  return type; /* others are rejected by the schema */
 }
 
 static const char *article_of(const struct ContactShape *shape) {
@@ -103,7 +103,10 @@ static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name
   return length.node;
 }
 
-/* Of a parameter alone, or so many times one, importers learn that it cannot be negative, and the FMU refuses it. */
+/*
+ * Sets the minimum of a parameter that is a size, alone or times a positive number, to 0. Importers then know it, and
+ * the FMU rejects negative values.
+ */
 static void keep_from_negative(struct Reader *reader, Node size) {
   const struct Graph *graph = reader->model->graph;
   const struct Vertex *vertex = &graph->vertices[size];
@@ -114,7 +117,7 @@ static void keep_from_negative(struct Reader *reader, Node size) {
   parameter->minimum = fmax(parameter->minimum, 0.0);
 }
 
-/* Sides of a box may be 0, but not all of them. */
+/* Reads a size. One or two sides of a box may be 0, but not all three. */
 static Node read_size(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape, const char *name) {
   if (!has_attribute(node, name)) return ZERO;
   Node size = read_length(reader, node, name);
@@ -125,7 +128,7 @@ static Node read_size(struct Reader *reader, xmlNodePtr node, const struct Conta
   return size;
 }
 
-/* The base where nothing is named. */
+/* Sets the frame or particle of the shape; the base if the element names none. */
 static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   if (!has_attribute(node, "in")) return;
   char *name = reference_attribute(reader, node, "in");
@@ -142,7 +145,7 @@ static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape
               name);
 }
 
-/* Roll, pitch and yaw as in URDF: about the fixed axes x, y, z in this order. */
+/* Sets the rotation by roll, pitch and yaw as in URDF: about the fixed axes x, y, z in this order. */
 static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   static const char *const names[3] = {"roll", "pitch", "yaw"};
   struct Pose pose = pose_of_base();

@@ -2,11 +2,11 @@
 
 #include "algebra/simplify.h"
 
-/* At right angles; no shape that is placed along the axes of the base touches another opposite to the third. */
+/* Orthonormal vectors that are not aligned with the base's axes, as typical normals are. */
 static const double oblique[3][3] = {
     {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
 
-/* Of the material of a side at a point, along the base's axes. */
+/* Returns the velocity of the material of a shape at a point, along the base's axes. */
 static struct Vector velocity_of_material(struct Reader *reader, const struct Side *side, struct Vector point) {
   struct Graph *graph = reader->model->graph;
   struct Vector spin = matrix_apply(graph, &side->pose.rotation, side->pose.angular_velocity), velocity;
@@ -21,7 +21,7 @@ static struct Vector oblique_axis(struct Graph *graph, int which) {
   return axis;
 }
 
-/* Two axes of a plane's own. */
+/* Returns the two axes of the plane along the base's axes. */
 static void tangents_of_plane(struct Graph *graph, const struct Side *plane, struct Vector tangents[2]) {
   for (int i = 0; i < 2; i++) {
     struct Vector axis = {{ZERO, ZERO, ZERO}};
@@ -31,7 +31,10 @@ static void tangents_of_plane(struct Graph *graph, const struct Side *plane, str
   }
 }
 
-/* Of a normal that stays at right angles to an axis of the base: this axis, and what is at right angles to both. */
+/*
+ * If the normal is always perpendicular to an axis of the base, sets the tangents to this axis and the vector
+ * perpendicular to both. Returns false otherwise.
+ */
 static bool tangents_in_plane(struct Graph *graph, struct Vector normal, struct Vector tangents[2]) {
   for (int i = 0; i < 3; i++) {
     if (normal.along[i] != ZERO) continue;
@@ -43,6 +46,10 @@ static bool tangents_in_plane(struct Graph *graph, struct Vector normal, struct 
   return false;
 }
 
+/*
+ * Rotates two oblique axes e by the shortest rotation of the third one, e3, to the normal n: e - (n . e) / (1 + n . e3)
+ * (n + e3).
+ */
 static void tangents_of_normal(struct Graph *graph, struct Vector normal, struct Vector tangents[2]) {
   struct Vector third = oblique_axis(graph, 2), both = vector_add(graph, normal, third);
   Node whole = add(graph, ONE, vector_dot(graph, normal, third));

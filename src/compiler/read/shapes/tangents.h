@@ -1,12 +1,12 @@
-/* Along which shapes slide where they touch. */
+/* Tangents and slip velocities of contacts between shapes. */
 #pragma once
 
 #include "read/shapes/touches.h"
 
 /*
- * The components, in m/s, of the velocity of the first shape's material against the second's, along two tangents at right
- * angles. Against a plane these are its other two axes. Of other shapes they are two constant axes, turned as the shortest turn
- * brings the third to the normal: there is none where the normal is opposite to the third.
+ * Components, in m/s, of the first shape's velocity relative to the second, along two orthogonal tangents. On a plane
+ * these are its other two axes. Otherwise they are two constant orthogonal vectors, rotated by the shortest rotation
+ * from the third vector to the normal. That rotation is undefined if the normal is opposite to the third vector.
  */
 struct Slip {
   Node along, across;

@@ -1,13 +1,22 @@
+/*
+ * Nearest points in closed form. A shape touches a plane with a fixed list of points: corners of boxes and meshes,
+ * points on the rims of cylinders, centres of round ends; an ellipsoid with the point of its support function. Other
+ * pairs reduce to two balls, gap = |p1 - p2| - r1 - r2 with the nearest points p1, p2 of their centres, axes or solids.
+ * Nearest points follow by clamping coordinates, whose kinks are events. The normal (p1 - p2)/|p1 - p2| is undefined if
+ * a centre enters the other solid or axis, so that such deep penetration is not covered.
+ *
+ * C. Ericson, Real-Time Collision Detection, 2005, section 5.1.
+ */
 #include "read/shapes/touches.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/names/pieces_of_functions.h"
 
-/* Of each rim of a cylinder on a plane. */
+/* Points on each rim of a cylinder, and the largest number of points of a shape. */
 enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };
 
-/* What joins the two: nodes are made in its graph and their pieces in its scope. */
+/* Two shapes, with the graph and scope for expressions of their touches. */
 struct Pair {
   struct Scope *scope;
   struct Graph *graph;
@@ -15,9 +24,9 @@ struct Pair {
   const struct Side *first, *second;
 };
 
-/* Points with a common radius about them, in which the touches of a shape with a plane lie. */
+/* Centres of balls of a common radius; the touches of a shape with a plane are on these balls. */
 struct Points {
-  struct Vector places[MOST_POINTS]; /* along the axes of its frame */
+  struct Vector places[MOST_POINTS]; /* along the axes of the shape's frame */
   size_t count;
   Node radius;
 };
@@ -52,7 +61,7 @@ static void append_point(struct Graph *graph, struct Points *points, const struc
 static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
   for (int corner = 0; corner < 8; corner++) {
     struct Vector place = {{ZERO, ZERO, ZERO}};
-    bool is_another = true; /* a box without a size along an axis has half as many */
+    bool is_another = true; /* false for the duplicate corners of a box without size along an axis */
     for (int i = 0; i < 3; i++) {
       bool is_upper = (corner >> i & 1) != 0;
       place.along[i] = scale(graph, is_upper ? 0.5 : -0.5, shape->size.along[i]);
@@ -62,7 +71,7 @@ static void append_corners(struct Graph *graph, struct Points *points, const str
   }
 }
 
-/* Points on the rims, the first on the axis that follows the cylinder's. */
+/* Appends points on both rims. The first is on the axis that follows the cylinder's cyclically. */
 static void append_rims(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
   static const double half = 0.70710678118654752440;
   static const double circle[RIM_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
@@ -106,7 +115,7 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
   return points;
 }
 
-/* From the axes of a side's shape to those of the base. */
+/* Rotates a vector along the axes of the shape to the base's axes. */
 static struct Vector turned_by(const struct Pair *pair, const struct Side *side, struct Vector vector) {
   vector = matrix_apply(pair->graph, &side->shape->turn, vector);
   return matrix_apply(pair->graph, &side->pose.rotation, vector);
@@ -124,7 +133,7 @@ static Node length_of(struct Graph *graph, struct Vector vector) {
   return power_number(graph, vector_dot(graph, vector, vector), 0.5);
 }
 
-/* The second's plane, from the first's points. */
+/* The first shape's points on the second shape's plane. */
 static void touch_plane(const struct Pair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   struct Points points = points_of(graph, pair->first->shape);
@@ -138,7 +147,10 @@ static void touch_plane(const struct Pair *pair, struct Touches *touches) {
   }
 }
 
-/* The second's plane: where the first's support function has its normal, the other way. */
+/*
+ * The first shape, an ellipsoid, on the second shape's plane. With the half axes as the matrix A and the normal n along
+ * them, the lowest point is -A^2 n / |A n|, and |A n| is the support function.
+ */
 static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
@@ -155,7 +167,7 @@ static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
       (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach)};
 }
 
-/* Two balls, as which all round shapes touch, about the nearest points of what is in them. */
+/* Appends the touch of two balls about the nearest points of two shapes. */
 static void touch_balls(const struct Pair *pair, struct Vector first, struct Vector second, Node second_radius,
                         struct Touches *touches) {
   struct Graph *graph = pair->graph;
@@ -167,7 +179,7 @@ static void touch_balls(const struct Pair *pair, struct Vector first, struct Vec
   touches->items[touches->count++] = (struct Touch){point, normal, gap};
 }
 
-/* A length cut to what lies within half a length on both sides. */
+/* Clamps a length to the interval of the size `whole` about 0. */
 static Node clamp(const struct Pair *pair, Node length, Node whole) {
   Node half = scale(pair->graph, 0.5, whole);
   Node above = pieces_of(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
@@ -188,7 +200,7 @@ static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
   touch_balls(pair, centre, nearest, pair->second->shape->radius, touches);
 }
 
-/* The centre of the first along the axes of the second, from its middle. */
+/* Returns the centre of the first shape relative to the second, along the axes of the second. */
 static struct Vector seen_from_second(const struct Pair *pair) {
   struct Vector between = vector_subtract(pair->graph, middle_of(pair, pair->first), middle_of(pair, pair->second));
   between = matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
@@ -223,7 +235,10 @@ static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
   touch_nearest(pair, seen, touches);
 }
 
-/* By turns each to the nearest point of the other; the first guess is that of lines without ends. */
+/*
+ * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
+ * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
+ */
 static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
   static const double nothing = 1e-12; /* of lines that are parallel, which are nearest everywhere */
   struct Graph *graph = pair->graph;
@@ -243,7 +258,7 @@ static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
 
 typedef void TouchFunction(const struct Pair *pair, struct Touches *touches);
 
-/* By the types of the first and the second; those of the other order are found by exchanging them. */
+/* By types of the first and second shape. Pairs in the other order are exchanged. */
 static TouchFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
     [SHAPE_SPHERE] = {touch_plane, touch_sphere, touch_box, touch_cylinder, touch_capsule},
     [SHAPE_BOX] = {touch_plane},

@@ -1,13 +1,13 @@
-/* Where two shapes touch: their nearest points, in closed forms. */
+/* Nearest points of pairs of shapes, in closed form. */
 #pragma once
 
 #include "read/context/attributes.h"
 
-/* A place where they may touch, in nodes along the base's axes. */
+/* A point of possible contact, in vectors along the base's axes. */
 struct Touch {
   struct Vector point;  /* m */
-  struct Vector normal; /* of length 1, towards the first shape */
-  Node gap;             /* m, 0 where they touch */
+  struct Vector normal; /* unit normal, pointing to the first shape */
+  Node gap;             /* m, negative if the shapes overlap */
 };
 
 struct Touches {
@@ -15,16 +15,19 @@ struct Touches {
   size_t count;
 };
 
-/* Where a shape is, and how it moves, while nothing is displaced. */
+/* A shape with its pose, at zero displacements. */
 struct Side {
   const struct ContactShape *shape;
-  struct Pose pose; /* of what it is part of */
+  struct Pose pose; /* of the shape's frame or particle */
 };
 
 struct Side side_of_contact(struct Reader *reader, long line, const struct ContactShape *shape);
 
-/* How many touches two shapes have, also before they are placed, but after a mesh's corners are found; 0 where there is no closed form. */
+/*
+ * Returns the number of touches of two shapes, 0 if there is no closed form. May be called before the shapes are
+ * placed, but after the corners of meshes are found.
+ */
 size_t count_touches(const struct ContactShape *first, const struct ContactShape *second);
 
-/* As many of them. */
+/* Returns the touches, count_touches() of them. */
 struct Touches touches_of(struct Reader *reader, long line, const struct Side *first, const struct Side *second);
