@@ -1,16 +1,16 @@
-/* Elements of the <system> that a robot becomes. */
+/* Writes the elements of the <system> that a robot is converted to. */
 #pragma once
 
 #include <libxml/tree.h>
 
 #include "read/robots/description/robot.h"
 
-/* The system as it is written. */
+/* The system under construction. */
 struct Writer {
   xmlNodePtr system;
-  long line; /* of the link or joint in the file of which the elements tell */
+  long line; /* of the current link or joint in the robot file, for messages */
   const struct RobotOptions *options;
-  bool has_own_frictions; /* shapes differ in their friction on the ground */
+  bool has_own_frictions; /* shapes have different coefficients of friction on the ground */
 };
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);
@@ -19,35 +19,35 @@ xmlNodePtr write_element(const struct Writer *writer, const char *name);
 void set_attribute(xmlNodePtr node, const char *attribute, char *value);
 void set_content(xmlNodePtr node, char *text);
 
-/* Leaves a 0 out, which is what a missing attribute means. */
+/* Sets an attribute; omits 0, the default of attributes. */
 void set_number(xmlNodePtr node, const char *attribute, double value);
 
 xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description);
 void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description);
 
-/* A coordinate and NAME_velocity. */
+/* Writes a <coordinate> with the velocity NAME_velocity. */
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);
 
-/* What keeps an expression between two limits; the expression itself where they are NAN. */
+/* Returns the expression restricted to the limits; the expression itself if they are NAN. */
 char *clamped(const double limits[2], char *expression);
 
 /*
- * The same with the input NAME_force, or NAME_torque for an angle, of which no more than the effort acts; NAN for all of it.
- * Returns the coordinate.
+ * Like write_coordinate(), with an input NAME_force, or NAME_torque for an angle, and its <force>. effort: largest
+ * magnitude of the force; NAN for no limit. Returns the <coordinate>.
  */
 xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
                        const char *description);
 
-/* The output NAME_beyond, which tells how far the value of this name is beyond its limits. */
+/* Writes the output NAME_beyond: the distance of the value NAME from its limits, 0 within them. */
 void write_beyond(const struct Writer *writer, const char *name, const char *unit, const char *lower,
                   const char *upper);
 
-/* The contacts NAME_min and NAME_max, which keep a position between its limits. */
+/* Writes the contacts NAME_min and NAME_max, which keep a position within its limits. */
 void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,
                         const char *lower, const char *upper);
 
-/* The number in short. */
+/* Returns the shortest text of a number. */
 char *number(double value);
 
-/* "factor*name" in short. */
+/* Returns "factor*name", without a factor of 1. */
 char *term(double factor, const char *name);

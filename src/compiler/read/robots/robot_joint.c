@@ -9,8 +9,8 @@
 #include "read/robots/urdf.h"
 
 /*
- * Velocities at which friction has 76 % (tanh 1) of its full force: small beside those of joints in motion, and large enough for
- * solvers.
+ * rad/s and m/s: velocities at which regularized friction reaches 76 % (tanh 1) of its value. Small compared with
+ * typical joint velocities, large enough to keep the equations moderately stiff.
  */
 static const double creep_rate = 0.01, creep_velocity = 0.001;
 
@@ -40,12 +40,12 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
   if (slides) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
 }
 
-/* The joint's velocity, and what it is times that of the joint with the coordinate. */
+/* Expressions of a joint's velocity, and of its ratio to that of its leader. */
 struct Motion {
   char *velocity, *ratio;
 };
 
-/* Where one of the two turns and the other slides it is a parameter, which has a unit. */
+/* A ratio between a rotation and a translation is a parameter, as it has a unit. */
 char *joint_ratio(const struct Joint *joint) {
   bool has_unit = joint_slides(joint) != joint_slides(joint->leader);
   return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
@@ -57,7 +57,7 @@ char *joint_position(const struct Joint *joint) {
   return format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
 }
 
-/* The position of what mimics another joint is an output, with no coordinate behind it. */
+/* Writes the position of a mimicking joint as an output, as it has no coordinate. */
 static struct Motion write_follower(const struct Writer *writer, const struct Joint *joint, const char *description) {
   const char *name = joint->symbol, *leader = joint->leader->symbol;
   if (joint_slides(joint) != joint_slides(joint->leader))
@@ -85,7 +85,7 @@ static void write_friction(const struct Writer *writer, const struct Joint *join
                                  joint_slides(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
 }
 
-/* What stores energy: a motor's own inertia and a spring. */
+/* Writes the energies of a joint: kinetic energy of its motor and potential of its spring. */
 static void write_stores(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
   const char *name = joint->symbol;
   if (joint->armature > 0) {
@@ -114,7 +114,7 @@ static void write_losses(const struct Writer *writer, const struct Joint *joint,
   if (joint->friction > 0) write_friction(writer, joint, motion);
 }
 
-/* A joint without a coordinate stops the one that it mimics. */
+/* Writes stops. A mimicking joint stops its leader by contacts. */
 static void write_stops(const struct Writer *writer, const struct Joint *joint, char *lower, char *upper) {
   if (joint->leader == joint) {
     xmlNodePtr stop = write_element(writer, "stop");
@@ -162,7 +162,7 @@ static void write_planar(const struct Writer *writer, const struct Joint *joint,
     write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], NAN, description);
 }
 
-/* From the first component on: 3 for a quaternion alone. */
+/* Writes the coordinates of a free body from component `first` on: 3 for a quaternion alone. */
 static void write_components(const struct Writer *writer, const char *name, int first, const struct JointStart *start,
                              const char *description) {
   static const char *const components[7] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
@@ -179,7 +179,7 @@ void write_free_coordinates(const struct Writer *writer, const char *name, const
   write_components(writer, name, 0, start, description);
 }
 
-/* Not turned where the file says nothing. */
+/* Returns the start with the identity quaternion if the file gives none. */
 static struct JointStart start_of_quaternion(const struct Joint *joint) {
   struct JointStart start = joint->start;
   const double *q = &start.position[3];
@@ -187,7 +187,10 @@ static struct JointStart start_of_quaternion(const struct Joint *joint) {
   return start;
 }
 
-/* An inertia and a damper that are the same in every direction, by a square of velocities of which both have this share. */
+/*
+ * Writes an isotropic inertia and damper, with the energy and dissipation share*factor*square. square: the expression
+ * of the squared velocity.
+ */
 static void write_isotropic(const struct Writer *writer, const struct Joint *joint, const char *prefix, double share,
                             const char *square, bool is_turning) {
   const char *name = joint->symbol, *factor = number(share);
@@ -206,7 +209,7 @@ static void write_isotropic(const struct Writer *writer, const struct Joint *joi
   }
 }
 
-/* For a quaternion of length 1 the square of the angular velocity is 4 times that of its rate. */
+/* For unit quaternions |omega|^2 = 4 |dq/dt|^2. */
 static void write_turning(const struct Writer *writer, const struct Joint *joint, const char *prefix) {
   const char *name = joint->symbol;
   write_isotropic(writer, joint, prefix, 2,
@@ -240,7 +243,7 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
   else if (joint->type == BALL) write_ball(writer, joint, &start, description);
 }
 
-/* About x, y or z where the axis is one of these, which takes fewer operations than one by numbers. */
+/* Writes a rotation about an axis: x, y or z if possible, which needs fewer operations. */
 static void write_turn(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *angle) {
   xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
   int along = 0;
@@ -263,8 +266,8 @@ static void write_slide(const struct Writer *writer, xmlNodePtr frame, const dou
 }
 
 /*
- * Two axes that are at right angles to this one and to each other: x and y for z, y and z for x, z and x for y. For an axis between
- * these, the first is as close as can be to that for the one of them which is nearest.
+ * Sets two unit vectors perpendicular to the axis and to each other: x and y for z, y and z for x, z and x for y. For
+ * other axes, the first vector is the projection of that for the nearest of these.
  */
 static void axes_across(const double axis[3], double first[3], double second[3]) {
   int nearest = 0;

@@ -1,27 +1,27 @@
-/* What a joint of a robot becomes: coordinates, motors, losses, limits, and the motion of a frame. */
+/* Converts a joint of a robot to coordinates, inputs, friction, limits and the motion of a frame. */
 #pragma once
 
 #include "read/robots/description/robot.h"
 #include "read/robots/robot_elements.h"
 
-/* The parameters that the friction of joints shares. */
+/* Writes the parameters that the friction of all joints shares. */
 void write_friction_parameters(const struct Writer *writer, const struct Robot *robot);
 
-/* Coordinates and what else there is of a joint beside its frame. */
+/* Writes the coordinates of a joint, and its other elements but for its frame. */
 void write_joint(const struct Writer *writer, const struct Joint *joint);
 
-/* Of a joint with one degree of freedom: whether it slides, and the unit of its position. */
+/* Return, for a joint with one degree of freedom, whether it is prismatic, and the unit of its position. */
 bool joint_slides(const struct Joint *joint);
 const char *joint_unit(const struct Joint *joint);
 
-/* Its position, and what the velocity of its leader is multiplied by for its own, as expressions. */
+/* Return expressions of the joint's position, and of the ratio of its velocity to that of its leader. */
 char *joint_position(const struct Joint *joint);
 char *joint_ratio(const struct Joint *joint);
 
-/* The six degrees of freedom of a free body, in coordinates whose names begin with this one. */
+/* Writes the coordinates of a free body, a position and a quaternion. name: their prefix. */
 void write_free_coordinates(const struct Writer *writer, const char *name, const struct JointStart *start,
                             const char *description);
 
-/* Turns and moves the frame of the joint's child by the coordinates. */
+/* Write the translation and rotation of the child's frame by the joint's coordinates. */
 void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint);
 void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char *name);

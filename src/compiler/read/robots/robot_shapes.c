@@ -9,7 +9,10 @@
 
 static const char ground[] = "ground";
 
-/* The stiffness lets the robot sink by a millimetre where one point bears all of it. */
+/*
+ * m: depth at which a single contact point bears the whole weight, which sets the stiffness. s/m: damping. Coefficient
+ * of friction: rubber on concrete.
+ */
 static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
 
 static void place_element(xmlNodePtr shape, const struct Placement *place) {
@@ -22,17 +25,17 @@ static void place_element(xmlNodePtr shape, const struct Placement *place) {
   }
 }
 
-/* The coefficient of friction of a shape with the ground. */
+/* Returns the coefficient of friction of a shape on the ground. */
 static double friction_of(const struct Collision *shape) {
   return isnan(shape->friction) ? usual_friction : shape->friction;
 }
 
-/* True if the shape touches the ground where its link moves. */
+/* True if the shape touches the ground, provided that its link moves. */
 static bool meets_ground(const struct RobotOptions *options, const struct Link *link, const struct Collision *shape) {
   return !shape->is_clear && link_touches_ground(options, link->name);
 }
 
-/* The coefficient that all shapes on the ground have; NAN where they differ. */
+/* Returns the coefficient of friction of all shapes on the ground; NAN if they differ. */
 static double common_friction(const struct Robot *robot, const struct RobotOptions *options) {
   double common = usual_friction;
   bool is_first = true;

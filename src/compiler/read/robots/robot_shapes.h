@@ -1,13 +1,13 @@
-/* The <collision>s and <visual>s of a robot as shapes, and the ground that they stand on. */
+/* Converts <collision>s and <visual>s of a robot to shapes, and writes the ground and contacts with it. */
 #pragma once
 
 #include "read/robots/robot_elements.h"
 
-/* The plane z = 0, and the parameters of contacts with it. */
+/* Writes the plane z = 0, or that of the file, and the parameters of contacts with it. */
 void write_ground(struct Writer *writer, const struct Robot *robot);
 
 /*
- * The shapes LINK_collision1, ... and LINK_visual1, ... of a link, and where it moves and there is a ground the former's contacts
- * LINK_ground1, ...
+ * Writes the shapes LINK_collision1, ... and LINK_visual1, ... of a link. If the link moves and there is a ground, also
+ * writes the contacts LINK_ground1, ... of the former.
  */
 void write_shapes(struct Writer *writer, const struct Link *link, bool moves);

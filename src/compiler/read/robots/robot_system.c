@@ -1,3 +1,20 @@
+/*
+ * Conversion of a robot to a system.
+ *
+ * 1. urdf_read() or mjcf_read() reads the file into a struct Robot: links, joints, tendons, actuators and loops.
+ * 2. robot_connect() makes a kinematic tree of it. Links that are fixed to each other become one body.
+ * 3. Each movable joint becomes one or more <coordinate>s with inputs, friction, springs and limits.
+ * 4. Each link becomes a <frame> in the frame of the link that carries its parent. Its pose is the constant placement
+ * of the joint followed by the joint's motion. A movable link also gets a <body> with the inertia of all links fixed to
+ * it.
+ * 5. Tendons, actuators, loops and the tool follow as forces, constraints and outputs.
+ *
+ * The result is validated against the schema and read like any system. Its elements have the lines of the robot file,
+ * so that messages refer to that. In joint coordinates only loops, quaternions and coupled tendons need constraints.
+ * The conversion takes time linear in the size of the file.
+ *
+ * R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 4.
+ */
 #include "read/robots/robot_system.h"
 
 #include <math.h>
@@ -17,7 +34,7 @@
 #include "read/xml/nodes.h"
 #include "read/xml/schema.h"
 
-/* Of a floating base, and of the point at the tool. */
+/* Names of a floating base, and of the point at the tool. */
 static const char base[] = "base", tool[] = "tool";
 
 static const struct JointStart no_start = {.position = {[3] = 1}};
@@ -37,7 +54,7 @@ static void write_placement(const struct Writer *writer, xmlNodePtr frame, const
   }
 }
 
-/* All that is fixed to the link and moves with it, as one body, or particle where there is no moment of inertia. */
+/* Writes all links that are fixed to this one, and itself, as one body. */
 static void write_body(const struct Writer *writer, const struct Link *link) {
   static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
   const struct RigidBody *body = &link->carried;
@@ -51,7 +68,9 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
 }
 
-/* The frame of a link, in that of the link to which the joint's other side is fixed. */
+/*
+ * Writes the coordinates, frame, body and shapes of a link. The frame is in that of the link that carries the parent.
+ */
 static void write_link(struct Writer *writer, const struct Link *link) {
   bool floats = writer->options->floats;
   const struct Joint *joint = link->joint;
@@ -75,7 +94,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
   write_shapes(writer, link, carrier_moves(link, floats));
 }
 
-/* The link without children, where there is one alone. */
+/* Returns the leaf of the tree if there is only one; NULL otherwise. */
 static const struct Link *only_end(const struct Robot *robot) {
   const struct Link *end = NULL;
   for (const struct Link *link = robot->root; link != NULL; link = link->next) {
@@ -99,7 +118,7 @@ static void write_tool(struct Writer *writer, const struct Link *link) {
                  format_text("velocity of '%s' along %s", link->name, axes[i]));
 }
 
-/* Whether damping, or friction that creeps, may make the robot stiff. */
+/* True if dampers, springs or regularized friction may make the robot stiff. */
 static bool has_losses(const struct Robot *robot, const struct RobotOptions *options) {
   for (size_t i = 0; i < robot->joint_count; i++)
     if (robot->joints[i]->damping > 0 || robot->joints[i]->stiffness > 0 ||
@@ -160,7 +179,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   }
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
-  /* Nothing else in a robot can be stiff. */
+  /* no part of such a robot is stiff, so that an explicit method suffices */
   if (!has_losses(robot, writer->options) && !writer->options->has_ground)
     set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
   xmlNodePtr experiment = write_element(writer, "experiment");
@@ -168,7 +187,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   set_attribute(experiment, "stepSize", number(0.01));
 }
 
-/* Reports a robot in which nothing moves, or has no mass as a whole. */
+/* Reports a robot without movable joints, or a floating one without mass. */
 static void check_motion(const struct Robot *robot, bool floats, struct Diagnostics *diagnostics) {
   bool moves = floats;
   for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
@@ -180,7 +199,7 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
 
-/* What several joints or tendons have in common, by the first of them. */
+/* Counts joints or tendons with a property; holds the first of them. */
 struct Common {
   const char *kind, *name;
   long line;
@@ -191,7 +210,7 @@ static void count_one(struct Common *common, const char *kind, const char *name,
   if (common->count++ == 0) *common = (struct Common){.kind = kind, .name = name, .line = line, .count = 1};
 }
 
-/* Warns of limits that the file has, and the attribute of the <include> neither asks for nor declines. */
+/* Warns of limits in the file if the <include> does not say how to treat them. */
 static void warn_of_limits(const struct Diagnostics *diagnostics, const struct Common *common, bool is_said,
                            const char *what, const char *attribute) {
   if (is_said || common->count == 0) return;
@@ -218,7 +237,7 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
                  "effort=\"limited\", or \"unlimited\" if this is meant,");
 }
 
-/* Warns of cylinders that touch the ground, which have points on their rims. */
+/* Warns of a cylinder on the ground, which touches with points on its rims and so rolls like an octagon. */
 static void check_rims(const struct Robot *robot, const struct RobotOptions *options,
                        const struct Diagnostics *diagnostics) {
   for (size_t i = 0; i < robot->link_count; i++) {
@@ -239,7 +258,7 @@ static void check_rims(const struct Robot *robot, const struct RobotOptions *opt
   }
 }
 
-/* Reports links that are to stand and are none, or have no shape. */
+/* Reports unknown links that should touch the ground, and those without a suitable shape. */
 static void check_standing(const struct Robot *robot, const struct RobotOptions *options,
                            struct Diagnostics *diagnostics) {
   const char *rest = options->standing;

@@ -1,4 +1,4 @@
-/* Robots as systems: what a URDF describes is written as the <system> that an author would write of it. */
+/* Converts robots, in URDF or MJCF, to the <system> that an author would write. */
 #pragma once
 
 #include <libxml/tree.h>
@@ -7,7 +7,7 @@
 #include "read/robots/description/robot.h"
 
 /*
- * Frees the document of a <robot>, and returns that of its <system>, which follows the schema, with the lines of the file.
- * NULL after reporting mistakes.
+ * Frees the document of a robot and returns that of its <system>, valid by the schema, with the lines of the robot
+ * file. Returns NULL after reporting errors.
  */
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics);

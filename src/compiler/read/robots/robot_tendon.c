@@ -27,7 +27,7 @@ static void write_spring(const struct Writer *writer, const struct Tendon *tendo
           : format_text("%s_stiffness*(max(0, %s - (%s))^2 + min(0, %s - (%s))^2)/2", name, name, upper, name, lower));
 }
 
-/* Half of a parameter times the square of the rate. */
+/* Writes the energy or dissipation parameter*rate^2/2. */
 static void write_square(const struct Writer *writer, const struct Tendon *tendon, const char *element, double value,
                          const char *word, const char *unit, const char *meaning) {
   write_parameter(writer, format_text("%s_%s", tendon->symbol, word), value, unit,
@@ -36,7 +36,7 @@ static void write_square(const struct Writer *writer, const struct Tendon *tendo
               format_text("%s_%s*%s^2/2", tendon->symbol, word, transmission_rate(&tendon->transmission)));
 }
 
-/* Dry where joints' friction is; else it creeps as theirs does. */
+/* Writes the friction of a tendon, dry or regularized as that of joints. */
 static void write_friction(const struct Writer *writer, const struct Tendon *tendon, bool slides) {
   const char *name = tendon->symbol, *creep = slides ? "creep_velocity" : "creep_rate";
   char *rate = transmission_rate(&tendon->transmission);
@@ -72,12 +72,15 @@ void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
   else write_beyond(writer, name, unit, lower, upper);
 }
 
-/* By how much a tendon is longer than at its start. */
+/* Returns the expression of a tendon's extension beyond its start length. */
 static char *extension_of(const struct Tendon *tendon) {
   return format_text("%s - (%s)", transmission_length(&tendon->transmission), number(tendon->start));
 }
 
-/* The coefficient of a power of the other's extension, which has a unit. */
+/*
+ * Writes the parameter for the coefficient of a power of the other tendon's extension, which has a unit, and returns
+ * its name.
+ */
 static char *coefficient_of(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link,
                             int power) {
   const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];

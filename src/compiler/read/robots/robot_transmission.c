@@ -10,7 +10,7 @@ static char *coefficient_of(const struct Pull *pull) {
   return pull->symbol != NULL ? copy_text(pull->symbol) : number(pull->coefficient);
 }
 
-/* What the velocity of the coordinate behind the joint is multiplied by. */
+/* Returns the derivative of the transmission's length with respect to the coordinate of the joint's leader. */
 static char *share_of(const struct Pull *pull) {
   const struct Joint *joint = pull->joint;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
@@ -56,7 +56,7 @@ char *transmission_rate(const struct Transmission *transmission) {
   return is_joint(transmission) ? sum : format_text("(%s)", sum);
 }
 
-/* The end of a segment is pushed away from the other one. */
+/* Writes a force on one end of a segment, directed away from the other end. */
 static void write_push(const struct Writer *writer, const struct Link *end, const struct Link *other,
                        const char *force) {
   static const char *const axes[] = {"x", "y", "z"};
@@ -71,7 +71,7 @@ static void write_push(const struct Writer *writer, const struct Link *end, cons
 static void write_pushes(const struct Writer *writer, const struct Transmission *transmission, const char *force) {
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct Link *first = transmission->sites[i - 1], *second = transmission->sites[i];
-    if (first->carrier == second->carrier) continue; /* as long as ever */
+    if (first->carrier == second->carrier) continue; /* of constant length */
     write_push(writer, first, second, force);
     write_push(writer, second, first, force);
   }
@@ -83,7 +83,7 @@ static void write_joint_force(const struct Writer *writer, const struct Joint *j
   set_content(node, force);
 }
 
-/* Joints that limit what all actuators do to them together get that at last. */
+/* Adds an actuator's force to the sum for a joint that limits it, see write_limited_pushes(). */
 static void add_push(struct Joint *joint, char *push) {
   joint->pushes = joint->pushes == NULL ? push : format_text("%s + %s", joint->pushes, push);
 }
@@ -111,7 +111,10 @@ void write_limited_pushes(const struct Writer *writer, const struct Joint *joint
   write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->push, joint->pushes)));
 }
 
-/* A control that a spring follows is a position, one that a damper follows a velocity; any other is the force itself, or scales it. */
+/*
+ * The control of a servo is a position, if gain = -bias[1], or a velocity, if gain = -bias[2] without a spring. Any
+ * other control is a force or scales one.
+ */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator) {
   const struct Transmission *transmission = &actuator->transmission;
   bool slides = transmission_slides(transmission), has_spring = actuator->bias[1] != 0,

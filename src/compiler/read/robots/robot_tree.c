@@ -9,10 +9,10 @@
 #include "read/names/similar.h"
 #include "read/names/words.h"
 
-/* Links or joints by their names in the file, and by the symbols that are made of these. */
+/* Links or joints by their names in the file, and by their symbols. */
 struct Register {
   const char *kind;
-  struct Names *names, *symbols; /* -> struct Entry */
+  struct Names *names, *symbols; /* name -> struct Entry */
 };
 
 struct Entry {
@@ -50,7 +50,7 @@ char *robot_symbol(const char *name) {
   return symbol;
 }
 
-/* The same for what is in a system, in which there are other names for each robot. */
+/* Returns the symbol of a link or joint; names that a system already has get a _ at the end. */
 static char *symbol_in_system(const char *name) {
   static const char *const taken[] = {"base", "g", "tool", "creep_rate", "creep_velocity"};
   bool is_taken = is_word(name);
@@ -58,7 +58,7 @@ static char *symbol_in_system(const char *name) {
   return is_taken ? format_text("%s_", name) : robot_symbol(name);
 }
 
-/* The entry that has the text already; else NULL, and it has a new one. */
+/* Returns the entry with this text if there is one. Otherwise adds the new entry and returns NULL. */
 static const struct Entry *enter(struct Names *names, const char *text, struct Entry entry) {
   const struct Entry *before = names_find(names, text);
   if (before != NULL) return before;
@@ -68,7 +68,7 @@ static const struct Entry *enter(struct Names *names, const char *text, struct E
   return NULL;
 }
 
-/* Returns the symbol of the name; reports a name or a symbol that was there before. */
+/* Returns the symbol of a name. Reports duplicate names and symbols. */
 static char *enter_name(struct Connection *connection, struct Register *all, struct Entry entry) {
   char *symbol = symbol_in_system(entry.name);
   const struct Entry *same = enter(all->names, entry.name, entry);
@@ -104,7 +104,7 @@ static void report_missing(const char *kind, const char *name, const char *what,
                similar->best != NULL ? similar->best : "", similar->best != NULL ? "'?" : "");
 }
 
-/* What the register has under this name; NULL after reporting that there is nothing. */
+/* Returns the entry of this name; NULL after reporting that there is none. */
 static const struct Entry *find(const struct Connection *connection, const struct Register *all, const char *name,
                                 const char *what, long line) {
   const struct Entry *entry = names_find(all->names, name);
@@ -122,7 +122,10 @@ static struct Link *find_link(const struct Connection *connection, const char *n
   return entry != NULL ? connection->robot->links[entry->index] : NULL;
 }
 
-/* Joints with their two links; from the last one, so that children are in the order of the file. */
+/*
+ * Connects each joint to its parent and child. Joints are visited from the last one, as children are added in front of
+ * their siblings.
+ */
 static void connect_links(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = robot->joint_count; i-- > 0;) {
@@ -144,7 +147,7 @@ static void connect_links(struct Connection *connection) {
   }
 }
 
-/* The one link that no joint carries. */
+/* Finds the only link that is not a child. Reports several. */
 static void find_root(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->link_count; i++) {
@@ -161,14 +164,14 @@ static void find_root(struct Connection *connection) {
     report_error(connection->diagnostics, robot->line, "the robot has no <link>; expected one at least");
 }
 
-/* The link after this one, parents before children, in the order of the file. */
+/* Returns the next link in depth-first order. */
 static struct Link *following(const struct Link *link) {
   if (link->first_child != NULL) return link->first_child;
   while (link->next_sibling == NULL && link->joint != NULL) link = link->joint->parent;
   return link->next_sibling;
 }
 
-/* What a root does not reach hangs on a link that is its own ancestor. */
+/* Orders the links and reports a cycle, whose links cannot be reached from the root. */
 static void order_links(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   bool *reached = allocate(robot->link_count, sizeof *reached);
@@ -185,7 +188,7 @@ static void order_links(struct Connection *connection) {
   }
 }
 
-/* Sums and products of numbers in the file may be beyond all numbers. */
+/* Reports placements and inertias that overflowed. */
 static void check_numbers(struct Connection *connection, const struct Link *link) {
   if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
   report_error(
@@ -195,7 +198,7 @@ static void check_numbers(struct Connection *connection, const struct Link *link
       link->name, link->carrier->name);
 }
 
-/* Each link with the one that carries it; bodies that are fixed to each other become one. */
+/* Sets the carrier of each link and merges the bodies of links that are fixed to each other. */
 static void join_fixed_links(struct Connection *connection) {
   const struct Robot *robot = connection->robot;
   int errors = connection->diagnostics->errors;
@@ -213,7 +216,7 @@ static void join_fixed_links(struct Connection *connection) {
   }
 }
 
-/* The joint that this one mimics; NULL after reporting what is wrong. */
+/* Returns the joint that this one mimics; NULL after reporting an error. */
 static struct Joint *mimicked_by(struct Connection *connection, const struct Joint *joint) {
   const struct Entry *entry = find(connection, &connection->joints, joint->mimicked_name, "a <mimic>", joint->line);
   struct Joint *other = entry != NULL ? connection->robot->joints[entry->index] : NULL;
@@ -224,7 +227,10 @@ static struct Joint *mimicked_by(struct Connection *connection, const struct Joi
   return NULL;
 }
 
-/* What mimics a joint that mimics another one follows that. */
+/*
+ * Follows the chain of mimicked joints to the one with a coordinate and composes their linear functions. Reports
+ * cycles.
+ */
 static void find_leader(struct Connection *connection, struct Joint *joint) {
   struct Joint *leader = joint;
   joint->ratio = 1;
@@ -249,7 +255,10 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
 
-/* symbol: of a tendon, whose coefficients are parameters where it turns one joint and slides another. */
+/*
+ * Resolves the names in a transmission. symbol: of a tendon; coefficients with a unit become parameters with this
+ * prefix.
+ */
 static void connect_transmission(struct Connection *connection, struct Transmission *transmission, const char *kind,
                                  const char *name, const char *symbol, long line) {
   const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);
@@ -283,7 +292,7 @@ static void connect_transmissions(struct Connection *connection) {
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
     if (actuator->transmission.site_count > 0 || actuator->transmission.pulls->joint != NULL)
-      continue; /* of a tendon */
+      continue; /* that of a tendon, already resolved */
     connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);
   }
 }
@@ -298,7 +307,7 @@ static void connect_loops(struct Connection *connection) {
     }
 }
 
-/* A joint that has a coordinate must move some inertia with it, its own link's or that of what hangs on it. */
+/* Reports joints that move no inertia: neither of their link nor of its descendants, nor of a motor. */
 static void check_inertia(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (const struct Link *link = robot->root; link != NULL; link = link->next) {

@@ -1,4 +1,4 @@
-/* Connects a robot's links to the tree that its joints make of them. */
+/* Connects the links of a robot to a kinematic tree. */
 #pragma once
 
 #include <stdbool.h>
@@ -6,20 +6,23 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
-/* Sets what struct Link and struct Joint leave to it; false after reporting what is wrong. */
+/*
+ * Sets the fields of struct Link, struct Joint and others that are marked as its results. Returns false after reporting
+ * errors.
+ */
 bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 
-/* The name as one of the language, of letters, digits and _ with no digit first. */
+/* Returns the name as an identifier of the language: letters, digits and _, with no digit first. */
 char *robot_symbol(const char *name);
 
-/* The link of this name; NULL after reporting that there is none for what it is asked for. */
+/* Returns the link of this name; NULL after reporting that there is none. what: where the name is used. */
 struct Link *robot_link(const struct Robot *robot, const char *name, const char *what, struct Diagnostics *diagnostics);
 
-/* Whether the coordinates of the joint, NULL for none, move the link at its end. */
+/* True if the joint has coordinates; false for NULL. */
 bool joint_moves(const struct Joint *joint);
 
-/* Whether its position is one number: revolute, continuous or prismatic. */
+/* True if the joint has one coordinate: revolute, continuous or prismatic. */
 bool joint_is_single(const struct Joint *joint);
 
-/* True if the link that this one is fixed to moves. */
+/* True if the link moves, itself or by the link that it is fixed to. */
 bool carrier_moves(const struct Link *link, bool floats);

@@ -16,7 +16,7 @@
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
                                               "floating", "planar",   "ball"};
 
-/* What joints of several coordinates have no place for. */
+/* Remedy for features of joints with several coordinates that cannot be converted. */
 static const char in_system[] = "a <force> in a <system> that includes the robot";
 
 static struct Placement read_origin(struct RobotFile *urdf, xmlNodePtr parent) {
@@ -56,7 +56,7 @@ static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct Link *
   link->body = body_seen_from(&place, &body);
 }
 
-/* The one child of this name; NULL where there is none, or there are several. */
+/* Returns the only child of this name; NULL if there is none or several. */
 static xmlNodePtr only_child_of(xmlNodePtr parent, const char *name) {
   xmlNodePtr found = NULL;
   size_t count = 0;
@@ -68,7 +68,10 @@ static xmlNodePtr only_child_of(xmlNodePtr parent, const char *name) {
   return count == 1 ? found : NULL;
 }
 
-/* Why a <mesh> cannot be used; NULL where it can. Robots are read without their meshes too, so that mistakes are no errors. */
+/*
+ * Reads a <mesh>. Returns a message if it cannot be used, else NULL: robots are usable without meshes, so that this is
+ * no error.
+ */
 static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision) {
   const char *robot = urdf->diagnostics->file;
   char *named = attribute(node, "filename"), *scale = attribute(node, "scale"), *problem = NULL;
@@ -93,8 +96,8 @@ static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touch
 }
 
 /*
- * Whether any is above 0: boxes may be flat. Reports those that are below 0, and if it touches that all are 0: robots have
- * such shapes where there is nothing to be seen.
+ * Reads sizes. Returns true if any is positive, as boxes may be flat. Reports negative sizes, and if the shape touches
+ * the ground, sizes that are all 0. Other shapes of size 0 are common placeholders.
  */
 static bool read_sizes(struct RobotFile *urdf, xmlNodePtr node, const char *name, size_t count, bool touches,
                        double *sizes) {
@@ -111,7 +114,7 @@ static bool read_sizes(struct RobotFile *urdf, xmlNodePtr node, const char *name
   return largest > 0;
 }
 
-/* False of what has no shape here, unless that was reported; in *problem is why a mesh is none, else NULL. */
+/* Reads a <geometry>. Returns false if it has no usable shape. *problem: why a mesh is not usable, else NULL. */
 static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision,
                           char **problem) {
   xmlNodePtr sphere = child_of(urdf, node, "sphere"), box = child_of(urdf, node, "box");
@@ -154,7 +157,7 @@ static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link 
   link->collisions[link->collision_count++] = collision;
 }
 
-/* Whether an attribute has as many numbers, none of which is negative unless it may be. */
+/* True if the attribute has this number of numbers. They must not be negative unless may_be_negative. */
 static bool has_numbers(xmlNodePtr node, const char *name, size_t count, bool may_be_negative) {
   double values[4];
   char *text = attribute(node, name);
@@ -163,7 +166,7 @@ static bool has_numbers(xmlNodePtr node, const char *name, size_t count, bool ma
   return is_right;
 }
 
-/* The motion does not depend on a <visual>, and so its mistakes are no errors. */
+/* True if a <visual> is valid. Errors in it are not reported, as the motion does not depend on it. */
 static bool is_sound_visual(xmlNodePtr visual) {
   static const struct {
     const char *type, *attribute;
@@ -187,7 +190,7 @@ static bool is_sound_visual(xmlNodePtr visual) {
   return count == 1;
 }
 
-/* The <color> of a material of this name, anywhere in the file; NULL where there is none. */
+/* Returns the <color> of the material of this name anywhere in the file; NULL for none. */
 static xmlNodePtr find_color(xmlNodePtr node, const char *name) {
   xmlNodePtr color = NULL;
   if (is_element(node, "material") && attribute_is(node, "name", name)) color = only_child_of(node, "color");
@@ -196,7 +199,7 @@ static xmlNodePtr find_color(xmlNodePtr node, const char *name) {
   return color;
 }
 
-/* As pages have it; NULL where the file gives none. */
+/* Returns the color of a visual as text; NULL if the file gives none. */
 static char *read_color(xmlNodePtr visual) {
   xmlNodePtr material = only_child_of(visual, "material");
   xmlNodePtr color = material != NULL ? only_child_of(material, "color") : NULL;
@@ -208,7 +211,7 @@ static char *read_color(xmlNodePtr visual) {
   return color_text(rgba);
 }
 
-/* False where it cannot be drawn. */
+/* Reads a <visual>. Returns false if it cannot be drawn. */
 static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   char *problem = NULL;
   struct Collision visual = {.line = line_of(node)};
@@ -225,7 +228,7 @@ static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *li
   return is_right;
 }
 
-/* Where not all can be drawn, shapes that touch show more of the link. */
+/* Reads the visuals of a link. If some cannot be drawn, the collisions are drawn instead. */
 static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   bool is_whole = true;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
@@ -249,7 +252,7 @@ static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
 
 static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   char *text = required_attribute(urdf, node, "type");
-  int type = 0; /* URDF has no ball */
+  int type = 0; /* a ball is not a type of URDF */
   while (type < BALL && strcmp(text, joint_types[type]) != 0) type++;
   if (type == BALL && *text != '\0')
     report_error(
@@ -259,7 +262,7 @@ static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   return type < BALL ? (enum JointType)type : FIXED;
 }
 
-/* Along x where the file gives none. */
+/* Reads the axis and normalizes it; x if the file gives none. */
 static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr axis = child_of(urdf, node, "axis");
   joint->axis[0] = 1;
@@ -274,7 +277,7 @@ static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joi
   for (int i = 0; i < 3 && length > 0; i++) joint->axis[i] /= length;
 }
 
-/* A limit of 0 stands for an unknown one, as in MuJoCo: exporters write it where they know none. */
+/* Reads the effort. 0 means no limit, as in MuJoCo: exporters write it if they know none. */
 static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->effort = NAN;
@@ -289,7 +292,7 @@ static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *j
   if (effort > 0) joint->effort = effort;
 }
 
-/* A missing one of the two is 0, as in the format's definition; a file that gives neither has no limits. */
+/* Reads the limits. A missing one is 0, as URDF defines; none are set if both are missing. */
 static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->lower = joint->upper = NAN;
@@ -375,7 +378,7 @@ static const struct Attributes attributes[] = {
     {0},
 };
 
-/* Elements of simulators that change the motion, and what says the same here. */
+/* Elements of simulators that change the motion, with the equivalent in this language. */
 static const struct {
   const char *name;
   enum Condition condition;
@@ -409,7 +412,7 @@ static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {
     if (child->type == XML_ELEMENT_NODE) check_simulators(urdf, child);
 }
 
-/* A macro or an expression of xacro, which other programs expand; NULL for none. */
+/* Returns the first macro or expression of xacro, which must be expanded before; NULL for none. */
 static xmlNodePtr find_xacro(xmlNodePtr node) {
   if (node->type != XML_ELEMENT_NODE) return NULL;
   if (node->ns != NULL && node->ns->prefix != NULL && strcmp((const char *)node->ns->prefix, "xacro") == 0) return node;

@@ -235,10 +235,7 @@ static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
   touch_nearest(pair, seen, touches);
 }
 
-/*
- * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
- * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
- */
+/* added to 1 - (u . w)^2, which is 0 for parallel lines */
 static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
   static const double nothing = 1e-12; /* of lines that are parallel, which are nearest everywhere */
   struct Graph *graph = pair->graph;

@@ -6,8 +6,8 @@
 const struct Placement no_displacement = {.rotation = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
 
 /*
- * 1.57079632679 stands for pi/2 in most files. Taken as that, sines and cosines are 0 and 1, so that axes which are meant to
- * be parallel or at right angles are, and the terms that this makes vanish need not be computed.
+ * rad: angles this close to multiples of pi/2 are replaced by these, as most files write 1.57079632679 for pi/2. Sines
+ * and cosines are then exactly 0 and 1, so that axes are exactly parallel or perpendicular and many terms vanish.
  */
 static const double angle_digits = 1e-11;
 
@@ -16,7 +16,7 @@ static double exact_quarter_turns(double angle) {
   return fabs(angle - exact) <= angle_digits ? exact : angle;
 }
 
-/* Exact for whole quarter turns. */
+/* Sets sine and cosine, exactly 0 or +-1 at multiples of pi/2. */
 static void sine_and_cosine(double angle, double *sine, double *cosine) {
   *sine = sin(angle);
   *cosine = cos(angle);
@@ -49,8 +49,17 @@ struct Matrix3 rotation_about(const double axis[3], double angle) {
 }
 
 /*
- * Pitch and roll are those that fit the yaw, so that the three are right together where the pitch is a quarter turn, which
- * leaves only the sum or the difference of the other two determined.
+ * Euler angles of R = Rz(yaw) Ry(pitch) Rx(roll), with 1-based elements:
+ *
+ *   yaw   = atan2(R21, R11),
+ *   pitch = atan2(-R31, c R11 + s R21),
+ *   roll  = atan2(s R13 - c R23, c R22 - s R12),   c = cos(yaw), s = sin(yaw).
+ *
+ * Pitch and roll are computed from Rz(-yaw) R = Ry(pitch) Rx(roll), so that they fit the yaw as rounded. At gimbal
+ * lock, pitch = +-pi/2, only the sum or difference of yaw and roll is determined: any yaw is right together with its
+ * roll.
+ *
+ * J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation Vectors, Stanford University, 2006.
  */
 void placement_angles(const struct Placement *placement, double angles[3]) {
   const double(*r)[3] = placement->rotation.at;
@@ -113,7 +122,7 @@ struct RigidBody body_scaled(const struct RigidBody *body, double factor) {
   return scaled;
 }
 
-/* The tensor about another point, by the theorem of Huygens and Steiner. */
+/* Returns the tensor about another point, by the parallel axis theorem (Huygens-Steiner). */
 static struct Matrix3 tensor_about(const struct RigidBody *body, const double point[3]) {
   struct Matrix3 tensor = body->tensor;
   double d[3], square = 0;
@@ -142,7 +151,7 @@ static double trace(const struct Matrix3 *matrix) {
   return matrix->at[0][0] + matrix->at[1][1] + matrix->at[2][2];
 }
 
-/* How far the numbers are from finite ones: NaN, else 0. */
+/* Returns 0 if all numbers are finite, else NaN. */
 static double defect(const double *numbers, size_t count) {
   double sum = 0;
   for (size_t i = 0; i < count; i++) sum += numbers[i] - numbers[i];
@@ -165,7 +174,7 @@ bool body_has_inertia(const struct RigidBody *body) {
   return body->mass > 0 || trace(&body->tensor) > 0;
 }
 
-/* Whether no eigenvalue of a symmetric matrix is negative: then none of its principal minors is. */
+/* True if a symmetric matrix is positive semidefinite: all principal minors are nonnegative (Sylvester). */
 static bool is_semidefinite(const struct Matrix3 *matrix) {
   const double(*m)[3] = matrix->at;
   for (int i = 0; i < 3; i++) {
@@ -178,7 +187,7 @@ static bool is_semidefinite(const struct Matrix3 *matrix) {
   return determinant >= 0;
 }
 
-/* Half of the trace less a principal moment is the second moment of the mass along that axis. */
+/* trace/2 minus a principal moment is the second moment of the mass along that axis, which is nonnegative. */
 bool tensor_is_of_a_body(const struct Matrix3 *tensor) {
   struct Matrix3 moments;
   for (int i = 0; i < 3; i++)

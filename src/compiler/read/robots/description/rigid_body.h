@@ -1,4 +1,4 @@
-/* Rigid bodies and the places of frames in numbers: what is fixed together becomes one body. */
+/* Poses and rigid bodies as numbers. Bodies that are fixed to each other are merged. */
 #pragma once
 
 #include <stdbool.h>
@@ -7,13 +7,13 @@ struct Matrix3 {
   double at[3][3];
 };
 
-/* Of a frame in another: a point p there is rotation*p + translation here. */
+/* Pose of a frame in an outer frame: a point p of the inner frame is rotation*p + translation in the outer one. m. */
 struct Placement {
   struct Matrix3 rotation;
   double translation[3];
 };
 
-/* In some frame: the tensor is about the centre of mass, along the frame's axes. */
+/* Inertia in some frame: mass in kg, centre in m, tensor in kg.m2 about the centre of mass, along the frame's axes. */
 struct RigidBody {
   double mass, center[3];
   struct Matrix3 tensor;
@@ -21,42 +21,45 @@ struct RigidBody {
 
 extern const struct Placement no_displacement;
 
-/* By angles about the fixed axes x, y, z in this order (roll, pitch, yaw): Rz(yaw) Ry(pitch) Rx(roll). */
+/*
+ * Returns the pose of a translation and of rotations about the fixed axes x, y, z, in this order: Rz(yaw) Ry(pitch)
+ * Rx(roll). angles: roll, pitch, yaw in rad.
+ */
 struct Placement placement_of(const double translation[3], const double angles[3]);
 
-/* By an angle about an axis of length 1. */
+/* Returns the rotation by an angle about a unit vector (Rodrigues' formula). */
 struct Matrix3 rotation_about(const double axis[3], double angle);
 
-/* Of two matrices. */
+/* Returns the matrix product. */
 struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second);
 
-/* The angles of placement_of(). */
+/* Sets the roll, pitch and yaw of a rotation, see rigid_body.c. */
 void placement_angles(const struct Placement *placement, double angles[3]);
 
-/* Where a frame is that is placed in another one, which is itself placed in a third. */
+/* Returns the composition of two poses: that of inner in the frame that outer is placed in. */
 struct Placement placement_within(const struct Placement *outer, const struct Placement *inner);
 
-/* Where the second frame is in the first, both of which are placed in a third. */
+/* Returns the pose of the second frame in the first one, both given in a third one. */
 struct Placement placement_between(const struct Placement *first, const struct Placement *second);
 
-/* The same body as seen from the frame in which its own is placed. */
+/* Returns the body in the outer frame of a pose, given the body in the inner one. */
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body);
 
-/* The same with its mass, and all that goes with it, multiplied. */
+/* Returns the body with its mass and tensor multiplied by a factor. */
 struct RigidBody body_scaled(const struct RigidBody *body, double factor);
 
-/* Both as one. */
+/* Returns two bodies, given in the same frame, merged to one. */
 struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBody *second);
 
-/* Whether it resists any motion: has a mass or a moment of inertia. */
+/* True if the body has a mass or a moment of inertia. */
 bool body_has_inertia(const struct RigidBody *body);
 
-/* Whether all numbers of them are finite. */
+/* True if all numbers are finite. */
 bool placement_is_finite(const struct Placement *placement);
 bool body_is_finite(const struct RigidBody *body);
 
 /*
- * Whether no principal moment of inertia is negative, or larger than the other two together, as they are for any mass that is spread in
- * space; a hundredth of their sum is granted for the digits of files.
+ * True if the principal moments of inertia are possible: none is negative or exceeds the sum of the other two. One
+ * percent of the trace is allowed for rounded numbers in files.
  */
 bool tensor_is_of_a_body(const struct Matrix3 *tensor);

@@ -15,7 +15,7 @@ char *next_name(const char **rest) {
   return length > 0 ? format_text("%.*s", (int)length, name) : NULL;
 }
 
-/* True if the text is new in the list and there is room for it. */
+/* Adds a text to the list. Returns false if it is in the list already or the list is full. */
 static bool note_once(char **list, size_t *count, size_t limit, const char *text) {
   for (size_t i = 0; i < *count; i++)
     if (strcmp(list[i], text) == 0) return false;
@@ -76,7 +76,7 @@ size_t parse_numbers(const char *text, size_t limit, double *values) {
   text += strspn(text, blanks);
   for (; *text != '\0'; count++) {
     char *end;
-    size_t decimal = strspn(text, "+-.0123456789eE"); /* strtod also reads 0x1 and nan */
+    size_t decimal = strspn(text, "+-.0123456789eE"); /* strtod also accepts 0x1 and nan */
     if (count == limit) return 0;
     values[count] = strtod(text, &end);
     if (end == text || (size_t)(end - text) > decimal || !isfinite(values[count])) return 0;

@@ -1,4 +1,4 @@
-/* What the readers of robots share: a file's numbers and names, and what was left out of it. */
+/* Shared by the readers of robots: numbers and names of a file, and its parts that are not read. */
 #pragma once
 
 #include <stdbool.h>
@@ -15,70 +15,79 @@ struct RobotFile {
   struct Robot *robot;
   const struct RobotOptions *options;
   struct Diagnostics *diagnostics;
-  char *left_out[LEFT_OUT_LIMIT]; /* kinds of elements that were not read */
+  char *left_out[LEFT_OUT_LIMIT]; /* names of elements that do not influence the motion */
   size_t left_out_count;
-  char *unread[UNREAD_LIMIT]; /* what warn_unread() has reported */
+  char *unread[UNREAD_LIMIT]; /* reported by warn_unread() */
   size_t unread_count;
   char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
-  size_t mesh_problems; /* how many there are */
+  size_t mesh_problems; /* number of such meshes */
 };
 
-/* The next of several names with blanks between them, which *rest then stands behind; NULL for none. */
+/* Returns the next of several names separated by blanks and advances *rest past it; NULL at the end. */
 char *next_name(const char **rest);
 
 void leave_out(struct RobotFile *file, const char *what);
 
-/* Notes the elements inside that are none of these names, of which the last is NULL. */
+/* Records child elements with names that are not in the list, which ends with NULL. */
 void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *const *names);
 
-/* Warns once of something that is not read and may change the motion, with the remedy. */
+/* Warns once per text of a part that is not read and may change the motion. remedy: completes "expected ...". */
 void warn_unread(struct RobotFile *file, long line, const char *what, const char *remedy);
 
-/* True of a text that asks for nothing: "false", "none", "auto", "disable", or numbers that are all 0. */
+/* True if a text requests nothing: "false", "none", "auto", "disable", or zeros. */
 bool says_nothing(const char *text);
 
-/* When an attribute acts: with any <include>, or one that asks for a ground, or for stops. */
+/* When an attribute influences the motion: always, with a ground, or with stops. */
 enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS };
 
 bool condition_holds(const struct RobotOptions *options, enum Condition condition);
 
-/* Attributes of elements, names with blanks between them: read or without influence where there is no remedy, else not read. */
+/*
+ * Names of elements and attributes, separated by blanks. Without remedy they are read or irrelevant; with one they are
+ * not read under the condition.
+ */
 struct Attributes {
   const char *elements, *names, *remedy;
   enum Condition condition;
 };
 
 /*
- * Warns of attributes in the element, and all that is in it, that are not read and may change the motion: those with a remedy, and
- * any others of an element in the table. The last row has no elements.
+ * Warns of attributes in the element and its descendants that are not read and may change the motion: those with a
+ * remedy, and those that the table lacks for an element in it. The last row has no elements.
  */
 void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attributes *table);
 
-/* Notes why a mesh cannot be drawn; NULL for nothing. */
+/* Records a mesh that cannot be drawn; does nothing for NULL. */
 void note_mesh_problem(struct RobotFile *file, char *problem);
 
-/* As pages have it, such as "#ff8000ff", by shares of red, green, blue, and how little is seen through it. */
+/* Returns a color such as "#ff8000ff" from red, green, blue and opacity between 0 and 1. */
 char *color_text(const double rgba[4]);
 
-/* Warns of all that was left out, unless there were errors. */
+/* Warns of all parts that were left out, unless there were errors. */
 void tell_left_out(struct RobotFile *file);
 
-/* The one element of this name in another one; NULL where there is none. */
+/* Return the only child element of this name; NULL for none. Report several, and a missing one if required. */
 xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name);
 xmlNodePtr required_child_of(struct RobotFile *file, xmlNodePtr parent, const char *name);
 
-/* "" after reporting that there is none. */
+/* Returns the value of the attribute; "" after reporting that it is missing. */
 char *required_attribute(struct RobotFile *file, xmlNodePtr node, const char *name);
 
-/* Finite decimal numbers with blanks between them, as many as the limit at most; how many; 0 where the text is anything else. */
+/*
+ * Parses finite decimal numbers separated by blanks. Returns their count; 0 for other texts or more numbers than the
+ * limit.
+ */
 size_t parse_numbers(const char *text, size_t limit, double *values);
 
-/* One number or three; leaves the values as they are where there is no such attribute, or no such element (NULL); returns whether there is. */
+/*
+ * Read one number or three from an attribute, and report errors. read_numbers() returns false and keeps the values if
+ * the attribute or the node (NULL) is missing.
+ */
 bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, size_t count, double *values);
 double required_number(struct RobotFile *file, xmlNodePtr node, const char *name);
 double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *name);
 
-/* Whether the shapes of a link of this name touch a ground. */
+/* True if the shapes of the link of this name touch a ground. */
 bool link_touches_ground(const struct RobotOptions *options, const char *link);
 
 void add_link(struct RobotFile *file, struct Link *link);
