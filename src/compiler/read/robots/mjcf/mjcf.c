@@ -1,3 +1,15 @@
+/*
+ * Conversion of MJCF to links and joints.
+ *
+ * A body with n joints becomes a chain of n links, the last of which is the body; the others have no mass. A joint with
+ * its anchor at `pos` moves its link relative to the anchor. If the last anchor is not the origin of the body, one more link
+ * at the anchor carries the body by a fixed joint. A hinge or slide is at `ref` when its body is as placed, so that the
+ * constant placement of the joint includes the displacement by -ref. Sites become links that are fixed to their body.
+ * Geoms give inertias and shapes.
+ *
+ * Sections are read in the order of their dependencies: compiler, option, contact rules, geoms of the world, bodies,
+ * tendons, actuators, equalities, keyframe. Defaults are looked up in the classes of each element, see mjcf_values.c.
+ */
 #include "read/robots/mjcf/mjcf.h"
 
 #include <math.h>
@@ -16,7 +28,7 @@
 #include "read/robots/mjcf/mjcf_values.h"
 #include "read/xml/nodes.h"
 
-/* Reports elements, at any depth, that would change the motion. */
+/* Reports unsupported elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const refused[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
                                            {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
@@ -82,7 +94,7 @@ static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
                  "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1", joint->name);
 }
 
-/* A hinge or slide, whose coordinate is ref where its body is as placed. */
+/* Reads a hinge or slide. Its coordinate is `ref` when its body is as placed. */
 static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
   read_axis(mjcf, node, joint);
@@ -104,7 +116,10 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/* These move against damping and armature in any direction; what else acts along a single coordinate has no place in several. */
+/*
+ * Reads a joint with several coordinates. Damping and armature are isotropic; features of single coordinates are
+ * reported.
+ */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   static const char *const refused[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
@@ -113,7 +128,7 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint
   if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
 }
 
-/* The body of a free joint starts where it is placed. */
+/* Sets the start of a free joint to the placement of its body, with the quaternion of its roll, pitch and yaw. */
 static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *place) {
   double angles[3], s[3], c[3];
   if (strcmp(joint->parent_name, mjcf_world) != 0)
@@ -132,10 +147,10 @@ static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Place
   joint->start.position[6] = c[0] * c[1] * s[2] - s[0] * s[1] * c[2];
 }
 
-/* The joints of a body one after the other, each of which but the last moves a link without mass. */
+/* The joints of a body, connected in series by massless links. */
 struct Chain {
-  char *body, *parent;    /* the link at which it has arrived */
-  struct Placement place; /* in it: of the body where all joints that are left are at their ref */
+  char *body, *parent;    /* the last link so far */
+  struct Placement place; /* of the body in that link, if all remaining joints are at their ref */
   size_t count;
   bool is_free, has_body;
 };
@@ -207,7 +222,7 @@ static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   mjcf_note_place(mjcf, name, parent, &place);
 }
 
-/* Bodies and sites, also in <frame>s, which place them. */
+/* Reads bodies and sites, also in <frame>s, which transform them. */
 static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (is_element(child, "body")) read_body(mjcf, child, parent, outer);
@@ -224,7 +239,7 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
 
 typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
 
-/* All sections of this name; each element in them, or these themselves. */
+/* Calls `read` for each section of this name, or if inside for each element in them. */
 static void for_each(struct Mjcf *mjcf, const char *section, bool inside, Read *read) {
   for (xmlNodePtr node = mjcf->root->children; node != NULL; node = node->next) {
     if (!is_element(node, section)) continue;

@@ -1,4 +1,7 @@
-/* Reads MJCF, MuJoCo's description of robots, as far as it tells of motion: https://mujoco.readthedocs.io/en/stable/XMLreference.html */
+/*
+ * Reads MJCF, MuJoCo's format for robots, as far as it determines the motion:
+ * https://mujoco.readthedocs.io/en/stable/XMLreference.html
+ */
 #pragma once
 
 #include <libxml/tree.h>
@@ -7,7 +10,7 @@
 #include "read/robots/description/robot.h"
 
 /*
- * Bodies as links, and joints, of a <mujoco>, not yet connected; "world" is the root. Every mistake, and what would change the motion
- * but is not known, is reported; what is left out is told once.
+ * Returns the bodies of a <mujoco> as links, with joints, not yet connected; "world" is the root. Reports every error,
+ * and every part that would change the motion but is not supported. Warns once of parts that are left out.
  */
 struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics);

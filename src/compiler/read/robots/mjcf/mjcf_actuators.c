@@ -8,7 +8,7 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-/* Gain and bias, in MuJoCo's words. */
+/* Reads gain and bias, as MuJoCo defines them for each kind of actuator. */
 static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
   static const char *const biases[] = {"none", "affine", NULL};
   actuator->gain = 1;
@@ -31,7 +31,9 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
   }
 }
 
-/* MuJoCo makes damping of a ratio to the critical one by the inertia that all of the robot sets against the force. */
+/*
+ * Reports damping given as a ratio to critical damping, which MuJoCo computes from the inertia of the compiled model.
+ */
 static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
   if (ratio != 0)
@@ -46,7 +48,7 @@ static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuat
                  (const char *)node->name);
 }
 
-/* Along a tendon, or at a joint where it names none. */
+/* Returns the transmission of a tendon, or of the joint that the element names. */
 static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   if (tendon != NULL) return tendon->transmission;
   struct Pull *pull = allocate(1, sizeof *pull);
@@ -56,7 +58,10 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
   return (struct Transmission){.pulls = pull, .count = is_at_joint};
 }
 
-/* A servomotor whose control stays within a share of the range of what it moves; where that is missing, this is reported elsewhere. */
+/*
+ * Limits the control of a servo to a fraction of the range of its joint or tendon. Unknown joints and tendons are
+ * reported elsewhere.
+ */
 static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, struct Actuator *actuator) {
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
   const char *joint_name = attribute(node, "joint");
@@ -76,7 +81,9 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   actuator->control[1] = middle + half;
 }
 
-/* A tendon through space turns joints by its lines: what it does to one of them is not told apart. */
+/*
+ * Reports a spatial tendon if a joint limits the forces of its actuators: its force on single joints is not computed.
+ */
 static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   const struct Robot *robot = mjcf->file.robot;
   for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)

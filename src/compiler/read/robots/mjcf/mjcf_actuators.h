@@ -1,7 +1,7 @@
-/* <actuator>: what pushes a joint or tendon by its control. */
+/* <actuator>: forces on joints and tendons that depend on a control. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"
 
-/* Reads one element in it, once all joints and tendons are known. */
+/* Reads an actuator, once all joints and tendons are known. */
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node);

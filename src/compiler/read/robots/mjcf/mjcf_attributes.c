@@ -7,7 +7,10 @@ static const char ground_law[] = "ground_stiffness and ground_damping of the rob
 static const char extended_shapes[] = "shapes that are larger by the difference of margin and gap";
 static const char smaller_range[] = "a range that is smaller by it";
 
-/* As the schema of MuJoCo 4 has them. Attributes that mjcf_refuse() reports, and those of refused elements, count as read. */
+/*
+ * Attributes in the schema of MuJoCo 4. Those that mjcf_refuse() reports, and those of rejected elements, are listed as
+ * read.
+ */
 static const struct Attributes table[] = {
     {"compiler",
      "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict coordinate discardvisual "

@@ -1,4 +1,4 @@
-/* Attributes of MJCF that are not read: each that changes the motion is warned of. */
+/* Warns of MJCF attributes that are not read and may change the motion. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"

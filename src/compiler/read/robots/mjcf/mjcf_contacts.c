@@ -7,7 +7,7 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-/* The body of an element: the <body> or <worldbody> around its <frame>s. */
+/* Returns the body of an element: the nearest <body> or <worldbody> outside of <frame>s. */
 static xmlNodePtr body_around(xmlNodePtr node) {
   while (is_element(node->parent, "frame")) node = node->parent;
   return node->parent;
@@ -19,7 +19,7 @@ static bool has_joint(xmlNodePtr body) {
   return node != NULL;
 }
 
-/* The next body outwards, itself included, that has a joint; else the <worldbody>. */
+/* Returns the nearest body with a joint, from this one outward; the <worldbody> if there is none. */
 static xmlNodePtr moving_body(xmlNodePtr body) {
   while (!is_element(body, "worldbody") && !has_joint(body)) body = body_around(body);
   return body;
@@ -67,7 +67,7 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
   return contact;
 }
 
-/* The <pair> of these geoms, or <exclude> of these bodies, in either order; NULL for none. */
+/* Returns the <pair> of two geoms, or the <exclude> of two bodies, in either order; NULL for none. */
 static const struct ContactRule *find_rule(const struct Mjcf *mjcf, bool is_pair, const char *first,
                                            const char *second) {
   for (size_t i = 0; i < mjcf->rule_count; i++) {
@@ -101,7 +101,7 @@ static bool masks_meet(const struct MjcfContact *first, const struct MjcfContact
   return (first->type & second->affinity) != 0 || (second->type & first->affinity) != 0;
 }
 
-/* Friction and dimensions of two geoms: those of the higher priority, or else the larger ones. */
+/* Returns the friction and dimensions of a pair of geoms: those of higher priority, or else the larger ones. */
 static struct MjcfContact combined(const struct MjcfContact *first, const struct MjcfContact *second) {
   if (first->priority != second->priority) return first->priority > second->priority ? *first : *second;
   struct MjcfContact contact = *first;
@@ -110,7 +110,7 @@ static struct MjcfContact combined(const struct MjcfContact *first, const struct
   return contact;
 }
 
-/* With the file's plane, where it has one; else as the geom says. */
+/* Sets the contact of a shape with the file's plane, or by its own attributes if there is no plane. */
 static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Collision *shape) {
   const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
   long line = line_of(contact.node);
@@ -143,13 +143,13 @@ static bool is_static(const struct MjcfContact *contact) {
   return is_element(contact->moving, "worldbody");
 }
 
-/* A body does not touch the one that carries it, unless that stands. */
+/* True if the carrier is the parent of the contact's body: these do not touch, unless the parent is static. */
 static bool is_carried(const struct Mjcf *mjcf, const struct MjcfContact *contact, const struct MjcfContact *carrier) {
   return !mjcf->touches_parents && !is_static(carrier) && !is_static(contact) &&
          moving_body(body_around(contact->moving)) == carrier->moving;
 }
 
-/* True if MuJoCo lets the two touch. */
+/* True if the two geoms can touch in MuJoCo. */
 static bool may_meet(const struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
   if (find_pair(mjcf, first, second) != NULL) return true;
   return first->moving != second->moving && masks_meet(first, second) && !is_carried(mjcf, first, second) &&
@@ -162,7 +162,7 @@ static char *name_of(xmlNodePtr node) {
                                      : format_text("the %s on line %ld", (const char *)node->name, line_of(node));
 }
 
-/* Warns of the first of several shapes that touch in MuJoCo alone. */
+/* Warns of pairs of geoms that touch in MuJoCo only, by the first pair. */
 static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second,
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
@@ -172,7 +172,7 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
                  name_of(first->node), name_of(first->body), name_of(second->node), name_of(second->body), others);
 }
 
-/* Warns of shapes that may meet: one of the two stands, or none. */
+/* Warns of pairs that can touch: static and moving geoms, or two moving ones. */
 static void check_pairs(struct Mjcf *mjcf, bool with_static) {
   const struct MjcfContact *found[2] = {NULL};
   size_t count = 0;
@@ -189,7 +189,7 @@ static void check_pairs(struct Mjcf *mjcf, bool with_static) {
   if (count > 0) warn_of_pair(mjcf, found[0], found[1], count);
 }
 
-/* Warns of a plane on which the <include> lets nothing stand, without saying so. */
+/* Warns of a plane that geoms could touch if the <include> said ground="true", unless it says ground="false". */
 static void check_ground(struct Mjcf *mjcf) {
   bool is_met = false;
   if (mjcf->ground.node == NULL || mjcf->file.options->says_ground) return;

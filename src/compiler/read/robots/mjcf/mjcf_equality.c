@@ -8,7 +8,7 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-/* A joint whose distance from its ref is a linear function of another's mimics that. */
+/* Reads a linear relation of two joints, measured from their ref, as mimicking. */
 static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   double c[5] = {0, 1};
   char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
@@ -31,13 +31,13 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   joints[0]->offset = joints[0]->start.position[0] + c[0] - c[1] * joints[1]->start.position[0];
 }
 
-/* What a loop is closed between: sites, or else bodies, of which the second is the world where it is not named. */
+/* The ends of a loop: two sites, or two bodies. The second body is the world if the element names none. */
 struct Ends {
   char *names[2];
-  const struct Placement *places[2]; /* in the world, while all joints are at their ref */
+  const struct Placement *places[2]; /* in the world, with all joints at their ref */
 };
 
-/* False after reporting an end that is not there. */
+/* Reads the ends. Returns false after reporting one that does not exist. */
 static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
   static const char *const of_bodies[] = {"body1", "body2"}, *const of_sites[] = {"site1", "site2"};
   const char *const *names = has_attribute(node, "site1") ? of_sites : of_bodies;
@@ -52,14 +52,14 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
   return ends->places[0] != NULL && ends->places[1] != NULL;
 }
 
-/* A link that is fixed to a body; returns its name. */
+/* Adds a link that is fixed to a body and returns its name. */
 static char *add_end(struct Mjcf *mjcf, xmlNodePtr node, char *body, char *name, const struct Placement *place) {
   mjcf_add_link(mjcf, node, name);
   mjcf_fix(mjcf, node, body, name, place);
   return name;
 }
 
-/* The second body is fixed to the first as relpose says, or else as it is while all joints are at their ref. */
+/* Fixes the second body to the first by relpose, or as placed with all joints at their ref. */
 static void weld_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
   struct Placement place = placement_between(ends->places[0], ends->places[1]);
   double pose[7] = {0};
@@ -71,7 +71,7 @@ static void weld_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, c
   ends->names[0] = add_end(mjcf, node, ends->names[0], format_text("%s_1", loop), &place);
 }
 
-/* The anchor, in the first body, is where the second one is held too. */
+/* Connects both bodies at the anchor, which is given in the first one. */
 static void connect_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
   struct Placement anchor = no_displacement, between = placement_between(ends->places[1], ends->places[0]);
   if (mjcf_numbers(mjcf, node, "anchor", 3, 3, anchor.translation) == 0)
@@ -99,7 +99,7 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
       .name = name, .line = line_of(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
 }
 
-/* One tendon is as long as a polynomial of another says, or as at the start and so much more. */
+/* Reads a polynomial relation of two tendons, or a constant length of one. */
 static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
   struct TendonLink link = {.name = attribute(node, "name"), .line = line_of(node), .coefficient = {0, 1}};
@@ -107,7 +107,7 @@ static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_numbers(mjcf, node, "polycoef", 1, TENDON_POWERS, link.coefficient);
   bool has_other = has_attribute(node, "tendon2");
   const char *names[2] = {required_attribute(&mjcf->file, node, "tendon1"), attribute(node, "tendon2")};
-  if (*names[0] == '\0') return; /* which is reported */
+  if (*names[0] == '\0') return; /* the error has been reported */
   if (has_other && strcmp(names[0], names[1]) == 0) {
     report_error(mjcf->file.diagnostics, link.line,
                  "the tendon '%s' cannot be as long as itself; expected another one for tendon2", names[0]);

@@ -1,7 +1,7 @@
-/* Elements of <equality>, which are soft in MuJoCo and exact here: joints that follow others, and loops that are closed. */
+/* <equality>: joints and tendons that follow others, and kinematic loops. Soft in MuJoCo, exact constraints here. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"
 
-/* Reads one of them, once all bodies, sites and joints are known. */
+/* Reads an equality, once all bodies, sites and joints are known. */
 void mjcf_read_equality(struct Mjcf *mjcf, xmlNodePtr node);

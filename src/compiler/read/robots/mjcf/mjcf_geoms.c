@@ -8,21 +8,23 @@
 #include "read/robots/mjcf/mjcf_meshes.h"
 #include "read/xml/nodes.h"
 
-static const double usual_density = 1000; /* kg/m3 */
+static const double usual_density = 1000; /* kg/m3, MuJoCo's default */
 
 enum GeomType { SPHERE, CAPSULE, CYLINDER, BOX, ELLIPSOID, PLANE, MESH, HEIGHT_FIELD, DISTANCES, GEOM_TYPES };
 static const char *const geom_types[GEOM_TYPES + 1] = {"sphere", "capsule", "cylinder", "box", "ellipsoid",
                                                        "plane",  "mesh",    "hfield",   "sdf", NULL};
 
-/* Of a capsule and a cylinder the radius and half of the length; else half of the extent along each axis. */
+/* size: radius and half length of a capsule or cylinder; half extent along each axis of others. */
 struct Geom {
   enum GeomType type;
   struct Placement place;
   double size[3];
-  const struct MjcfMesh *mesh; /* NULL of other types, and of a shape that MuJoCo would fit to a mesh */
+  const struct MjcfMesh *mesh; /* NULL for other types, and for a shape that MuJoCo would fit to a mesh */
 };
 
-/* Between two points, along z; boxes and ellipsoids are as wide in both directions. */
+/*
+ * Places a geom between the two points of `fromto`, along its z axis. Boxes and ellipsoids get equal widths in x and y.
+ */
 static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom) {
   double ends[6], along[3];
   if (mjcf_numbers(mjcf, node, "fromto", 6, 6, ends) == 0) return;
@@ -42,7 +44,7 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   if (!is_round) geom->size[1] = geom->size[0];
 }
 
-/* Reports sizes that are missing, or not above 0. */
+/* Reads a geom and reports sizes that are missing or not positive. */
 static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   static const int needed[GEOM_TYPES] = {[SPHERE] = 1, [CAPSULE] = 2, [CYLINDER] = 2, [BOX] = 3, [ELLIPSOID] = 3};
   struct Geom geom = {.type = (enum GeomType)mjcf_word(mjcf, node, "type", geom_types)};
@@ -72,7 +74,10 @@ static double volume(const struct Geom *geom) {
   }
 }
 
-/* Of a solid capsule: a cylinder, and two halves of a sphere whose centres of mass are 3/8 of the radius beyond its ends. */
+/*
+ * Sets the principal moments of a solid capsule: a cylinder, and two hemispheres, whose centres of mass are 3/8 of the
+ * radius beyond its ends.
+ */
 static void capsule_moments(double mass, const double *size, double moments[3]) {
   double r = size[0], h = size[1], ball = mass * (4 * r / 3) / (4 * r / 3 + 2 * h), rod = mass - ball;
   moments[2] = rod * r * r / 2 + 2 * ball * r * r / 5;
@@ -96,7 +101,7 @@ static struct RigidBody solid(const struct Geom *geom, double mass) {
   return body_seen_from(&geom->place, &body);
 }
 
-/* What the geom adds to the body's inertia; reports what has a mass and no shape here. */
+/* Returns the inertia of a geom. Reports geoms with a mass whose shape is not supported. */
 static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom) {
   bool has_mass = mjcf_text(mjcf, node, "mass") != NULL;
   double density = mjcf_number_not_negative(mjcf, node, "density", usual_density);
@@ -115,7 +120,7 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   return is_solid ? solid(geom, mass) : (struct RigidBody){.mass = 0};
 }
 
-/* Of the geom itself, or of its material; NULL where neither says it. */
+/* Returns the color of the geom or of its material; NULL for none. */
 static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
   const char *name = mjcf_text(mjcf, node, "material");
   double rgba[4];
@@ -128,7 +133,7 @@ static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
   return NULL;
 }
 
-/* Why the geom is no shape here; NULL where it is one. */
+/* Returns why the geom cannot be a shape; NULL if it can. */
 static const char *problem_of(const struct Geom *geom, bool touches) {
   if (geom->type <= ELLIPSOID) return NULL;
   if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box, ellipsoid or mesh";
@@ -148,7 +153,7 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
   return shape;
 }
 
-/* The first plane of the world is the ground; others touch nothing. */
+/* Makes the first plane of the world the ground. Other planes touch nothing. */
 static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
                       const struct Link *link) {
   struct Robot *robot = mjcf->file.robot;
@@ -164,7 +169,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
                                : "it in the <worldbody>, of which one is the ground");
 }
 
-/* What can touch is a shape that does, and what cannot one that is drawn in place of the body's others. */
+/* Adds a geom that can touch to the collisions, any other to the visuals. */
 static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct Link *link) {
   struct MjcfContact contact = mjcf_contact(mjcf, node);
   bool touches = mjcf_touches(mjcf, &contact);
@@ -206,7 +211,7 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link)
   link->body = body_seen_from(&place, &body);
 }
 
-/* Of the body itself and of the <frame>s in it, in which geoms are placed. */
+/* Reads the geoms of a body, and those in its <frame>s, which transform them. */
 static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placement *outer, bool weighs,
                        struct Link *link) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {

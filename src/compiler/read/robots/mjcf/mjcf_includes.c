@@ -9,20 +9,20 @@
 #include "read/xml/nodes.h"
 #include "read/xml/xml.h"
 
-/* More files in a row would be a tree too deep to walk through. */
+/* Depth of includes; it bounds the depth of the resulting tree. */
 enum { DEPTH_LIMIT = 8 };
 
-/* One file that is being read, and those that were. */
+/* The file being read, and all files read so far. */
 struct Inclusion {
   struct Diagnostics *diagnostics;
-  const char *robot; /* the first file */
+  const char *robot; /* the robot's file */
   const char *file;
   struct Names *known; /* canonical paths */
-  long line;           /* in the first file; 0 while this is read */
+  long line;           /* of the <include> in the robot's file; 0 while that is read */
   int depth;
 };
 
-/* The path of the file that an <include> names; NULL after reporting that there is none. */
+/* Returns the path of the file that an <include> names; NULL after reporting an error. */
 static char *find_file(struct Inclusion *inclusion, xmlNodePtr node, long line) {
   char *named = attribute(node, "file");
   if (named == NULL || *named == '\0') {
@@ -52,7 +52,7 @@ static char *find_file(struct Inclusion *inclusion, xmlNodePtr node, long line) 
   return NULL;
 }
 
-/* Messages name files by the path at which they were found. */
+/* Parses a file. Messages name it by the path at which it was found. */
 static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) {
   struct Diagnostics *diagnostics = inclusion->diagnostics;
   const char *file = diagnostics->file, *origin = diagnostics->origin;
@@ -65,7 +65,7 @@ static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) 
 }
 
 /*
- * Gives copies the lines of what they were copied from, as lines of its file; that of the <include> where lines of other files
+ * Sets the lines of copied nodes to those of the originals, as lines of their file; to that of the <include> if lines
  * are not noted.
  */
 static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePtr copy, const xmlNode *original) {
@@ -78,7 +78,7 @@ static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePt
 
 static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
 
-/* The elements of the file come before the <include>, which goes. */
+/* Inserts the elements of the file before the <include> and removes that. */
 static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
   long line = inclusion->line > 0 ? inclusion->line : line_of(node);
   char *path = find_file(inclusion, node, line);

@@ -6,11 +6,11 @@
 #include "read/names/similar.h"
 #include "read/xml/nodes.h"
 
-/* How many numbers a joint has in qpos, and in qvel. */
+/* Numbers per joint in qpos, and in qvel. */
 static const size_t positions[JOINT_TYPES] = {[REVOLUTE] = 1, [PRISMATIC] = 1, [BALL] = 4, [FLOATING] = 7};
 static const size_t velocities[JOINT_TYPES] = {[REVOLUTE] = 1, [PRISMATIC] = 1, [BALL] = 3, [FLOATING] = 6};
 
-/* NULL after reporting that there is none of this name. */
+/* Returns the <key> of the options; NULL after reporting that there is none. */
 static xmlNodePtr find_key(struct Mjcf *mjcf) {
   const char *name = mjcf->file.options->keyframe;
   struct Similar similar = {.wanted = name};
@@ -26,7 +26,7 @@ static xmlNodePtr find_key(struct Mjcf *mjcf) {
   return NULL;
 }
 
-/* As many numbers as expected; NULL where there are none, or after reporting others. */
+/* Reads a list of `expected` numbers. Returns NULL if it is missing, or after reporting another count. */
 static double *read_list(struct Mjcf *mjcf, xmlNodePtr key, const char *name, size_t expected) {
   char *text = attribute(key, name);
   if (text == NULL) return NULL;
@@ -43,7 +43,7 @@ static size_t sum_of(const struct Robot *robot, const size_t *counts) {
   return sum;
 }
 
-/* Of a quaternion, by the angular velocity along the axes that it has turned. */
+/* Sets the rate of a quaternion, q (0, omega) / 2, from the angular velocity along the rotated axes. */
 static void set_rate(const double q[4], const double omega[3], double rate[4]) {
   rate[0] = -(q[1] * omega[0] + q[2] * omega[1] + q[3] * omega[2]) / 2;
   for (int i = 0; i < 3; i++) {

@@ -1,7 +1,10 @@
-/* Where a robot starts: a <key> of its <keyframe>. */
+/* <keyframe>: start values of a robot. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"
 
-/* Gives the joints and actuators the start values of the key that the options name, once all of them are read; reports one that is not there. */
+/*
+ * Sets the start values of joints and actuators to those of the <key> that the options name; called after all of them
+ * are read. Reports a missing key.
+ */
 void mjcf_read_keyframe(struct Mjcf *mjcf);

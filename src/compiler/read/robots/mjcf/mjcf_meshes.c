@@ -1,3 +1,17 @@
+/*
+ * Mass properties of a solid bounded by triangles. Each triangle with corners a, b, c relative to a common apex is a
+ * tetrahedron of signed volume V = det(a, b, c)/6. The sums over all triangles of
+ *
+ *   V,   V (a + b + c)/4,   V ((a + b + c)(a + b + c)^T + a a^T + b b^T + c c^T)/20
+ *
+ * are the volume, its first and its second moments S about the apex (divergence theorem). The tensor is trace(S) 1 - S
+ * with the apex at the centre of mass. For a closed surface the signs make the result exact ("exact" in MuJoCo); a
+ * surface that is inside out only changes the overall sign. MuJoCo's "legacy" adds |V| with the apex at the centroid of
+ * the surface, which is the same for solids that are star-shaped about it. The cost is linear in the number of
+ * triangles.
+ *
+ * B. Mirtich, Fast and accurate computation of polyhedral mass properties, J. Graphics Tools 1 (1996).
+ */
 #include "read/robots/mjcf/mjcf_meshes.h"
 
 #include <math.h>
@@ -10,7 +24,10 @@
 #include "read/meshes/package_path.h"
 #include "read/xml/nodes.h"
 
-/* A pyramid on a triangle: its corners from the apex, and its volume, which is below 0 where the apex is outside of the triangle. */
+/*
+ * The tetrahedron over a triangle: corners relative to the apex, and signed volume, negative if the apex is outside of
+ * the face.
+ */
 struct Pyramid {
   double corners[3][3], volume;
 };
@@ -28,7 +45,7 @@ static struct Pyramid pyramid_on(const struct Mesh *mesh, size_t triangle, const
   return pyramid;
 }
 
-/* The middle of the surface. */
+/* Sets the centroid of the surface, each triangle weighted by its area. */
 static void find_surface_center(const struct Mesh *mesh, double center[3]) {
   static const double origin[3];
   double area = 0, sum[3] = {0};
@@ -46,12 +63,12 @@ static void find_surface_center(const struct Mesh *mesh, double center[3]) {
   for (int axis = 0; axis < 3; axis++) center[axis] = area > 0 ? sum[axis] / area : 0;
 }
 
-/* What a pyramid has, with the density 1. */
+/* Returns the mass of a tetrahedron at density 1. */
 static double mass_of(const struct Pyramid *pyramid, bool is_exact) {
   return is_exact ? pyramid->volume : fabs(pyramid->volume);
 }
 
-/* Moves the apex of all pyramids to the centre of mass; returns their volume before. */
+/* Adds the centre of mass of all tetrahedra to their apex. Returns their mass. */
 static double find_center(const struct Mesh *mesh, bool is_exact, double center[3]) {
   double mass = 0, sum[3] = {0};
   for (size_t i = 0; i < mesh->triangle_count; i++) {
@@ -64,10 +81,7 @@ static double find_center(const struct Mesh *mesh, bool is_exact, double center[
   return mass;
 }
 
-/*
- * The second moments of the mass about its centre are those of pyramids with their apex there. As MuJoCo takes them: exactly, or of pyramids that are all
- * added, which is as much where all of the surface is seen from the centre.
- */
+/* Sets the body at density 1. Returns false if it has no positive mass or its numbers are not finite. */
 static bool weigh_mesh(const struct Mesh *mesh, bool is_exact, struct RigidBody *body) {
   double moments[3][3] = {{0}}, mass = 0;
   find_surface_center(mesh, body->center);
@@ -90,7 +104,7 @@ static bool weigh_mesh(const struct Mesh *mesh, bool is_exact, struct RigidBody 
   return body->mass > 0 && body_is_finite(body);
 }
 
-/* The path of the file that the asset names; NULL for none, with the problem. */
+/* Returns the path of the asset's file; NULL if it does not exist, with mesh->problem set. */
 static char *find_file(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh) {
   const char *robot = mjcf->file.diagnostics->file, *file = mjcf_text(mjcf, asset, "file");
   if (file == NULL) {
@@ -124,7 +138,7 @@ static void read_mesh(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh
   release(read->triangles);
 }
 
-/* Its file's name without folders and ending, unless it has one of its own. */
+/* True if the asset has this name. The default is its file's name without folders and ending. */
 static bool is_named(const struct Mjcf *mjcf, xmlNodePtr asset, const char *name) {
   if (has_attribute(asset, "name")) return attribute_is(asset, "name", name);
   const char *file = mjcf_text(mjcf, asset, "file"), *slash = file != NULL ? strrchr(file, '/') : NULL;

@@ -23,7 +23,7 @@ static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon
                  "the tendon '%s' has no joint; expected <joint joint=\"...\" coef=\"...\"/> in it", tendon->name);
 }
 
-/* A line of no length has no direction, along which it would pull. */
+/* Reports a segment between equal sites, which has no direction. */
 static void check_line(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *from,
                        const char *to) {
   if (*to == '\0' || strcmp(from, to) != 0) return;
@@ -32,7 +32,7 @@ static void check_line(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *
                tendon->name, to);
 }
 
-/* Lines from site to site. */
+/* Reads the sites of a spatial tendon. */
 static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
   struct Transmission *transmission = &tendon->transmission;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
@@ -54,7 +54,10 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
                  tendon->name);
 }
 
-/* Of all joints of one, as placed or where their springs are relaxed; 0 for those that are missing, which is reported elsewhere. */
+/*
+ * Returns the length of a fixed tendon with all joints as placed, or with their springs relaxed. Missing joints count
+ * 0; they are reported elsewhere.
+ */
 static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *transmission, bool is_relaxed) {
   double length = 0;
   for (size_t i = 0; i < transmission->count; i++) {
@@ -65,7 +68,9 @@ static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *t
   return length;
 }
 
-/* Where all joints are as placed; without the lines to sites that are missing, which is reported elsewhere. */
+/*
+ * Returns the length with all joints as placed. Segments at missing sites are left out; these are reported elsewhere.
+ */
 static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
   double length = sum_of_pulls(mjcf, transmission, false);
   for (size_t i = 1; i < transmission->site_count; i++) {
@@ -78,7 +83,10 @@ static double start_length(const struct Mjcf *mjcf, const struct Transmission *t
   return length;
 }
 
-/* Where the springs of all joints are relaxed; of tendons through space where these are as placed. */
+/*
+ * Returns the length at which the tendon's spring is relaxed: with the springs of all joints relaxed. For spatial
+ * tendons these must be relaxed as placed; others are reported.
+ */
 static double relaxed_length(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   const struct Robot *robot = mjcf->file.robot;
   if (tendon->transmission.site_count == 0) return sum_of_pulls(mjcf, &tendon->transmission, true);

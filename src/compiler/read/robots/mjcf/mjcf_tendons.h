@@ -1,10 +1,10 @@
-/* <tendon>: what couples joints by a sum of their positions. */
+/* <tendon>: fixed tendons, linear combinations of joint positions, and spatial ones through sites. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"
 
-/* Reads one element in it, once all joints are known. */
+/* Reads a tendon, once all joints are known. */
 void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node);
 
-/* The one of this name; NULL after reporting that there is none. */
+/* Returns the tendon of this name; NULL after reporting that there is none. */
 const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char *name);

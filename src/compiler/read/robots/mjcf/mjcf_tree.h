@@ -1,25 +1,28 @@
-/* The links and joints that elements of MJCF become, and where they are. */
+/* Adds links and joints for elements of MJCF, and records their placements. */
 #pragma once
 
 #include "read/robots/mjcf/mjcf_values.h"
 
-/* The name of the link that the <worldbody> is. */
+/* Name of the link of the <worldbody>. */
 extern const char mjcf_world[];
 
 struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
 
-/* Along z, without limits and losses. */
+/* Adds a joint along z, without limits and friction. */
 struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
                              char *child);
 
-/* NULL for none of this name. */
+/* Returns the joint of this name; NULL for none. */
 struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
 
-/* A link that does not move in its parent. */
+/* Fixes a link to its parent. */
 void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place);
 
-/* Notes where a body or site is while all joints are at their ref, by its place in its parent, which is NULL for the world. */
+/*
+ * Records the placement of a body or site with all joints at their ref. place: in the parent; parent: NULL for the
+ * world.
+ */
 void mjcf_note_place(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *place);
 
-/* The same in the world; NULL where there is no such body or site. */
+/* Returns the placement in the world that was recorded; NULL for none. */
 const struct Placement *mjcf_place_of(const struct Mjcf *mjcf, const char *name);

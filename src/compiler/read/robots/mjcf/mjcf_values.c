@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "read/xml/nodes.h"
 
-/* A <default> of this class, at any depth; NULL where there is none. */
+/* Returns the <default> of this class, at any depth; NULL for none. */
 static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (!is_element(node, "default")) continue;
@@ -18,7 +18,7 @@ static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
   return NULL;
 }
 
-/* The class that an element names, or else the next body or frame around it; NULL for that of all. */
+/* Returns the class of an element: its own, or the childclass of the nearest ancestor; NULL for none. */
 static const char *class_of(xmlNodePtr node) {
   const char *name = attribute(node, "class");
   for (node = node->parent; name == NULL && node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent)
@@ -26,7 +26,10 @@ static const char *class_of(xmlNodePtr node) {
   return name;
 }
 
-/* The class after this one: the one in which it is; all those of the outermost level are one, of all elements. */
+/*
+ * Returns the class from which this one inherits: the enclosing <default>. All outermost <default>s together form the
+ * class of all elements; they are visited from the last one. NULL at the end.
+ */
 static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
   if (class != NULL && class->parent != mjcf->root) {
     if (class->parent->parent != mjcf->root) return class->parent;
@@ -37,14 +40,14 @@ static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
   return node;
 }
 
-/* The first class of an element; NULL where there is none. */
+/* Returns the innermost class of an element; NULL for none. */
 static xmlNodePtr first_class(const struct Mjcf *mjcf, xmlNodePtr node) {
   const char *name = class_of(node);
   xmlNodePtr class = name != NULL ? find_class(mjcf->root, name) : NULL;
   return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, NULL);
 }
 
-/* One of the words, which end with NULL. */
+/* True if the text is one of the words, which end with NULL. */
 static bool is_one_of(const char *text, const char *const *words) {
   while (*words != NULL && strcmp(text, *words) != 0) words++;
   return *words != NULL;
@@ -56,11 +59,14 @@ static bool is_actuator(xmlNodePtr node) {
   return node->type == XML_ELEMENT_NODE && is_one_of((const char *)node->name, kinds);
 }
 
-/* What the kind of an actuator gives a meaning of its own; all else is the same for all of them. */
+/* Attributes whose meaning depends on the kind of actuator. The others are common to all kinds. */
 static const char *const of_laws[] = {"kp",     "kv",       "dampratio", "timeconst", "inheritrange", "dyntype",
                                       "dynprm", "gaintype", "gainprm",   "biastype",  "biasprm",      NULL};
 
-/* Whether what a <default> says of an element holds for this one: defaults of an actuator also for those of other kinds. */
+/*
+ * True if a <default> of this node applies to the attribute of the element. Common attributes of actuators apply to all
+ * kinds.
+ */
 static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name) {
   if (is_actuator(element) && !is_one_of(name, of_laws)) return is_actuator(node);
   bool is_tendon = is_element(element, "fixed") || is_element(element, "spatial");
@@ -82,8 +88,9 @@ static bool says_a_law(xmlNodePtr node) {
 }
 
 /*
- * In MuJoCo each <default> of an actuator sets the law of all, a <motor> back to that without any; a <general> only as far as it says so.
- * A motor's own law is always the same.
+ * True if a <default> makes MuJoCo's gain and bias of the actuator differ from those read here. In MuJoCo each
+ * <default> sets the gain and bias of all kinds of actuators; a <general> only as far as it says so, and a <motor>
+ * resets them. *is_set_back: a <motor> in an inner class, or further down, has reset them.
  */
 static bool disturbs(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
   if (!is_actuator(found)) return false;
@@ -207,7 +214,10 @@ struct Matrix3 rotation_of_quaternion(const double q[4]) {
   return length > 0 ? rotation_about(axis, 2 * atan2(length, q[0])) : no_displacement.rotation;
 }
 
-/* Capital letters turn about the axes of the parent, small ones about those that the turns before left. */
+/*
+ * Returns the rotation by Euler angles in the file's sequence. Capital letters rotate about the parent's axes
+ * (extrinsic), small ones about the rotated axes (intrinsic).
+ */
 static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double angles[3]) {
   struct Matrix3 rotation = no_displacement.rotation;
   for (int i = 0; i < 3; i++) {
@@ -220,7 +230,7 @@ static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double angles[3]) 
   return rotation;
 }
 
-/* The second is made orthogonal to the first; false where the two are parallel. */
+/* Sets the rotation from an x axis and a y axis, which is made orthogonal to x. Returns false if they are parallel. */
 static bool of_axes(const double given[6], struct Matrix3 *rotation) {
   double x[3] = {given[0], given[1], given[2]}, y[3] = {given[3], given[4], given[5]}, z[3];
   bool is_right = make_unit(x) > 0;
@@ -237,7 +247,7 @@ static bool of_axes(const double given[6], struct Matrix3 *rotation) {
 
 enum { QUATERNION, AXIS_AND_ANGLE, EULER_ANGLES, TWO_AXES, Z_AXIS, ORIENTATIONS };
 
-/* Which orientation the element has, or by its class; ORIENTATIONS for none. */
+/* Returns which orientation the element or its class has; ORIENTATIONS for none. */
 static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *const *names) {
   size_t kind = 0, others;
   while (kind < ORIENTATIONS && !has_attribute(node, names[kind])) kind++;

@@ -1,4 +1,4 @@
-/* What attributes of MJCF say: in an element or by its class, in numbers, and as places. */
+/* Values of MJCF attributes, from elements or their default classes: words, numbers and placements. */
 #pragma once
 
 #include <stdbool.h>
@@ -11,14 +11,14 @@ enum { ACTUATOR_GROUPS = 31 };
 
 enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
 
-/* How a geom touches others. */
+/* Contact attributes of a geom. */
 struct MjcfContact {
-  xmlNodePtr node, body, moving; /* of the geom, NULL for none; its body; what moves this, else the <worldbody> */
+  xmlNodePtr node, body, moving; /* geom, or NULL; its body; nearest body with a joint, else <worldbody> */
   char *name, *body_name;        /* "" for none */
   double friction;               /* coefficient of sliding friction */
-  double dimensions; /* of the force: 1 without friction, 3 with it, 4 and 6 with that of spinning, and rolling */
+  double dimensions; /* condim: 1 without friction, 3 with sliding friction, 4 also torsional, 6 also rolling */
   double priority;
-  unsigned type, affinity; /* masks: two touch where one's type and the other's affinity have a bit in common */
+  unsigned type, affinity; /* bit masks: two geoms touch if one's type and the other's affinity have a common bit */
 };
 
 /* A <pair> of geoms that touch, or an <exclude> of bodies that do not. */
@@ -31,62 +31,68 @@ struct ContactRule {
 struct Mjcf {
   struct RobotFile file;
   xmlNodePtr root;
-  double angle; /* rad of the file's unit of angles */
+  double angle; /* rad per unit of angles in the file */
   const char *euler_sequence;
   bool has_automatic_limits;
   enum InertiaFromGeoms inertia_from_geoms;
-  double inertia_groups[2];             /* geoms of groups between these have a mass */
-  size_t unnamed_count;                 /* bodies without a name so far */
-  char *mesh_folder;                    /* of the meshes' files, relative to the robot's; NULL for that itself */
-  struct Names *meshes;                 /* that geoms have -> struct MjcfMesh */
-  struct MjcfContact ground, *contacts; /* of the plane that is the ground, and of all other geoms that touch */
+  double inertia_groups[2];             /* geoms of groups in this range have a mass */
+  size_t unnamed_count;                 /* number of bodies without a name so far */
+  char *mesh_folder;                    /* folder of mesh files, relative to the robot's file; NULL for its own */
+  struct Names *meshes;                 /* used meshes by name -> struct MjcfMesh */
+  struct MjcfContact ground, *contacts; /* of the ground plane, and of all other geoms that touch */
   struct ContactRule *rules;
   size_t contact_count, rule_count;
-  bool has_no_contacts, touches_parents; /* by <flag> */
-  bool is_off[ACTUATOR_GROUPS];          /* groups of actuators without force */
-  struct Names *places; /* of bodies and sites -> struct Placement in the world, with all joints at their ref */
+  bool has_no_contacts, touches_parents; /* set by <flag> */
+  bool is_off[ACTUATOR_GROUPS];          /* disabled groups of actuators */
+  struct Names *places; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
-/* An attribute of the element, or of its class or what this inherits; NULL where none of them has it. */
+/* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
 
-/* Reports an actuator whose gain and bias would be set by <default>s of another kind. */
+/* Reports an actuator whose gain and bias MuJoCo would take from <default>s of another kind. */
 void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node);
 
-/* Reports classes that are not defined, or twice, in an element and all that is in it. */
+/* Reports classes that are undefined or defined twice, in an element and its descendants. */
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node);
 
-/* As many numbers as there are, least to most; 0 where there is none, which leaves the values as they are, or after reporting a mistake. */
+/*
+ * Reads least to most numbers and returns their count. If the attribute is missing, or after reporting an error,
+ * returns 0 and keeps the values.
+ */
 size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t least, size_t most, double *values);
 
-/* One number, of which the usual one is given. */
+/* Returns a number; usual if the attribute is missing. */
 double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
 
-/* The same, of which a negative one is reported. */
+/* Like mjcf_number(), but reports negative numbers. */
 double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
 
 bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value);
 
-/* Which of the words, the last of which is NULL, the attribute is; the first where it is missing; reports any other. */
+/*
+ * Returns the index of the attribute's value among the words, which end with NULL; 0 if it is missing. Reports any
+ * other value.
+ */
 size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *const *words);
 
-/* The place by pos and one of quat, axisangle, euler, xyaxes, zaxis. */
+/* Returns the placement by pos and one of quat, axisangle, euler, xyaxes, zaxis. */
 struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node);
 
-/* The turn that brings z along this direction, which is not 0. */
+/* Returns the shortest rotation that takes z to this direction, which is not 0. */
 struct Matrix3 rotation_of_z(const double direction[3]);
 
-/* By a quaternion of any length but 0, the real part first. */
+/* Returns the rotation by a quaternion of any nonzero norm, the real part first. */
 struct Matrix3 rotation_of_quaternion(const double q[4]);
 
-/* Divides a vector by its length, and returns this; leaves a 0. */
+/* Normalizes a vector and returns its length; keeps a zero vector. */
 double make_unit(double vector[3]);
 
-/* Limits by the range and the attribute that says whether it holds; NAN for none. */
+/* Sets the limits of `range`, if the attribute `is_limited` or its default says that they apply; else NAN. */
 void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]);
 
-/* Reports an element that is not read, with what to do about it. */
+/* Reports an element that is not supported and would change the motion. remedy: completes "expected ...". */
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
 
-/* Reports an attribute that is not 0, false, none or missing, since it would change the motion. */
+/* Reports an attribute that is not supported and would change the motion, unless it is 0, false, none or missing. */
 void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name);
