@@ -146,7 +146,7 @@ struct Frame instructions_frame(const struct InstructionTables *tables, const st
 /* Sets the spaces of a seed. */
 void instructions_seed(struct Frame *frame, const struct Seed *seed);
 
-/* Runs a table of values. Returns 0, or the number of the first check that fails. */
+/* Runs a table of values. Returns 0, or the number of the first check or factorization that fails. */
 int instructions_run(const struct Frame *frame, const uint32_t *code);
 
 /* Runs a table of series at order k. */

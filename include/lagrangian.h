@@ -46,7 +46,7 @@ enum VariableKind {
   VARIABLE_DERIVATIVE, /* of the state with the same index */
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
-  VARIABLE_MODE,      /* declared by the author; the index is that of a parameter. All modes are the last parameters */
+  VARIABLE_MODE,      /* declared by the author; its index is among the parameters, of which the modes are the last */
   VARIABLE_CONTACT,   /* of a contact or friction, likewise */
   VARIABLE_RESULT,    /* computed when read */
   VARIABLE_STATISTIC, /* the index is an enum Statistic */
@@ -82,7 +82,7 @@ static inline bool is_calculated_parameter(const struct ScalarVariable *variable
   return variable->kind == VARIABLE_RESULT && variable->follows_from != NULL;
 }
 
-/* True for a state whose start value depends on parameters, unless it is set itself. */
+/* True for a state with a start value that depends on parameters; setting the state overrides it. */
 static inline bool has_following_start(const struct ScalarVariable *variable) {
   return variable->kind == VARIABLE_STATE && variable->follows_from != NULL;
 }
@@ -201,7 +201,7 @@ struct FrictionLaws;
 struct TimeLaws;
 
 struct SwitchTable {
-  size_t mode_count; /* modes are the last so many parameters */
+  size_t mode_count; /* number of modes, which are the last parameters */
   size_t branch_count, contact_count, friction_count, event_count, assignment_count;
   size_t energy_count;  /* energies and momenta in value[]; 0 unless a branch has holds_energy */
   bool feels_forces;    /* a branch depends on a constraint force */
@@ -435,7 +435,7 @@ struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
   size_t work_count; /* size of Point.work */
-  /* The last coordinates, so many, are sensitivities of the others. An importer may set them at events. */
+  /* Number of last coordinates that are sensitivities of the others. An importer may set them at events. */
   size_t variation_count;
   size_t state_variation_count; /* the same of the states of first order */
   size_t variable_count, array_count;
@@ -466,7 +466,7 @@ struct Lagrangian {
   void (*initial_state_along)(const struct Point *point, const struct Seed *seed, Real *state);
   /* derivative[state_count] = d state / dt */
   int (*derivatives)(const struct Point *point, Real *derivative);
-  /* The derivative of derivatives() along seed. */
+  /* Computes the derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, Real *derivative);
   /*
    * Computes the gradient of the sum of seed->state times the derivatives of the state and seed->result times the

@@ -19,6 +19,7 @@
 
 #include "arithmetic.h"
 
+/* Numbers of storage behind those of saddle.h, see above. */
 #define OBLIQUE_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
 /*

@@ -114,9 +114,10 @@ static SERIES_INLINE double pair_second(Pair a) {
 #endif
 
 /*
- * Computes the middle terms of all products at order k >= 1: m[i] = sum over j = 0 .. k - 2 of a[from + j] b[k - 1 -
- * j]. PRODUCTS(EACH) is a list of EACH(i, a, from, b). Adds pairs of adjacent terms; the first and the last term, which
- * use the newest coefficients, come last. Rows that are factors of several products are read once.
+ * Computes the middle terms of all products at order k >= 1: m[i] = sum over j = 0 .. k - 2 of
+ * a[from + j] b[k - 1 - j]. PRODUCTS(EACH) is a list of EACH(i, a, from, b). Adds pairs of adjacent terms; the first
+ * and the last term, which use the newest coefficients, come last. Rows that are factors of several products are read
+ * once.
  */
 #define SERIES_MIDDLES(PRODUCTS)                                                                                       \
   do {                                                                                                                 \
@@ -140,7 +141,7 @@ static SERIES_INLINE double pair_second(Pair a) {
   m[i] = pair_total(pairs##i) + ((a)[from] * (b)[k - 1] + (a)[(from) + k - 2] * (b)[1]);
 #define SERIES_TERM_WITHOUT_NEIGHBOUR(i, a, from, b) m[i] += (a)[(from) + k - 3] * (b)[2];
 
-/* Middle terms of one product. */
+/* Returns the middle terms of one product. */
 #define SERIES_ONE(EACH) EACH(0, a, 0, b)
 static SERIES_NOT_INLINE double series_middle(int k, const double *a, const double *b) {
   double m[1];
@@ -149,8 +150,8 @@ static SERIES_NOT_INLINE double series_middle(int k, const double *a, const doub
 }
 
 /*
- * Middle terms of a list of products, four at a time. Serves systems whose unrolled code would not fit the instruction
- * cache.
+ * Computes the middle terms of a list of products, four at a time. Serves systems whose unrolled code would not fit the
+ * instruction cache.
  */
 struct SeriesFactors {
   const double *a, *b;
@@ -186,7 +187,7 @@ static SERIES_INLINE double series_rest(int k, const double *a, const double *b)
   return series_rest_around(series_middle(k, a + 1, b), k, a, b);
 }
 
-/* (a a)_k */
+/* Returns (a a)_k. */
 static SERIES_INLINE double series_square_around(double middle, int k, const double *a) {
   return middle + 2.0 * (a[0] * a[k]);
 }
@@ -216,9 +217,9 @@ static SERIES_INLINE double series_root(int k, const double *a, const double *c)
 }
 
 /*
- * Returns (a^n)_k for a real n; c holds the power's coefficients below k. If a_m is the first nonzero coefficient and m
- * > 0, then a = t^m b and a^n = t^(m n) b^n, with b_j = a_(m+j) and (b^n)_j = c_(m n+j). Then n must be a whole number
- * >= 0, else the result is NAN.
+ * Returns (a^n)_k for a real n; c holds the power's coefficients below k. If a_m is the first nonzero coefficient and
+ * m > 0, then a = t^m b and a^n = t^(m n) b^n, with b_j = a_(m+j) and (b^n)_j = c_(m n+j). Then n must be a whole
+ * number >= 0, else the result is NAN.
  */
 static inline double series_power(int k, double n, const double *a, const double *c) {
   int m = 0;

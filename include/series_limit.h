@@ -9,9 +9,11 @@
  *  e(h) = sum over k >= 1 of |u_k| h^k.
  *
  * Each bound is a condition e(h) <= c: f then changes by a factor of at most e^5 in the disc and has no singularity
- * there, or it is constant to the last bit. So no peak, step or pole of any width is skipped. e(h) increases with h;
- * the step is divided by 8 until the condition holds, then refined by four bisections of its logarithm, to a factor of
- * 8^(1/16). Each trial costs O(order).
+ * there, or it is constant to the last bit. So no peak, step or pole of any width is skipped. For whole powers a
+ * monotone u also suffices, for signs one that moves away from 0.
+ *
+ * e(h) increases with h. The step is divided by 8 until the condition holds, then refined by four bisections of its
+ * logarithm, to a factor of 8^(1/16). Each trial costs O(order).
  */
 #ifndef SERIES_LIMIT_H
 #define SERIES_LIMIT_H
@@ -35,32 +37,32 @@ struct SeriesLimit {
     if (condition) __VA_ARGS__;                                                                                        \
   } while (0)
 
-/* exp(u), also a power of a constant */
+/* Reduces the step by exp(u), or a power of a constant. */
 void series_limit_exponential(struct SeriesLimit *limit, const double *u, const char *function);
 
-/* sinh(u), cosh(u) */
+/* Reduces it by sinh(u) or cosh(u). */
 void series_limit_hyperbolic(struct SeriesLimit *limit, const double *u, const char *function);
 
 void series_limit_tanh(struct SeriesLimit *limit, const double *u);
 void series_limit_tangent(struct SeriesLimit *limit, const double *u);
 
-/* u must keep its sign: logarithms, and denominators in derivatives of inverse functions. */
+/* Reduces it so that u keeps its sign: logarithms, and denominators in derivatives of inverse functions. */
 void series_limit_positive(struct SeriesLimit *limit, const double *u, const char *function);
 
 /*
- * u^n. share is the relative change of u_0 that changes the power by e^5: 1 - e^(-5/|n|) for n < 0, e^(5/n) - 1 for n >
- * 0. series_limit_root() takes the powers n > 0 that are not whole. Whole powers up to HIGHEST_WIDE_POWER need no
- * bound: their peaks are about as wide as those of u itself, which the series of u resolves.
+ * Reduce it by u^n. share is the relative change of u_0 that changes the power by e^5: 1 - e^(-5/|n|) for n < 0,
+ * e^(5/n) - 1 for n > 0. series_limit_root() takes the powers n > 0 that are not whole. Whole powers up to
+ * HIGHEST_WIDE_POWER need no bound: their peaks are about as wide as those of u itself, which the series of u resolves.
  */
 enum { HIGHEST_WIDE_POWER = 4 };
 void series_limit_quotient(struct SeriesLimit *limit, const double *u, double share);
 void series_limit_root(struct SeriesLimit *limit, const double *u, double share);
 void series_limit_whole_power(struct SeriesLimit *limit, const double *u, double share);
 
-/* numerator / u^n. An identically vanishing numerator imposes no bound. */
+/* Reduces it by numerator / u^n. An identically vanishing numerator imposes no bound. */
 void series_limit_division(struct SeriesLimit *limit, const double *u, const double *numerator, double share);
 
-/* u^n with an exponent known only at run time. */
+/* Reduces it by u^n with an exponent known only at run time. */
 void series_limit_power(struct SeriesLimit *limit, const double *u, double exponent);
 
 /* Returns the share of an exponent. */
@@ -68,10 +70,10 @@ static inline double series_limit_share(double exponent) {
   return exponent < 0.0 ? 1.0 - exp(5.0 / exponent) : exp(5.0 / exponent) - 1.0;
 }
 
-/* u must keep its sign on the real axis: each piece of abs, sign, min and max has its own series. */
+/* Reduces it so that u keeps its sign on the real axis: each piece of abs, sign, min and max has its own series. */
 void series_limit_sign(struct SeriesLimit *limit, const double *u, const char *function);
 
-/* atan2(y, x) jumps at y = 0 and x < 0. */
+/* Reduces it by atan2(y, x), which jumps at y = 0, x < 0. */
 void series_limit_angle(struct SeriesLimit *limit, const double *y, const double *x);
 
 #endif

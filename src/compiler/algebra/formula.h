@@ -19,6 +19,7 @@ struct NodeNames {
 /* Returns the text with these names for all subexpressions. */
 char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names);
 
+/* Bytes for a number's text; 17 digits with sign, point and exponent take 25. */
 enum { NUMBER_LENGTH = 40 };
 
 /* Writes the shortest decimal form, of at least 15 digits' precision, that reads back as the same number. */

@@ -18,8 +18,8 @@ static long double legendre(size_t degree, long double x, long double *derivativ
 }
 
 /*
- * Finds each zero of P_n by Newton's method from Tricomi's estimate. Newton's method converges quadratically in about
- * four steps.
+ * Finds each zero of P_n by Newton's method from Tricomi's estimate. It converges quadratically, in about four steps;
+ * ten leave a margin.
  */
 void quadrature_rule(size_t count, double *nodes, double *weights) {
   enum { NEWTON_STEPS = 10 };

@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 
+/* Most nodes of a rule. */
 enum { QUADRATURE_LIMIT = 200 };
 
 /*

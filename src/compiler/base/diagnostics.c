@@ -10,7 +10,7 @@
 /* Bytes of a longer text that a message shows: its beginning and its end. */
 enum { HEAD_LENGTH = 600, TAIL_LENGTH = 400 };
 
-/* Number of latest lines that note_line() searches for a repeated one; enough for the messages of one element. */
+/* Number of latest lines among which note_line() looks for an equal one. */
 enum { RECENT_LINES = 64 };
 
 static bool continues_letter(char byte) {

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+/* Bytes of a GUID in braces, with the terminating zero. */
 enum { GUID_LENGTH = 39 };
 
 /* Writes "{xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx}" for the concatenated texts; count is their number. */

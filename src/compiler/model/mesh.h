@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-/* Most corners at which a mesh may touch; each becomes a contact. */
+/* Most corners at which a mesh may touch; each costs a contact. */
 enum { MOST_CORNERS = 32 };
 
 struct Mesh {

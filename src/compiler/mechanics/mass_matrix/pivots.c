@@ -159,6 +159,7 @@ bool tree_has_factors(const struct Model *model, const struct ArticulatedTree *t
   return is_regular && !is_negative;
 }
 
+/* Depth of the bound of an element, which is evaluated at run time and must stay short. */
 enum { MAGNITUDE_DEPTH = 8 };
 
 /*
