@@ -32,7 +32,7 @@ bool frictions_explain_jam(struct Settlement *settlement, size_t branch);
 /* Lets frictions slide that stick although a new parameter or state gives them a velocity. */
 void frictions_release(struct Settlement *settlement);
 
-/* Largest rate of a velocity that friction holds, relative to the rate without it. */
+/* Largest rate of a velocity that friction holds, relative to its largest rate in the event. */
 extern const double friction_held_share;
 
 /* Switches of one friction in an event resolution before they count as endless. */

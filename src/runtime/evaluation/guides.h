@@ -5,9 +5,9 @@
 #include "instance/instance.h"
 
 /*
- * Makes each such input and its time derivatives, which are inputs too, one polynomial and its derivatives for the next
- * step: a constraint holds for positions, velocities and accelerations. The polynomial is the one set for the input, or
- * else follows from the derivatives.
+ * Prepares the inputs of constraints for the next step. A constraint also holds for velocities and accelerations. So
+ * each of these inputs and its time derivatives, which are inputs too, become one polynomial and its derivatives. It is
+ * the polynomial that was set for the input, or else follows from the derivatives.
  */
 void guides_begin_step(struct Instance *instance);
 

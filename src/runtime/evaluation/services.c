@@ -92,7 +92,7 @@ bool solver_is_held(const struct Instance *instance) {
   return false;
 }
 
-/* The error of a step has the size of the tolerance; a move of 1000 times that has left the mechanism. */
+/* A step errs by about the tolerance. If the projection moves the state by 1000 times that, the step is wrong. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
   static const char problem[] = "a constraint cannot be kept there";
   if (!solver_is_held(instance)) return NULL;

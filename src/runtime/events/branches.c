@@ -33,8 +33,8 @@ static bool is_driven(const struct Settlement *settlement, size_t branch) {
 }
 
 /*
- * Returns the rounding error bound of a branch. At a located zero it includes the floor of the search. So it does for a
- * prescribed motion that has come to rest, whose velocity has the rounding error of its path.
+ * Returns the rounding error bound of a branch. At a located zero it includes the floor of the search. It also does for
+ * a prescribed motion that has come to rest, whose velocity has the rounding error of its path.
  */
 static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
   double noise = settlement_noise(settlement, branch, branch_rate_place(settlement->switches, branch));

@@ -55,7 +55,7 @@ bool exchange_come_back(struct Instance *instance, struct Point *point) {
 /* Gives indicators without a value beyond the end of a piece their values at its end. */
 static void complete_indicators(struct Instance *instance, double *value) {
   size_t count = indicator_count(lagrangian.switches);
-  double *completed = instance->switching_work + count; /* before it, values may be stored */
+  double *completed = instance->switching_work + count; /* values may be stored before it */
   struct Point point = instance_point(instance);
   bool lacks = false;
   for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
@@ -90,13 +90,14 @@ static void find_shifts(struct Instance *instance, const double *value, double *
 
 /*
  * A reported indicator keeps its sign until it is a little beyond 0, so that it is not 0 after an event (FMI 2.0,
- * section 3.2.2; FMI 3.0, section 3.2.1). That of a branch at rest at 0 is reported on leaving it to either side.
+ * section 3.2.2; FMI 3.0, section 3.2.1). The indicator of a branch at rest at 0 changes its sign when it leaves 0 to
+ * either side.
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   if (!indicators_at(instance, instance->situation->time, instance->state, value)) return false;
   size_t count = indicator_count(lagrangian.switches);
-  double *shift = instance->switching_work + count; /* before it, values may be stored */
+  double *shift = instance->switching_work + count; /* values may be stored before it */
   complete_indicators(instance, value);
   find_shifts(instance, value, shift);
   for (size_t i = 0; i < count; i++) {

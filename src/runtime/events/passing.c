@@ -35,13 +35,13 @@ enum { UNSURE_LIMIT = 1000 };
 /* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
 static const double crowding_share = 1e-6;
 
-/* If events are too close together, the solver's step is divided by the first, at most so often in a row. */
+/* Divisor of the solver's step if events are too close together, and limit of such divisions in a row. */
 enum { NEARER = 64, NEARER_LIMIT = 8 };
 
 /*
- * Limits of a search beyond the communication step: in communication steps; relative to the part of the solver's step
- * that is already searched. The last one is the fraction of the time to an event up to which the result is kept: the
- * event is located in its own communication step.
+ * Limits of a search beyond the communication step: in communication steps, and relative to the part of the solver's
+ * step before the search. The last one is the fraction of the time to an event up to which the result is kept. The
+ * event itself is located in its own communication step.
  */
 static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
 
@@ -164,7 +164,7 @@ static bool may_go_further(const struct Instance *instance, const struct Communi
                            const struct EventProgress *progress) {
   const struct Situation *situation = instance->situation;
   const struct Span *last = &situation->last_step;
-  bool is_new = last->start == step->start; /* as if values are set before each communication step */
+  bool is_new = last->start == step->start; /* as happens if values are set before each communication step */
   bool begins = progress->searched <= fmax(step->start, last->start) && progress->count == 0;
   return last->end > step->end && begins && !is_new && !situation->input_derivatives_set;
 }
@@ -279,8 +279,8 @@ static bool is_at_corner(struct Instance *instance, double time, size_t indicato
 }
 
 /*
- * Ends the step at events without end. An importer in event mode would go on by one more event at each step; so the
- * step has not advanced for it.
+ * Ends the step at events without end. An importer in event mode would go on by one more event at each step, so for it
+ * the step does not advance.
  */
 static const char *refuse_gathering(struct Instance *instance, const struct CommunicationStep *step,
                                     struct EventProgress *progress, size_t indicator) {

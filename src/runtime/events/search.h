@@ -11,17 +11,18 @@ enum Exactness { TO_ROUNDING, BEFORE_IT };
 size_t search_work_count(void);
 
 /*
- * Finds the first time from from to to, in the solver's last step, at which an indicator changes its sign. samples: as
- * window_narrow() gives them for this window. lifted: the indicator of a contact that has just opened without speed,
+ * Finds the first time in [from, to], within the solver's last step, at which an indicator changes its sign. samples:
+ * as window_narrow() gives them for this window. lifted: the indicator of a contact that has just opened without speed,
  * whose gap may fall by the errors of the method; NULL for none. False if no indicator changes its sign. *time is NAN
- * if its zeros cannot be separated.
+ * if zeros cannot be separated.
  */
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
                       enum Exactness exactness, double *time, size_t *indicator);
 
 /*
- * For a motion that cannot reach the zero of an indicator, as where a root ends. Extrapolates the state at the end of
- * the last step along its tangent past a zero that is closer than tangent_share of the scales. False if there is none.
+ * Extrapolates the state at the end of the last step along its tangent past the zero of an indicator. This serves
+ * motions that cannot reach the zero, as where a root ends. The zero must be closer than tangent_share of the scales.
+ * False if there is none.
  */
 bool search_for_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
 

@@ -137,7 +137,7 @@ static double holding_force(const struct Settlement *settlement, size_t friction
   return settlement->acceleration[lagrangian.coordinate_count + constraint];
 }
 
-/* Perturbs in two patterns, so that the errors cannot cancel in both; the second one is evaluated once an event. */
+/* Perturbs in two patterns, so that the errors cannot cancel in both; the second one is evaluated once per event. */
 bool settlement_evaluate(struct Settlement *settlement) {
   size_t count = settlement_value_count(settlement->switches);
   double *noise = settlement->noise, *other = settlement->other_noise, factor, other_factor = 0.0;

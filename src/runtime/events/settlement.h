@@ -31,10 +31,10 @@ struct Settlement {
   double overshoot;                    /* time in s since its indicator was 0 */
   const struct BranchFacts *energetic; /* the first with holds_energy; NULL for none */
   double *energy;                      /* energies and momenta before it switched */
-  bool changed, jumped;                /* jumped: velocities or coordinates have */
+  bool changed, jumped;                /* jumped: velocities or coordinates jumped */
   bool moved, thrown, set_mode;        /* events have set coordinates; coordinates or velocities; a mode */
   bool lags;                           /* frictions have switched, and velocities were not projected since */
-  bool came_to_rest;                   /* contacts have, in their last round */
+  bool came_to_rest;                   /* contacts came to rest in their last round */
   bool is_evaluated;                   /* value[] and noise are valid */
   bool has_started;                    /* contacts and frictions have their modes of the start, for AT_START */
   bool has_shared;                     /* contacts at rest share the load */
@@ -43,7 +43,7 @@ struct Settlement {
   bool has_found_forces;               /* modes were set from a solution for all forces at rest */
   int impacts, lifts;
   struct {
-    size_t friction;        /* that switched, if nothing else has changed since; else friction_count */
+    size_t friction;        /* the last one to switch, if nothing else changed since; else friction_count */
     double mode, certainty; /* its mode before, and how many rounding errors supported leaving it */
   } last;
 };

@@ -58,7 +58,7 @@ struct Situation {
   int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode of a co-simulation */
   double time, start_time, stop_time;
   double tolerance;
-  double suggested_step; /* by the controller of a solver that restarts at each step, in s; 0 for none */
+  double suggested_step; /* proposed by a solver that restarts at each step, in s; 0 for none */
   struct Span last_step; /* of the solver; may end after time */
   double searched;       /* all events before it are handled */
   double values[];

@@ -1,5 +1,5 @@
 /*
- * Automatic choice between the Taylor method and Radau IIA: the one that covers more simulated time for an arithmetic
+ * Automatic choice between the Taylor method and Radau IIA: the one that covers more simulated time per arithmetic
  * operation makes the steps. Time and work are summed over windows of a few steps. Work is counted, not timed, so all
  * machines and restored snapshots choose alike.
  *
@@ -57,7 +57,7 @@ struct Choice {
   int64_t is_trial;        /* 1 until Radau IIA has been faster than the series */
   int64_t crosses;         /* 1 if the last Taylor step crossed a point without a series */
   double begin, work;      /* of the window: its start in s, its operations */
-  double last_speed;       /* seconds of progress an operation, in the window before */
+  double last_speed;       /* motion in s per operation, in the window before */
   double trial_work;
   double promised_step;             /* predicted first step of Radau IIA, in s */
   double rate;                      /* stiffness_rate() at the last step of a Radau window, in 1/s */

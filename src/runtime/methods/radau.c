@@ -16,7 +16,7 @@
  * follows from the contraction (1999, choose_method()). A failed attempt shortens the step to 0.9 of it or less; the
  * loop ends after ATTEMPT_LIMIT attempts or where time is too coarse.
  *
- * A step costs one Jacobian, (s + 1) / 2 factorizations an attempt and s evaluations an iteration. The snapshot holds
+ * A step costs one Jacobian, (s + 1) / 2 factorizations per attempt and s evaluations per iteration. The snapshot holds
  * all that determines a step: its start, the stages, and the numbers of the controllers.
  */
 #include <float.h>
@@ -35,7 +35,7 @@ static const double radau_safety = 0.05;
 /* Relative to the time: in a shorter first step, rounding would outweigh the change. */
 static const double shortest_first_step = 1e-12;
 
-/* Newton iterations a step, attempts a step, and steps without failure before the order may rise. */
+/* Newton iterations per step, attempts per step, and steps without failure before the order may rise. */
 enum {
   ITERATION_LIMIT = 12,
   ATTEMPT_LIMIT = 60,

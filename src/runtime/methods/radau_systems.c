@@ -77,7 +77,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
   return true;
 }
 
-/* Subtracts from sum the rows of J behind the coordinates, in the columns of the velocities, times x. */
+/* Subtracts J's columns of the velocities, in the rows below the coordinates, times x from sum. */
 static void subtract_velocities(const struct RadauSystems *systems, size_t width, const double *x, double *sum) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;

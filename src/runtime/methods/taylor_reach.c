@@ -24,7 +24,7 @@
 
 /*
  * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change(), and its
- * time derivative at s. The derivative takes Horner's rule beside the value.
+ * time derivative at s by Horner's rule alongside.
  */
 static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
   const double *x = taylor->x[i], square = s * s;

@@ -27,7 +27,7 @@ static const double horizon = 1e4;
  * effect of rounding the state.
  */
 static const double rounding = 100.0, rounding_margin = 10.0;
-/* Fractions of the step at which the defect is measured, beside its end, if the coefficients do not limit the step. */
+/* Fractions of the step at which the defect is also measured if the coefficients do not limit the step. */
 static const double places_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
 /*

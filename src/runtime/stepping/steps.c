@@ -228,7 +228,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   if (problem == NULL) *reached = last->start;
   if (*reached > step->end) *reached = last->start;
-  if (*reached < step->start) *reached = step->start; /* events before the start were reported already */
+  if (*reached < step->start) *reached = step->start; /* states up to the start were reported already */
   if (law != NULL) return stop(instance, step, law, true, *reached);
   return stop(instance, step, problem != NULL ? problem : "the motion grows without bound", ends_at_event, *reached);
 }
