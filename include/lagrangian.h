@@ -354,10 +354,7 @@ struct ImplicitTable {
   struct Sparsity pattern;
   const struct Lu *lu;         /* factorization that the solver uses (lu.h); NULL for none */
   struct LuPattern lu_pattern; /* for lu_sparse */
-  /*
-   * Computes d derivatives / d state: the elements of the pattern, in its order. NULL if directional() computes it by
-   * columns.
-   */
+  /* Computes d derivatives / d state: the elements of the pattern, in its order. NULL if directional() does so. */
   int (*jacobian)(const struct Point *point, Real *values);
 };
 
@@ -474,8 +471,7 @@ struct Lagrangian {
    */
   int (*weighted_gradient)(const struct Point *point, const struct Seed *seed, Real *gradient);
   /*
-   * For linear systems, d state / dt = A state + B input + c: matrix[i * (states + inputs + 1)] starts row i of A, B
-   * and c.
+   * For linear systems, d state / dt = A state + B input + c; row i of matrix[states][states + inputs + 1] is A, B, c.
    */
   void (*linear)(const Real *parameter, const Real *prepared, Real *matrix);
 };

@@ -16,10 +16,7 @@
 #include "arithmetic.h"
 #include "real.h"
 
-/*
- * Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the first row whose pivot is not positive to
- * rounding.
- */
+/* Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the first row whose pivot is not positive. */
 size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m);
 
 /*
@@ -28,10 +25,7 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m)
  */
 Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t place);
 
-/*
- * True if the row of a pivot is inactive in all lanes. Its pivot is -INFINITY, as that of an open contact; its unknown
- * is 0.
- */
+/* True if the row of a pivot is inactive in all lanes: the pivot is -INFINITY, as that of an open contact. */
 static inline bool ldlt_is_idle(Real pivot) {
   Condition has_part = pivot != -INFINITY;
   return !ANYWHERE(has_part);

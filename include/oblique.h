@@ -22,10 +22,7 @@
 /* Numbers of storage behind those of saddle.h, see above. */
 #define OBLIQUE_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
-/*
- * The arguments and results are those of saddle.h. oblique_factor() also returns 1 if 1 + E^T S C is singular: the
- * friction jams.
- */
+/* As in saddle.h. oblique_factor() also returns 1 if 1 + E^T S C is singular: the friction jams. */
 size_t oblique_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
 void oblique_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                    double *x);

@@ -73,10 +73,7 @@ static inline double random_polynomial(const double coefficients[8], double x) {
   return sum;
 }
 
-/*
- * Returns the normal quantile of a probability in (0, 1), to 16 digits (M. J. Wichura: Algorithm AS 241, Applied
- * Statistics 37, 1988).
- */
+/* Returns the normal quantile of a probability in (0, 1), to 16 digits (M. J. Wichura: Algorithm AS 241, 1988). */
 static inline double random_quantile(double probability) {
   static const double above[3][8] = {
       {2.5090809287301226727e3, 3.3430575583588128105e4, 6.7265770927008700853e4, 4.5921953931549871457e4,
@@ -104,10 +101,7 @@ static inline double random_quantile(double probability) {
   return centred < 0.0 ? -size : size;
 }
 
-/*
- * Returns a standard normal number, at most 8.2 in size: the quantile of a uniform number at the middle of its interval
- * of 2^-52.
- */
+/* Returns a standard normal number, at most 8.2 in size: the quantile at the middle of an interval of 2^-52. */
 static inline double random_gauss(double seed, double k) {
   return random_quantile(((double)(random_word(seed, k, 1) >> 12) + 0.5) * 0x1p-52);
 }

@@ -20,10 +20,7 @@
 #include "real.h"
 #include "reciprocals.h"
 
-/*
- * Coefficients of a series. The order of a method is at most SERIES_LENGTH - 2: the state has one coefficient more than
- * its derivative.
- */
+/* Length of a series. Orders reach SERIES_LENGTH - 2: the state has one coefficient more than its derivative. */
 enum { SERIES_LENGTH = 24 };
 
 typedef Real Series[SERIES_LENGTH];
@@ -149,10 +146,7 @@ static SERIES_NOT_INLINE double series_middle(int k, const double *a, const doub
   return m[0];
 }
 
-/*
- * Computes the middle terms of a list of products, four at a time. Serves systems whose unrolled code would not fit the
- * instruction cache.
- */
+/* Computes the middle terms of a list of products, four at a time, for systems too large for unrolled code. */
 struct SeriesFactors {
   const double *a, *b;
 };

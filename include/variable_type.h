@@ -1,7 +1,4 @@
-/*
- * The types of FMI variables. Parameters of all types are stored as numbers: whole ones for integers, 0 or 1 for
- * Booleans.
- */
+/* The types of FMI variables. Parameters of all types are stored as numbers; those of Booleans are 0 or 1. */
 #ifndef VARIABLE_TYPE_H
 #define VARIABLE_TYPE_H
 

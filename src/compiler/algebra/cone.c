@@ -39,10 +39,7 @@ static void grow(struct Cone *cone, size_t capacity) {
 /* Steps of graph_work() for a visit, with the algebra that follows it. */
 enum { VISIT_WORK = 8 };
 
-/*
- * Sorts the members. Loops over all nodes between the first and the last if at least one in SPARSENESS is a member,
- * else uses qsort().
- */
+/* Sorts the members, by a loop over all nodes between the first and the last if one in SPARSENESS is a member. */
 static void sort(struct Cone *cone) {
   enum { SPARSENESS = 16 };
   Node first = (Node)-1, last = 0;

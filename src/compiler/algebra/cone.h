@@ -22,10 +22,7 @@ void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targ
 /* How a collection goes on from a member: to its operands, not below it, or not at all. */
 enum Visit { VISIT_OPERANDS, VISIT_NOTHING_BELOW, VISIT_NO_MORE };
 
-/*
- * Collects as visit() decides, which is called once for each member. False, with no members, if visit() ended the
- * collection.
- */
+/* Collects as visit() decides, which sees each member once. False, with no members, if visit() ended the collection. */
 bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count,
                        enum Visit (*visit)(void *context, const struct Graph *graph, Node node), void *context);
 

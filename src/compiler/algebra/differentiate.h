@@ -25,10 +25,7 @@ struct Derivatives {
   size_t capacity;
 };
 
-/*
- * Computes the same, and keeps the derivatives of all nodes below the targets in known, for further calls with the same
- * seeds.
- */
+/* Computes the same, and keeps the derivatives of all nodes below the targets in known, for the same seeds. */
 void derivatives_find(struct Graph *graph, const Node *targets, size_t count, const Node *seeds,
                       struct Derivatives *known, Node *derivatives);
 

@@ -47,10 +47,7 @@ static const char *name_of(const struct Printer *printer, Node node) {
   return names != NULL && node != printer->whole && (size_t)node < names->count ? names->of[node] : NULL;
 }
 
-/*
- * Returns a named node base^p of which base^exponent is a whole power, and sets *exponent to that power; else returns
- * base.
- */
+/* Returns a named power of the base of which base^exponent is the *exponent-th whole power; else returns base. */
 static Node named_root(const struct Printer *printer, Node base, double *exponent) {
   const struct Vertex *vertices = printer->graph->vertices;
   for (size_t i = 0; printer->names != NULL && i < printer->names->named_count; i++) {
@@ -84,10 +81,7 @@ static void print_power(struct Printer *printer, Node base, double exponent) {
   print_rounded(printer->file, exponent);
 }
 
-/*
- * Prints the numerator (sign 1) or denominator (sign -1): the factors whose exponent has that sign, after the number
- * unless it is 1.
- */
+/* Prints the numerator (sign 1) or denominator (sign -1): the number unless it is 1, and factors of that sign. */
 static void print_factors(struct Printer *printer, double number, const struct Factor *factors, int count, int sign) {
   const char *separator = "";
   if (number != 1.0) {

@@ -27,10 +27,7 @@ static double sign_of(double x) {
   return (double)((x > 0.0) - (x < 0.0));
 }
 
-/*
- * Returns sin(angle + quarter_turns pi/2). Multiples of pi/2 give exact values, so that linearization at theta = pi has
- * no rounding errors.
- */
+/* Returns sin(angle + quarter_turns pi/2). Multiples of pi/2 give exact values, for linearization there. */
 static double exact_sine(double angle, double quarter_turns) {
   double turns = quarter_turns + nearbyint(angle / (M_PI / 2));
   if (fabs(turns) < 1e6 && angle == (turns - quarter_turns) * (M_PI / 2)) {

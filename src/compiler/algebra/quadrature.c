@@ -17,10 +17,7 @@ static long double legendre(size_t degree, long double x, long double *derivativ
   return value;
 }
 
-/*
- * Finds each zero of P_n by Newton's method from Tricomi's estimate. It converges quadratically, in about four steps;
- * ten leave a margin.
- */
+/* Finds each zero of P_n by Newton's method from Tricomi's estimate, in about four steps; ten leave a margin. */
 void quadrature_rule(size_t count, double *nodes, double *weights) {
   enum { NEWTON_STEPS = 10 };
   for (size_t i = 0; i < count; i++) {

@@ -8,8 +8,5 @@
 /* Most nodes of a rule. */
 enum { QUADRATURE_LIMIT = 200 };
 
-/*
- * Computes the nodes in (0, 1), ascending, and their weights; count is at most QUADRATURE_LIMIT. Takes O(count^2)
- * operations.
- */
+/* Computes the nodes in (0, 1), ascending, and their weights, for 1 to QUADRATURE_LIMIT nodes, in O(count^2) steps. */
 void quadrature_rule(size_t count, double *nodes, double *weights);

@@ -15,10 +15,7 @@
 
 Node add(struct Graph *graph, Node left, Node right);
 
-/*
- * Returns left + right as one operation, without gathering like terms, so that both sums stay shared with their other
- * users.
- */
+/* Returns left + right as one operation: like terms are not gathered, so that both sums remain shared. */
 Node add_whole(struct Graph *graph, Node left, Node right);
 
 Node subtract(struct Graph *graph, Node left, Node right);
@@ -49,10 +46,7 @@ struct Factor {
 /* Most factors of a product, and terms of a sum, that are compared with others. */
 enum { FACTOR_LIMIT = 12, TERM_LIMIT = 6 };
 
-/*
- * Finds the factors of a node without its coefficient, ascending by base. Returns their number, or -1 if there are more
- * than FACTOR_LIMIT.
- */
+/* Finds the factors of a node without its coefficient, ascending by base. Returns their number, -1 if too many. */
 int factors_of(const struct Graph *graph, Node node, struct Factor factors[FACTOR_LIMIT]);
 
 /* Returns the product of factors, denominators last. */

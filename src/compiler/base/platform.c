@@ -12,10 +12,7 @@
 #include <fcntl.h>
 #include <io.h>
 
-/*
- * Windows has no memory streams. A temporary file stands in, which Windows keeps in memory if possible, and deletes
- * when it is closed.
- */
+/* A temporary file, since Windows has no memory streams. It is kept in memory if possible, and deleted when closed. */
 FILE *open_text_stream(char **text, size_t *length) {
   *text = NULL;
   *length = 0;

@@ -9,18 +9,14 @@
 FILE *open_text_stream(char **text, size_t *length);
 
 /*
- * Closes the stream; takes the pointers of open_text_stream(). The caller frees *text with free(). False without
- * memory.
+ * Closes the stream; takes the pointers of open_text_stream(). The caller frees *text by free(). False without memory.
  */
 bool close_text_stream(FILE *file, char **text, size_t *length);
 
 /* Creates a directory in an existing one. True if it exists afterwards; else errno is set. */
 bool make_directory(const char *path);
 
-/*
- * Returns the canonical absolute path of a file, which the caller frees with free(); NULL with errno set if there is no
- * such file.
- */
+/* Returns the canonical absolute path of a file, to be freed by free(); NULL with errno set if there is none. */
 char *resolve_path(const char *path);
 
 /* Return the first and the last separator of a path, / or on Windows also \; NULL if there is none. */

@@ -1,7 +1,4 @@
-/*
- * Dependencies of values on symbols (FMI 2.0.4, section 2.2.8); those of accelerations follow from the equations of
- * motion.
- */
+/* Dependencies of values on symbols (FMI 2.0.4, section 2.2.8); for accelerations, by the equations of motion. */
 #pragma once
 
 #include "mechanics/equations.h"

@@ -1,7 +1,4 @@
-/*
- * The variables of the FMU, in the order of their value references. Variables of a kind are consecutive, in the order
- * of their indices.
- */
+/* The variables of the FMU in the order of value references: by kinds, then by their indices. */
 #pragma once
 
 #include "lagrangian.h"

@@ -318,10 +318,7 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   mark_reinitialized_states(interface, model, equations);
 }
 
-/*
- * Returns the expression of an acceleration. In trees its symbol stands for it, as each expression would contain the
- * whole tree.
- */
+/* Returns the expression of an acceleration; in trees its symbol, as each expression would contain the whole tree. */
 static Node acceleration_of(const struct Model *model, const struct Equations *equations, size_t i) {
   bool is_in_tree = !equations->explicit_form && inertia_block_of(equations->inertia, i)->tree != NULL;
   return is_in_tree ? model->unknowns.accelerations[i] : equations->acceleration[i];

@@ -28,10 +28,7 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
   }
 }
 
-/*
- * Returns the names of the first calculated parameters and definitions. Definitions do not occur in linearized
- * equations.
- */
+/* Returns the names of the first calculated parameters and definitions. Linearized equations have no definitions. */
 static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
   for (size_t i = 0; i < model->definitions.count; i++) /* makes all nodes before they are counted */

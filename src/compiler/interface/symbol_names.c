@@ -6,10 +6,7 @@
 #include "algebra/cone.h"
 #include "base/memory.h"
 
-/*
- * LENGTH_LIMIT: bytes of a list; C guarantees literals of 4095, and shorter messages are easier to read. WORD_BITS:
- * symbols in a sweep.
- */
+/* Bytes of a list: C guarantees literals of 4095, and shorter messages are easier to read. Symbols in a sweep. */
 enum { LENGTH_LIMIT = 1000, WORD_BITS = 64 };
 
 static void add_symbol(struct SymbolNames *names, size_t symbol) {

@@ -12,10 +12,7 @@ struct SymbolNames {
 /* Adds the symbols of count expressions. */
 void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
 
-/*
- * Adds to names[i] the symbols of nodes[i]. Faster than one at a time if the nodes share subexpressions: each sweep
- * treats 64 symbols.
- */
+/* Adds to names[i] the symbols of nodes[i]. Faster than one at a time, as each sweep treats 64 symbols. */
 void symbol_names_add_each(struct SymbolNames *names, const struct Graph *graph, const Node *nodes, size_t count);
 
 /* Returns a list such as "m, l"; a long one ends with "...". */

@@ -7,10 +7,7 @@
 
 #include "model/model.h"
 
-/*
- * Returns U - sum v dU/dv, the energy stored by a potential. Terms linear in the velocities, such as magnetic ones,
- * store none.
- */
+/* Returns U - sum v dU/dv, the energy stored by a potential. Terms linear in the velocities store none. */
 Node stored_energy(const struct Model *model, Node potential);
 
 /*

@@ -18,10 +18,7 @@ struct Equations {
    * blocks, and the symbols of others.
    */
   Node *right_side, *residual, *acceleration;
-  /*
-   * The accelerations are given explicitly, as in linearized systems. residual has M = 1; inertia is M at the operating
-   * point.
-   */
+  /* Linearized: the accelerations are explicit. residual has M = 1; inertia is M at the operating point. */
   bool explicit_form;
   struct NodeList rates; /* of the model's first-order states, without unknowns of unrolled blocks */
   /* Power of the nonconservative forces: sum of Q_i v_i, F . dr/dt of Cartesian forces, and that of the drives. */

@@ -11,10 +11,7 @@ static bool is_rate(const struct Graph *graph, Node constraint) {
   return graph_depends_on(graph, constraint, VELOCITY);
 }
 
-/*
- * Collects m r'' for the positions, and I phi'' for the angles, of particles and planar bodies. Points without mass add
- * nothing.
- */
+/* Collects m r'' and I phi'' of particles and planar bodies. Points without mass add nothing. */
 static struct VirtualWork work_on_positions(const struct Model *model, const Node *seeds, enum SymbolKind kind) {
   struct Graph *graph = model->graph;
   struct VirtualWork work = {0};

@@ -129,10 +129,7 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
   }
 }
 
-/*
- * Returns the unknowns of unrolled blocks as expressions, and the right sides of the other blocks, which are solved at
- * run time.
- */
+/* Returns the unknowns of unrolled blocks as expressions, and the right sides of those solved at run time. */
 static Node *solution_of(struct Graph *graph, const struct Equations *equations, const Node *right_side) {
   Node *solution = allocate(row_count(equations), sizeof *solution);
   inertia_solve(graph, equations->inertia, right_side, solution);

@@ -289,10 +289,7 @@ static Node *zero_symbols(const struct Model *model) {
   return zero;
 }
 
-/*
- * Fills a row of A, B and c from the derivative of the named state. Reports a derivative that is not linear with
- * constant coefficients.
- */
+/* Fills a row of A, B and c; reports a derivative that is not linear with constant coefficients. */
 static void fill_row(const struct Model *model, Node derivative, size_t row, const char *name,
                      struct LinearSystem *system, struct Diagnostics *diagnostics) {
   struct Graph *graph = model->graph;

@@ -21,10 +21,7 @@ struct LinearSystem {
 struct Equations *linearize(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics);
 
-/*
- * Returns the matrices of equations that are linear in states and inputs; NULL after reporting the accelerations that
- * are not.
- */
+/* Returns the matrices of linear equations; NULL after reporting the derivatives that are not linear. */
 struct LinearSystem *linear_system_of(const struct Model *model, const struct Equations *equations,
                                       struct Diagnostics *diagnostics);
 

@@ -8,10 +8,7 @@
 #include "model/time_derivative.h"
 #include "mechanics/virtual_work.h"
 
-/*
- * Returns the generalized forces of Cartesian forces and torques along the symbols of a kind, each of which is followed
- * by its rate.
- */
+/* Returns the generalized forces of point forces and torques along symbols of a kind, each followed by its rate. */
 static Node *point_forces(const struct Model *model, enum SymbolKind kind, size_t count) {
   const struct Forces *forces = &model->forces;
   struct Graph *graph = model->graph;

@@ -208,10 +208,7 @@ static void append_energies(const struct Model *model, const struct Equations *e
   switching->energy_count = list->count - first;
 }
 
-/*
- * Returns the scale of the speed: the sum, over both velocities v and all v_i in them, of
- * |dv/dv_i| (|v_i| + nominal_i).
- */
+/* Returns the scale of the speed: over both velocities v and their v_i, the sum of |dv/dv_i| (|v_i| + nominal_i). */
 static Node scale_of_plane(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
   Node scale = ZERO;

@@ -34,8 +34,5 @@ struct SwitchingExpressions {
 /* Returns the expressions, which contain acceleration symbols; NULL if nothing switches. */
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations);
 
-/*
- * Replaces the modes of branches in a node by the signs of their indicators, as for results, whose branches cause no
- * events.
- */
+/* Replaces the modes of branches by the signs of their indicators, as for results, which cause no events. */
 Node without_branches(const struct Model *model, Node node);

@@ -52,10 +52,7 @@ static size_t coordinate_of(const struct Model *model, const struct Friction *fr
   return is_alone ? (size_t)graph_symbol_of(graph, gradient.symbols[0])->index : model->coordinates.count;
 }
 
-/*
- * A constraint a x + b y = constant between two coordinates, or a x + b y = 0 between their velocities, with constant a
- * and b.
- */
+/* A constraint a x + b y = constant between coordinates, or a x + b y = 0 between velocities; a and b are constant. */
 struct Gear {
   size_t coordinate[2];
   Node coefficient[2];

@@ -51,10 +51,7 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
 /* Rotates the frame by a unit quaternion q[0] + q[1] i + q[2] j + q[3] k. */
 void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
 
-/*
- * Applies a step, either a translation or a rotation, relative to the frame. A step with both would have its velocity
- * along other axes.
- */
+/* Applies a translation or a rotation relative to the frame. One with both would have a velocity along other axes. */
 void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step);
 
 /* Returns the velocity of a point of the frame, along its axes; rate is the offset's time derivative. */

@@ -1,7 +1,4 @@
-/*
- * A mechanical system: variables, energies and forces. The reader fills it from system.xml; massless.h adds
- * regularizations.
- */
+/* A mechanical system: variables, energies and forces, as read from system.xml; massless.h adds regularizations. */
 #pragma once
 
 #include "algebra/units/quantity.h"
@@ -69,10 +66,7 @@ struct PointForce {
   Node position, force;
 };
 
-/*
- * A torque, and the angular velocity of its object, along the same axes. The velocity is also a function of virtual
- * displacements.
- */
+/* A torque and the angular velocity of its object, along the same axes; also for virtual displacements. */
 struct Torque {
   struct Vector torque, angular_velocity;
 };
@@ -226,10 +220,7 @@ struct Model {
   struct Experiment experiment;
 };
 
-/*
- * Returns the index of a coordinate, velocity or first-order state in the state vector; for other symbols, their own
- * index.
- */
+/* Returns the index of a coordinate, velocity or first-order state in the state; of other symbols, their index. */
 size_t state_place(size_t coordinates, const struct Symbol *symbol);
 
 /* Returns the number of time derivatives of the input that are inputs too; they follow it. */

@@ -24,8 +24,7 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
 }
 
 /*
- * Returns this component of the unit vector that a friction in a plane opposes: the direction of the velocity, or the
- * heading.
+ * Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading.
  */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;

@@ -12,10 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/*
- * ATOM_LIMIT bounds the size of a monomial; MONOMIAL_LIMIT bounds that of a polynomial: larger ones are no simpler than
- * the expressions.
- */
+/* Limits of the size of a monomial and of a polynomial: larger ones are no simpler than the expressions. */
 enum { ATOM_LIMIT = 24, MONOMIAL_LIMIT = 400 };
 
 struct Monomial {

@@ -38,10 +38,7 @@ struct Dimension dimension_multiply(struct Dimension first, struct Dimension sec
 /* True if all exponents are whole, as FMI requires; false if unknown. */
 bool dimension_is_whole(struct Dimension dimension);
 
-/*
- * Returns the end of a message about a quantity of unit 1 where another unit is expected, such as cos(a) for a length;
- * else "".
- */
+/* Returns a hint for a quantity of unit 1 where another is expected, such as cos(a) for a length; else "". */
 const char *unit_hint(struct Dimension dimension);
 
 /* True if both are the same quantity. The radian counts as 1; an unknown dimension agrees with any. */

@@ -73,10 +73,7 @@ void block_factor(struct Graph *graph, struct InertiaBlock *block) {
   block->factor = factors_create(graph, &pattern, block->mass);
 }
 
-/*
- * Sherman-Morrison update: corrects a solution for one column added to K, that of a force; response is the solution for
- * the column.
- */
+/* Sherman-Morrison update of x for a column added to K, that of a force; response is the solution for the column. */
 static void take_response(struct Graph *graph, size_t count, const Node *response, size_t force, Node *x) {
   Node own = divide(graph, x[force], add(graph, ONE, response[force]));
   for (size_t i = 0; i < count; i++) x[i] = subtract(graph, x[i], multiply(graph, response[i], own));

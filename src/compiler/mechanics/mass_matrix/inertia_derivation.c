@@ -129,10 +129,7 @@ static void add_oblique(struct Inertia *inertia, const struct Elements *oblique)
   }
 }
 
-/*
- * Gives the zero rows of open contacts and sliding frictions a diagonal for the symbolic solution, so that their forces
- * are 0.
- */
+/* Gives zero rows, of open contacts and sliding frictions, a diagonal for the symbolic solution: their forces are 0. */
 static void append_open_rows(const struct Model *model, struct Elements *elements) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;

@@ -245,10 +245,7 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
   return is_local;
 }
 
-/*
- * Adds a constraint within one link to its rows, without motion. Other constraints exclude a tree; saddle.h solves
- * them.
- */
+/* Adds a constraint within one link to its rows, without motion. Others exclude a tree; saddle.h solves them. */
 static void add_constraints(struct Builder *builder, const struct Border *border) {
   const struct Elements *jacobian = border->jacobian;
   size_t n = builder->model->coordinates.count;

@@ -20,10 +20,7 @@ struct Elements elements_of(const struct Model *model, const Node *momentum, con
 /* Appends an element; its position must be new. */
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node);
 
-/*
- * Connected components: coordinates that are coupled, directly or through others. They are numbered by their first
- * coordinates.
- */
+/* Connected components: coordinates that are coupled, directly or through others; numbered by their first ones. */
 struct Components {
   size_t *of; /* [coordinates] */
   size_t count;

@@ -11,10 +11,7 @@
 /* Returns pseudorandom numbers in [0.5, 1.5), by a linear congruential generator. */
 double next_random(uint64_t *seed);
 
-/*
- * Reports a coordinate without inertia, and an M that is singular everywhere or has a negative pivot at the start
- * values; false then.
- */
+/* False after reporting a coordinate without inertia, an M singular everywhere, or a negative pivot at the start. */
 bool pivots_check(const struct Model *model, const struct Inertia *inertia, struct Diagnostics *diagnostics);
 
 /* True if a tree has factors: it is not singular everywhere, and has no negative pivot at the start values. */

@@ -27,10 +27,7 @@ struct SpatialVector spatial_scale(struct Graph *graph, Node factor, struct Spat
 /* Returns the power of a force along a motion. */
 Node spatial_dot(struct Graph *graph, struct SpatialVector force, struct SpatialVector motion);
 
-/*
- * Returns the inertia of a body. Its centre of mass is at offset, and its tensor about that; both along the frame's
- * axes.
- */
+/* Returns the inertia of a body: offset of its centre of mass, and tensor about that, along the frame's axes. */
 struct SpatialInertia spatial_inertia_of_body(struct Graph *graph, Node mass, struct Vector offset,
                                               const struct Matrix *tensor);
 
@@ -45,10 +42,7 @@ struct SpatialInertia spatial_inertia_less(struct Graph *graph, const struct Spa
 struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct SpatialInertia *inertia,
                                            struct SpatialVector motion);
 
-/*
- * Return an inertia or a force in the parent frame, in which the frame has this pose: about the parent's origin, along
- * its axes.
- */
+/* Return an inertia or a force in the parent frame, about its origin; pose is that of the frame in it. */
 struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struct Pose *pose,
                                                 const struct SpatialInertia *inertia);
 struct SpatialVector spatial_force_to_parent(struct Graph *graph, const struct Pose *pose, struct SpatialVector force);
