@@ -1,7 +1,4 @@
-/*
- * Dry friction: stick and slip. These are functions of struct FrictionLaws; frictions in a plane are only reported and
- * checked here.
- */
+/* Dry friction: stick and slip, for struct FrictionLaws. Frictions in a plane are only reported and checked here. */
 #ifndef FRICTIONS_H
 #define FRICTIONS_H
 

@@ -51,10 +51,7 @@ static inline bool friction_sticks(const struct Settlement *settlement, size_t f
 /* Sets the mode of a friction: the sign of its velocity, which one in a plane ignores, or 0 for sticking. */
 void set_friction(struct Settlement *settlement, size_t friction, double mode);
 
-/*
- * Returns the component of a unit force of sliding friction: the sign of the velocity, or a component of the slip
- * direction.
- */
+/* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */
 double sliding_share(const struct Settlement *settlement, size_t friction);
 
 /* True if the friction follows from the force of the contact. */

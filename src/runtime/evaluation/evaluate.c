@@ -71,10 +71,7 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   return are_finite(derivative, lagrangian.state_count);
 }
 
-/*
- * Moves a point at which a function has no value back to the end of its piece: importers try such points. False if
- * there is none.
- */
+/* Moves a point without a value back to the end of its piece: importers try such points. False if there is none. */
 static bool come_back(struct Instance *instance, struct Point *point) {
   bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
   return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->come_back(instance, point);

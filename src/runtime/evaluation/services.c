@@ -41,10 +41,7 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
   return evaluate_derivatives(instance, &point, derivative);
 }
 
-/*
- * Computes the Jacobian column by column from directional derivatives. Its workspace follows the inputs in
- * instance->work.
- */
+/* Computes the Jacobian by columns from directional derivatives. Its workspace follows the inputs in instance->work. */
 static int jacobian_by_directions(struct Instance *instance, const struct Point *point, double *values) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   const size_t states = lagrangian.state_count;

@@ -4,10 +4,7 @@
 
 #include "instance/solver.h"
 
-/*
- * Computes d state / dt at a time and state, with the inputs of that time; counts the evaluation. False if it does not
- * exist.
- */
+/* Computes d state / dt at a time and state, with the inputs of that time; counts it. False if it does not exist. */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
 /* Computes the Jacobian, in the order of lagrangian.implicit.pattern; counts it. False if M is singular. */

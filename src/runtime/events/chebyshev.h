@@ -22,10 +22,7 @@ void chebyshev_coefficients(const Real *f, Real *c);
 /* Returns a bound of |p(s) - c[0]|: the sum of the other |c[k]|. */
 Real chebyshev_range(const Real *c);
 
-/*
- * Returns |c[7]| + |c[8]|, an estimate of the interpolation error; and its largest ratio to the range of a resolved
- * function.
- */
+/* Returns |c[7]| + |c[8]|, an estimate of the interpolation error; its largest ratio to the range, if resolved. */
 Real chebyshev_tail(const Real *c);
 static const double chebyshev_resolved = 1e-4;
 

@@ -24,10 +24,7 @@ static void assign(struct Settlement *settlement, const struct EventFacts *event
   }
 }
 
-/*
- * Stores the conditions before events: all, or those that contacts decide. For an expression it is the last nonzero
- * sign.
- */
+/* Stores the conditions before events: all, or those that contacts decide. For expressions: the last nonzero sign. */
 static void note_conditions(struct Settlement *settlement, bool all) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->event_count; i++) {

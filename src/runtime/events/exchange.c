@@ -74,10 +74,7 @@ static double shift_of(double noise, double rounding) {
   return shift > 0.0 && shift < largest_shift ? shift : largest_shift;
 }
 
-/*
- * Computes shift[i] of each indicator; workspace follows. Small indicators, such as gaps in large units, get small
- * shifts.
- */
+/* Computes shift[i] of each indicator; workspace follows. Small indicators, such as gaps in large units, get less. */
 static void find_shifts(struct Instance *instance, const double *value, double *shift) {
   size_t count = indicator_count(lagrangian.switches);
   double *rounding = shift + count, *rounded = rounding + count;
@@ -176,10 +173,7 @@ static bool go_to_zero(struct Settlement *settlement, size_t branch) {
   return false;
 }
 
-/*
- * Handles the event at the first zero that was crossed; sets *passes if there was one. Returns NULL, or the reason for
- * a failure.
- */
+/* Handles the event at the first zero that was crossed, *passes if there was one. Returns NULL, or a reason to stop. */
 static const char *pass_late(struct Instance *instance, bool *passes, bool *changed) {
   double time = instance->situation->time, *state = instance->event_state, *before = state + lagrangian.state_count;
   size_t size = lagrangian.state_count * sizeof *state;

@@ -169,10 +169,7 @@ static bool may_go_further(const struct Instance *instance, const struct Communi
   return last->end > step->end && begins && !is_new && !situation->input_derivatives_set;
 }
 
-/*
- * Searches a solver step that serves many communication steps beyond the present one, so that the next ones need no
- * search.
- */
+/* Searches a solver step beyond the present communication step, so that the next ones need no search. */
 static void search_further(struct Instance *instance, const struct CommunicationStep *step,
                            struct EventProgress *progress) {
   struct Situation *situation = instance->situation;

@@ -272,10 +272,7 @@ static double first_departure(struct Search *search, size_t indicator, double fr
 /* Longest extrapolation along a tangent, as a fraction of the scale of the state. */
 static const double tangent_share = 1e-9;
 
-/*
- * Returns the time along the tangent, rate, from the state at last->end to the first zero of an indicator; INFINITY for
- * none.
- */
+/* Returns the time along the tangent, rate, from the end of the last step to the first zero; INFINITY for none. */
 static double tangent_to_zero(struct Search *search, double time, const double *rate, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   double way = INFINITY, share = INFINITY, least = 8.0 * DBL_EPSILON * fabs(time);

@@ -143,10 +143,7 @@ bool settle_explain(struct Instance *instance, double time, double *state) {
   return laws->explain(&settlement);
 }
 
-/*
- * Logs a friction that jams a contact or a constraint, as where it makes the equations of motion singular. False if
- * none does.
- */
+/* Logs a friction that jams a contact or a constraint, as where the equations become singular. False if none does. */
 static bool explain_jam(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   const struct FrictionLaws *laws = settlement->switches->friction_laws;

@@ -116,10 +116,7 @@ static bool values_rounded(struct Settlement *settlement, bool otherwise, double
   return settlement_values(settlement, settlement->rounded, value);
 }
 
-/*
- * Adds the rounding errors of the values' own operations, which perturbations of the state may miss where large terms
- * cancel.
- */
+/* Adds rounding errors of the values' operations, which perturbations of the state miss where large terms cancel. */
 static void take_roundings(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double *rounding = settlement->rounding;

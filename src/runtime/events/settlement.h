@@ -1,7 +1,4 @@
-/*
- * State of an event resolution in progress (settle.c), shared by the files that find modes and the state after an
- * event.
- */
+/* An event resolution in progress (settle.c), shared by the files that find modes and the state after an event. */
 #ifndef SETTLEMENT_H
 #define SETTLEMENT_H
 
@@ -67,10 +64,7 @@ struct ContactLaws {
    * or the reason why there is none.
    */
   const char *(*settle_forces)(struct Settlement *settlement, bool *again);
-  /*
-   * After those: closes contacts that touch at rest, so that they share the load; sets *again if there are any. Returns
-   * as above.
-   */
+  /* After those: closes contacts that touch at rest, to share the load; sets *again if any. Returns as above. */
   const char *(*share_load)(struct Settlement *settlement, bool *again);
   /* Moves start values that penetrate contacts by rounding; false if velocities cannot follow. */
   bool (*lift_start)(struct Settlement *settlement);
@@ -84,10 +78,7 @@ struct ContactLaws {
 
 /* Frictions; FMUs without any do not link them. */
 struct FrictionLaws {
-  /*
-   * Lets one friction stick or slide; sets *again if there was any. Returns NULL, or the reason why there is no
-   * consistent mode.
-   */
+  /* Lets one friction stick or slide; sets *again if any. Returns NULL, or the reason why no mode is consistent. */
   const char *(*act)(struct Settlement *settlement, bool *again);
   /* Updates the reported modes; sets *again if any changed. False if the accelerations do not exist. */
   bool (*tell)(struct Settlement *settlement, bool *again);
@@ -132,10 +123,7 @@ bool settlement_evaluate(struct Settlement *settlement);
 /* Evaluates the values at a state, without rounding error bounds. */
 bool settlement_values(struct Settlement *settlement, const double *state, double *value);
 
-/*
- * Evaluates value[] at a point with accelerations of 0, and no force but that of one constraint; constraints.count for
- * none.
- */
+/* Evaluates value[] at a point with accelerations of 0, and the force of one constraint; constraints.count for none. */
 void settlement_values_of_force(const struct Settlement *settlement, const struct Point *point, size_t constraint,
                                 double force, double *value);
 

@@ -117,10 +117,7 @@ static bool expand_sampled(const struct Window *window, const double *samples, s
   return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, noise);
 }
 
-/*
- * Expands the accelerations and forces. False if one is not resolved; a constraint's force is named in
- * window->function.
- */
+/* Expands the accelerations and forces. False if one is not resolved; window->function names a constraint's force. */
 static bool expand_accelerations(struct Window *window, double noise) {
   size_t count = lagrangian.switches->watched_acceleration_count, i = count;
   bool is_resolved = true;

@@ -6,10 +6,7 @@
 #include "fmi/check.h"
 #include "instance/initial_state.h"
 
-/*
- * The parts of one block of memory: the weights of derivatives, results and states, and the gradient of the weighted
- * sum.
- */
+/* Parts of one block of memory: weights of derivatives, results and states, and the gradient of the weighted sum. */
 struct Weights {
   double *derivative, *result, *state, *gradient;
 };

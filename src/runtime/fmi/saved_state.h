@@ -1,7 +1,4 @@
-/*
- * Saves, restores and serializes the state of an instance. The caller's pointer points to a block
- * (instance/snapshot.h).
- */
+/* Saves, restores and serializes the state of an instance. The caller points to a block of instance/snapshot.h. */
 #ifndef SAVED_STATE_H
 #define SAVED_STATE_H
 

@@ -10,10 +10,7 @@ static const struct ArrayVariable *array_with(unsigned place) {
   return NULL;
 }
 
-/*
- * Counts the values of the variables. False, after logging an error, if a reference is unknown or that of an array's
- * element.
- */
+/* Counts the values of the variables. False, after logging an error, for unknown references and elements of arrays. */
 static bool count_values(struct Instance *instance, const fmi3ValueReference vr[], size_t nvr, size_t *count) {
   *count = 0;
   for (size_t i = 0; i < nvr; i++) {

@@ -1,7 +1,4 @@
-/*
- * Event handling of a system: locates events, and finds the modes, velocities and states after them. FMUs without
- * events do not link it.
- */
+/* Event handling: locates events; finds modes, velocities and states after them. Linked only if there are events. */
 #ifndef EVENT_LAWS_H
 #define EVENT_LAWS_H
 
@@ -60,10 +57,7 @@ struct EventLaws {
   const char *(*update)(struct Instance *instance, bool *changed);
   /* Handles the next event in the solver's last step. Returns NULL, or the reason why the motion ends there. */
   const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
-  /*
-   * Checks the conditions at the end of a communication step. Returns NULL, or the violated one, after logging the
-   * cause.
-   */
+  /* Checks the laws at the end of a communication step. Returns NULL, or the violated one, after logging the cause. */
   const char *(*check)(struct Instance *instance, double time);
   /*
    * Handles a solver that cannot go on: the zero of an indicator that it cannot reach may be near. Returns NULL after

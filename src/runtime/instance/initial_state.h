@@ -1,7 +1,4 @@
-/*
- * States whose start values are expressions of parameters. Before the simulation they follow the parameters, unless
- * they were set themselves.
- */
+/* States whose start values are expressions of parameters. Until the start they follow these, unless set themselves. */
 #ifndef INITIAL_STATE_H
 #define INITIAL_STATE_H
 
@@ -18,10 +15,7 @@ void initial_state_set(struct Instance *instance, size_t state);
 /* Updates the states that follow from the parameters. */
 void initial_state_follow(struct Instance *instance);
 
-/*
- * Adds to state[state_count] the directional derivative of the states that follow from parameters. scratch:
- * state_count.
- */
+/* Adds to state[state_count] the directional derivative of states that follow from parameters. scratch: state_count. */
 void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch);
 
 /* Checks that the start values are finite; an error names the state. */

@@ -23,10 +23,7 @@ struct Projection {
    * discarded; the state is then as before.
    */
   bool (*follow_change)(struct Instance *instance);
-  /*
-   * Returns the constraint of largest residual among those that the last project() or drift() at this time could not
-   * fulfil.
-   */
+  /* Returns the constraint of largest residual after the last project() or drift(), at the same time, has failed. */
   size_t (*unkept)(struct Instance *instance, double time);
   /*
    * Returns the name of the constraint whose row of the Jacobian is closest to singular at a state, as at the limit of

@@ -1,7 +1,4 @@
-/*
- * Workspace of event handling. A block stays with the instance, so steps allocate no memory once the largest was
- * needed.
- */
+/* Workspace of event handling. Blocks stay with the instance, so that steps allocate no memory in the long run. */
 #ifndef SCRATCH_H
 #define SCRATCH_H
 

@@ -25,10 +25,7 @@ struct Solver {
   bool starts_anew;
   /* Returns the bytes of the solver's part of the snapshot, at instance->saved; NULL for none. */
   size_t (*saved_size)(void);
-  /*
-   * True if the solver could have saved this part, at any alignment, in a snapshot with these fixed fields. NULL for
-   * none.
-   */
+  /* True if the solver could have saved this part, at any alignment, with these fixed fields of the snapshot. */
   bool (*could_save)(const struct Situation *situation, const void *saved);
   /*
    * Runs a task that may call the other functions, but not destroy(). False if memory was missing: the task was left

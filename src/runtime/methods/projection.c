@@ -137,10 +137,7 @@ static bool has_redundant(const struct Work *work) {
   return false;
 }
 
-/*
- * Projects the velocities, at coordinates that fulfil the constraints. Returns the largest change in units of the
- * scales.
- */
+/* Projects the velocities at consistent coordinates. Returns the largest change in units of the scales. */
 static double project_velocities(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = move_velocities(instance, time, state, VELOCITIES);

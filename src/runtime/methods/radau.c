@@ -127,10 +127,7 @@ static void radau_resume(struct Instance *instance) {
   (void)instance; /* the snapshot holds everything */
 }
 
-/*
- * Computes the collocation polynomial minus the state at its start; share: time since the start as a fraction of the
- * step.
- */
+/* Computes the collocation polynomial minus the state at its start. share: elapsed fraction of the step. */
 static void evaluate_polynomial(const struct RadauMethod *method, const double *stages, double share, double *change) {
   size_t states = lagrangian.state_count;
   for (size_t k = 0; k < states; k++) change[k] = 0.0;

@@ -7,23 +7,14 @@
 #include "instance/instance.h"
 #include "methods/taylor_rule.h"
 
-/*
- * The part of the snapshot that belongs to this method. Together with the span of the last step it determines the next
- * step.
- */
+/* This method's part of the snapshot. Together with the span of the last step it determines the next step. */
 struct TaylorSaved {
   double reach; /* length of the last step, for which the series is valid; 0 if there is no series yet */
   int64_t order;
-  /*
-   * Followed by double low[state_count], the rounding error of the state at the origin (compensated summation), and
-   * Series x[state_count].
-   */
+  /* Followed by double low[state_count], the rounding error of the state at the origin, and Series x[state_count]. */
 };
 
-/*
- * Counter for stagnation: the steps of one kind, and their path in units of the scales. It starts again every
- * CRAWL_STEPS steps.
- */
+/* Stagnation counter: steps of one kind, and their path in units of the scales; reset every CRAWL_STEPS steps. */
 struct Crawl {
   int steps;
   double path;
@@ -51,19 +42,13 @@ static inline double taylor_scale(const struct Taylor *taylor, size_t i) {
   return size < lagrangian.steps.nominal[i] ? lagrangian.steps.nominal[i] : size;
 }
 
-/*
- * Combines Horner's sums over even and odd powers into the change of the state. For an odd order j is 1, and x[1] is
- * added.
- */
+/* Combines Horner's sums over even and odd powers into the change of the state. At odd orders (j = 1) it adds x[1]. */
 static inline double taylor_end_of_change(const double *x, int64_t j, Pair sum, double s) {
   double change = (pair_second(sum) * s + pair_first(sum)) * s;
   return j == 1 ? (change + x[1]) * s : change;
 }
 
-/*
- * Returns the change of state variable i from the origin to s after it. Horner's rule runs for even and odd powers in
- * parallel, as a pair.
- */
+/* Returns the change of state variable i from the origin to s after it, by Horner's rule for even and odd powers. */
 static inline double taylor_change(const struct Taylor *taylor, size_t i, double s) {
   const double *x = taylor->x[i], square = s * s;
   int64_t j = taylor->saved->order;

@@ -187,10 +187,7 @@ static struct SeriesLimit limited(const struct Instance *instance, const struct 
   return limit;
 }
 
-/*
- * Returns the length below which a step is lost in the rounding of time. A motion that needs such steps runs into a
- * singularity.
- */
+/* Returns the length below which rounding of time hides a step. Motions that need such steps run into a singularity. */
 static double smallest_step(const struct Taylor *taylor) {
   return 8.0 * DBL_EPSILON * fabs(taylor->span->start);
 }
@@ -200,10 +197,7 @@ static double exact_reach(const struct Taylor *taylor, double step) {
   return taylor->span->start + step - taylor->span->start;
 }
 
-/*
- * Sets all coefficients from order 2 on to 0, which leaves Euler's method. A root has no series at 0, but leaves the
- * accelerations finite.
- */
+/* Leaves Euler's method of the series: a root has no series at 0, but leaves the accelerations finite. */
 static void cut_off(const struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
     for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;

@@ -17,22 +17,14 @@ enum { CRAWL_STEPS = 1000 }; /* steps of one kind: if they move the system by le
 static const double defect_margin = 3.0;
 /* The change of the state, relative to its scale, in a step that crosses a kink, a jump or a root of 0. */
 static const double crossing_share = 1e-12;
-/*
- * The longest step in communication steps if no stop time is defined: the series of a polynomial motion gives no
- * length.
- */
+/* The longest step in communication steps if no stop time is defined: series of polynomial motions give no length. */
 static const double horizon = 1e4;
-/*
- * Rounding error allowed for in the defect: of the right side in units of the last place, and as a multiple of the
- * effect of rounding the state.
- */
+/* Rounding error of the right side in the defect, in units of the last place; and margin of that of the state. */
 static const double rounding = 100.0, rounding_margin = 10.0;
 /* Fractions of the step at which the defect is also measured if the coefficients do not limit the step. */
 static const double places_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
-/*
- * Ratio of consecutive terms at the end of the step. It is smaller if fast modes limit the step, and larger otherwise.
- */
+/* Ratio of consecutive terms at the end of the step: smaller if fast modes limit the step, otherwise larger. */
 enum { FALL_OF_FAST = 3 };
 
 enum { DEFECT_PLACES = sizeof places_of_defects / sizeof *places_of_defects };

@@ -1,7 +1,4 @@
-/*
- * Shares of frictions in planes in a load that does not determine their forces: each stays within its limit, with a
- * margin.
- */
+/* Shares of frictions in planes in a load that does not determine their forces: within their limits, with a margin. */
 #ifndef SHARED_LOADS_H
 #define SHARED_LOADS_H
 
@@ -21,10 +18,7 @@ size_t shared_load_bytes(size_t rows, size_t count);
 /* Divides a block of shared_load_bytes() among the parts. */
 struct SharedLoad shared_load_in(void *block, size_t rows, size_t count);
 
-/*
- * LOAD_OVERCOMES: the only forces that carry the load, or all, exceed the limits. LOAD_IS_AT_LIMIT: equal within
- * rounding.
- */
+/* LOAD_OVERCOMES: the forces are unique, or all exceed the limits. LOAD_IS_AT_LIMIT: equal to them within rounding. */
 enum LoadSharing { LOAD_IS_SHARED, LOAD_IS_AT_LIMIT, LOAD_OVERCOMES };
 
 /* Finds forces within the limits that leave a large margin; if there are none, those whose largest is least. */

@@ -114,10 +114,7 @@ static bool add_differences(struct Instance *instance, const struct Seed *seed, 
   return true;
 }
 
-/*
- * Computes the directional derivative of the start. Workspace: kept of situation_size() bytes, along of state_count
- * zeros.
- */
+/* Computes the directional derivative of the start. Workspace: kept of situation_size() bytes, along of zeros. */
 static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct Situation *kept,
                        double *along) {
   struct Log log = instance->log;

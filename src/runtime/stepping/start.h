@@ -4,10 +4,7 @@
 
 #include "instance/instance.h"
 
-/*
- * Computes the start of the simulation from the values that were set, after impacts and events at the start. Logs an
- * error if there is none.
- */
+/* Computes the start of the simulation from the set values, after events there. Logs an error if there is none. */
 enum Status start_find(struct Instance *instance);
 
 /*

@@ -5,10 +5,7 @@
 /* A pivot has lost its digits below this fraction of its value before the elimination, or of the subtracted terms. */
 static const double smallest_pivot_share = 1e-14;
 
-/*
- * Elements of a triangle: L by rows with inverse pivots. U by columns follows, in the same pattern; its diagonal is
- * unused.
- */
+/* Elements of a triangle: L by rows with inverse pivots; then U by columns in the same pattern, without diagonal. */
 static size_t element_count(void) {
   return (size_t)lagrangian.implicit.lu_pattern.start[lu_rows()];
 }

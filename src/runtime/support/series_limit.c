@@ -8,9 +8,7 @@ static const double exponent_range = 5.0;
 static const double exponential_end = -700.0, tanh_end = 20.0;
 /* Fraction of the distance to a singularity that one step may go. */
 static const double approach = 0.99;
-/*
- * Below this base, a power above HIGHEST_WIDE_POWER is negligible, and turning points of the base are rounding errors.
- */
+/* Below this base, powers above HIGHEST_WIDE_POWER are negligible, and its turning points are rounding errors. */
 static const double negligible_base = 1e-50;
 static const double pi = 3.14159265358979323846;
 
@@ -57,10 +55,7 @@ static bool power_fits_around(const double *u, int order, double step, double bo
   return excursion(u, order, step) <= bound || (u[1] != 0.0 && is_monotone(u, order, step));
 }
 
-/*
- * True if the operand is meaningful. NaN comes from an inactive piece of a piecewise function, and 1e200 or more from
- * none.
- */
+/* True if the operand is meaningful. NaN comes from an inactive piece of a function, and 1e200 or more from none. */
 static bool matters(double u) {
   return fabs(u) < 1e200;
 }

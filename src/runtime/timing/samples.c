@@ -15,10 +15,7 @@ static double first_count(double time, double offset, double period) {
   return count;
 }
 
-/*
- * A period that is not positive is an error at the start of the simulation (conditions.c); the sample is then put
- * there.
- */
+/* A period that is not positive is an error at the start (conditions.c); the sample is then put there. */
 void samples_start(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Settlement settlement = settlement_of(instance);
