@@ -1,7 +1,8 @@
 /*
- * The runs of a sweep: the functions of an FMU that is there already, called for one set of values after another. What is recorded
- * of a run is found as it goes: a largest value between three samples is that of the parabola through them. An event parts the
- * samples; its time is found by halving the step from its saved beginning, and the run continues from the end of the step.
+ * The runs of a sweep: calls the functions of a loaded FMU for one set of values after another, and records results
+ * during the run. A maximum between three samples is that of the parabola through them. An event separates the
+ * samples; its time is found by bisection of the step, which restarts from a saved state. The run continues from the
+ * end of the step.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -40,25 +41,28 @@ struct Variables {
 
 enum RecordKind { RECORD_VALUE, RECORD_MAXIMUM, RECORD_MINIMUM, RECORD_EVENTS, RECORD_FIRST };
 
-/* A column of the result: of one of the sampled variables, at a time; or the number of events, or the time of the first. */
+/*
+ * A column of the result: the value of a sampled variable at a time, its maximum or minimum, the number of events, or
+ * the time of the first.
+ */
 struct Record {
   size_t kind, variable;
   double time;
 };
 
-/* Of arrays over runs, each has a row for every one. */
+/* The task. Arrays of values have a row for each run. */
 struct Sweep {
   struct Variables varied, watched, ends, sampled;
-  const double *values; /* of what varies: runs x varied */
-  double tolerance;     /* 0 for the FMU's own */
+  const double *values; /* values of the varied variables: runs x varied */
+  double tolerance;     /* 0: the FMU's own */
   size_t time_count;
-  const double *times;      /* ends of the communication steps, ascending */
-  struct Variables counter; /* of events; none where nobody asks for their times */
+  const double *times;      /* ends of the communication steps in s, ascending */
+  struct Variables counter; /* the counter of events; none if their times are not needed */
   size_t record_count;
   const struct Record *records;
   double *recorded;             /* runs x records */
   double *samples;              /* workspace: 3 x sampled */
-  double *before, *after;       /* of what is watched: runs x watched, behind the initialization and at the end */
+  double *before, *after;       /* of the watched variables: runs x watched, after initialization and at the end */
   double *end_values, *seconds; /* runs x ends; runs */
 };
 
@@ -68,7 +72,7 @@ static double now(void) {
   return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* A run as it goes: the last three samples that no event parts, the latest one first. */
+/* A run in progress, with its last three samples since the last event, the newest first. */
 struct Course {
   const struct Functions *f;
   fmi2Component component;
@@ -78,14 +82,14 @@ struct Course {
   size_t count;
 };
 
-/* By how much the parabola through three samples exceeds the one in the middle, which it has to exceed by its vertex. */
+/* Returns the height of the vertex of the parabola through three samples above the middle one. */
 static double excess_of(const double *time, double late, double middle, double early) {
   double before = (middle - early) / (time[1] - time[2]), after = (late - middle) / (time[0] - time[1]);
   double curvature = (after - before) / (time[0] - time[2]), slope = before + curvature * (time[1] - time[2]);
   return curvature < 0.0 ? -slope * slope / (4.0 * curvature) : 0.0;
 }
 
-/* The largest value that the newest sample makes known, of the variable times a sign. */
+/* Returns the largest value up to the newest sample, of the variable times a sign. */
 static double peak_of(const struct Course *course, size_t variable, double sign) {
   size_t n = course->sweep->sampled.count;
   const double *value = course->sweep->samples + variable;
@@ -105,7 +109,7 @@ static void record(const struct Course *course, size_t i) {
   if (record->kind == RECORD_MINIMUM) *result = fmin(*result, -peak_of(course, record->variable, -1.0));
 }
 
-/* Records what is sampled at the present time. False where it cannot be read. */
+/* Samples and records the present time. Returns false if values cannot be read. */
 static bool sample(struct Course *course, double time) {
   const struct Variables *sampled = &course->sweep->sampled;
   double *samples = course->sweep->samples;
@@ -138,12 +142,12 @@ static bool go(const struct Course *course, fmi2FMUstate state, double begin, do
          (end <= begin || course->f->step(course->component, begin, end - begin, fmi2False) <= fmi2Warning);
 }
 
-enum { CROWD = 100 };              /* events of a step whose times are found */
-static const double found = 1e-10; /* of a step: how well */
+enum { CROWD = 100 };              /* events of a step whose times are searched */
+static const double found = 1e-10; /* accuracy of the times, relative to the step */
 
 /*
- * Samples just before and just behind each event of the step from a saved state at begin, which had so many events, to end. The FMU is
- * somewhere in the step then. A step that is too short for the FMU ends the search.
+ * Samples just before and after each event of the step from begin to end, from the saved state at begin with `count`
+ * events. Leaves the FMU somewhere in the step. A step that is too short for the FMU ends the search.
  */
 static void sample_events(struct Course *course, fmi2FMUstate *state, double begin, double end, int total, int count) {
   double enough = found * (end - begin);
@@ -165,7 +169,7 @@ static void sample_events(struct Course *course, fmi2FMUstate *state, double beg
   }
 }
 
-/* A communication step, with what is recorded of it. NULL, or the name of the function that fails. */
+/* Takes a communication step and records it. Returns NULL, or the name of the function that failed. */
 static const char *step(struct Course *course, double begin, double end) {
   const struct Functions *f = course->f;
   fmi2FMUstate first = NULL, last = NULL;
@@ -198,7 +202,7 @@ static void begin_records(const struct Sweep *sweep, double *recorded) {
   }
 }
 
-/* Until a function fails: its name then, and NULL where all went well. */
+/* Does run k. Returns NULL, or the name of the function that failed. */
 static const char *run(const struct Functions *f, fmi2Component component, const struct Sweep *sweep, size_t k) {
   const struct Variables *varied = &sweep->varied, *watched = &sweep->watched, *ends = &sweep->ends;
   if (f->reset(component) > fmi2Warning) return "fmi2Reset";
@@ -225,8 +229,8 @@ static const char *run(const struct Functions *f, fmi2Component component, const
 }
 
 /*
- * Runs first, first + 1, ... up to count, which is returned; or the run that fails, and the name of the function that
- * did. Its times are those of the machine's clock.
+ * Does runs first .. count - 1. Returns count, or the run that failed, with the name of the function. Its times are
+ * wall-clock times.
  */
 EXPORT size_t sweep_runs(const struct Functions *functions, fmi2Component component, const struct Sweep *sweep,
                          size_t first, size_t count, const char **failed) {
@@ -240,7 +244,7 @@ EXPORT size_t sweep_runs(const struct Functions *functions, fmi2Component compon
   return count;
 }
 
-/* How many lanes of src/ensemble the processor computes at once. */
+/* Returns the number of lanes of src/ensemble that suits the processor's vectors. */
 EXPORT int sweep_lanes(void) {
 #ifdef __x86_64__
   __builtin_cpu_init();

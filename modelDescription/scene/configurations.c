@@ -3,12 +3,9 @@
  *
  *     dq = -J^T (J J^T)^-1 g,   J = dg/dq.
  *
- * It converges quadratically near a regular point, and stops at
- * g
- *  < 1e-13, or after a step from
- * g
- *  < 1e-11; otherwise it fails after MOST_STEPS. A step costs O(n^2 m + n^3) with n constraints and m coordinates. P.
- *  Deuflhard: Newton Methods for Nonlinear Problems, 2004.
+ * It converges quadratically near a regular point, and stops at |g| < 1e-13, or after a step from |g| < 1e-11;
+ * otherwise it fails after MOST_STEPS. A step costs O(n^2 m + n^3) with n constraints and m coordinates. P. Deuflhard:
+ * Newton Methods for Nonlinear Problems, 2004.
  */
 #include "configurations.h"
 
@@ -103,11 +100,7 @@ static void solve_small(size_t n, double *matrix, double *x) {
   release(pivot);
 }
 
-/*
- * Subtracts J^T (J J^T)^-1 g from the coordinates that can move. Returns the largest
- * g
- *  before the step.
- */
+/* Subtracts J^T (J J^T)^-1 g from the coordinates that can move. Returns the largest |g| before the step. */
 static double step(const struct Configurations *levels, const double *values, double *symbols) {
   const struct Model *model = levels->model;
   size_t n = levels->count, coordinates = model->coordinates.count;

@@ -1,9 +1,7 @@
 /*
- * Least squares min
- * A x - b
- *  by modified Gram-Schmidt: A = Q R with b as a further column, then back substitution in R x = Q^T b. A column that
- *  loses all but SMALL of its length is dependent. The rest of b is the residual. Costs O(rows columns^2). G. Golub,
- *  C. Van Loan: Matrix Computations, section 5.2.
+ * Least squares min |A x - b| by modified Gram-Schmidt: A = Q R with b as a further column, then back substitution in
+ * R x = Q^T b. A column that loses all but SMALL of its length is dependent. The rest of b is the residual. Costs
+ * O(rows columns^2). G. Golub, C. Van Loan: Matrix Computations, section 5.2.
  */
 #include "least_squares.h"
 

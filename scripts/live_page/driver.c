@@ -1,6 +1,6 @@
 /*
- * What a page needs beside the functions of FMI: an instance with callbacks, and what the FMU has said. FMU_SOURCE is the FMU's one
- * file; without it the functions are elsewhere.
+ * Functions for a page beside those of FMI: creates an instance with callbacks, and collects its messages. FMU_SOURCE is the
+ * FMU as one C file; without it, the functions are linked in.
  */
 #ifdef FMU_SOURCE
 #define FMI2_OVERRIDE_FUNCTION_PREFIX
@@ -22,7 +22,7 @@
 
 enum { ROOM = 4000 };
 
-static char messages[ROOM]; /* since they were last forgotten, one a line; what does not fit is left out */
+static char messages[ROOM]; /* since the last forgetMessages(), one a line; cut off at ROOM */
 
 static void write_message(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status,
                           fmi2String category, fmi2String format, ...) {

@@ -1,7 +1,8 @@
 /*
- * The functions of FMI 3.0 as those of a WebAssembly component (FMI-LS-WASM): lists and strings come as an address and a count,
- * from memory that is then ours; what is not one number goes back by its address. Layouts are those of the Component Model's
- * canonical ABI, which C's structures have on wasm32. interface.py holds the types of all functions here.
+ * Exports the functions of FMI 3.0 as a WebAssembly component (FMI-LS-WASM). Lists and strings arrive as address and
+ * count, in memory that then belongs to this module. Results other than single numbers are returned by address.
+ * Layouts follow the Component Model's canonical ABI, which C structures have on wasm32. interface.py has the types of
+ * all functions.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,7 +23,7 @@ struct Text {
   size_t count;
 };
 
-/* What a function gives back: a value where it has not failed, else the status. */
+/* The result of a function: a value, or the status if it failed. */
 struct ListResult {
   uint8_t failed;
   union {
@@ -64,7 +65,7 @@ struct Order {
 
 EXPORT("cabi_realloc") void *reallocate(void *old, size_t old_size, size_t alignment, size_t size) {
   (void)old_size;
-  if (size == 0) return (void *)alignment; /* of an empty list, which nobody reads or frees */
+  if (size == 0) return (void *)alignment; /* an empty list, which nobody reads or frees */
   void *memory = realloc(old, size);
   if (memory == NULL) __builtin_trap();
   return memory;
@@ -78,7 +79,7 @@ static void discard(const void *list, size_t count) {
   if (count > 0) free((void *)list);
 }
 
-/* A text with a zero at its end, in memory of its own. */
+/* Returns a copy with a terminating zero; frees the text. */
 static char *terminated(char *text, size_t count) {
   char *copy = allocate(count + 1, 1);
   memcpy(copy, text, count);
@@ -87,7 +88,7 @@ static char *terminated(char *text, size_t count) {
   return copy;
 }
 
-/* --- What goes back --- */
+/* --- Results --- */
 
 static bool has_failed(fmi3Status status) {
   return status > fmi3Warning;
@@ -139,7 +140,7 @@ static struct Component *component_of(fmi3Instance instance, char *name) {
   return component;
 }
 
-/* Both give NULL for no instance. */
+/* Both return NULL on failure. */
 EXPORT("instantiate-co-simulation")
 struct Component *instantiate_co_simulation(char *name, size_t name_count, char *token, size_t token_count,
                                             bool visible, bool logging_on, bool event_mode_used,
@@ -162,7 +163,7 @@ struct Component *instantiate_model_exchange(char *name, size_t name_count, char
   return component_of(instance, own_name);
 }
 
-/* Where the handle of an instance goes, and before it whether there is one: option<own<...>>. */
+/* Returns the buffer of option<own<...>>: whether there is an instance, then its handle. */
 EXPORT("place") void *place(void) {
   static uint32_t instance[2];
   return instance;
@@ -192,7 +193,7 @@ fmi3Status set_debug_logging(struct Component *self, bool logging_on, struct Tex
   return status;
 }
 
-/* --- From one state to another --- */
+/* --- Transitions between states --- */
 
 EXPORT("enter-initialization-mode")
 fmi3Status enter_initialization_mode(struct Component *self, bool has_tolerance, double tolerance, double start_time,
@@ -294,7 +295,7 @@ VALUES("uint32", UInt32)
 VALUES("uint64", UInt64)
 VALUES("boolean", Boolean)
 
-/* Of types that no variable has: whatever is asked for is refused with a message, and nothing comes back for nothing. */
+/* Functions of types that no variable has: report an error for any reference, and return nothing for none. */
 #define NO_VALUES(suffix, name, call)                                                                                  \
   EXPORT(suffix) struct ListResult *name(struct Component *self, fmi3ValueReference *vr, size_t n) {                   \
     fmi3Status status = call;                                                                                          \
@@ -324,7 +325,7 @@ NO_SETTING("set-interval-fraction", set_interval_fraction, fmi3SetIntervalFracti
 NO_SETTING("set-shift-decimal", set_shift_decimal, fmi3SetShiftDecimal(self->instance, vr, n, values))
 NO_SETTING("set-shift-fraction", set_shift_fraction, fmi3SetShiftFraction(self->instance, vr, n, NULL, NULL))
 
-/* Each value is a text, or bytes. */
+/* Frees lists of values that are texts or bytes. */
 static void discard_texts(struct Text *texts, size_t count) {
   for (size_t i = 0; i < count; i++) discard(texts[i].characters, texts[i].count);
 }
@@ -353,13 +354,13 @@ struct CountResult *get_number_of_variable_dependencies(struct Component *self, 
   return count_result(fmi3GetNumberOfVariableDependencies(self->instance, vr, &count), count);
 }
 
-/* Dependencies stand in modelDescription.xml; none are told here. */
+/* modelDescription.xml has the dependencies; this function returns none. */
 EXPORT("get-variable-dependencies")
 struct ListResult *get_variable_dependencies(struct Component *self, fmi3ValueReference vr) {
   return list_result(fmi3GetVariableDependencies(self->instance, vr, NULL, NULL, NULL, NULL, 0), NULL, 0);
 }
 
-/* --- Saved states, as bytes --- */
+/* --- Saved states, serialized --- */
 
 EXPORT("get-fmu-state") struct ListResult *get_fmu_state(struct Component *self) {
   fmi3FMUState state = NULL;

@@ -44,10 +44,9 @@ LANE_FUNCTION_OF_TWO(random_gauss)
 #undef LANE_FUNCTION_OF_TWO
 
 /*
- * The angle x minus the nearest multiple of pi/2, and that multiple modulo 4; for
- * x
- *  <= LARGEST_ANGLE. Argument reduction by W. J. Cody and W. Waite (Software Manual for the Elementary Functions,
- *  1980): pi/2 is split into parts whose products with the multiple are exact, so that no digit is lost.
+ * The angle x minus the nearest multiple of pi/2, and that multiple modulo 4; for |x| <= LARGEST_ANGLE. Argument
+ * reduction by W. J. Cody and W. Waite (Software Manual for the Elementary Functions, 1980): pi/2 is split into parts
+ * whose products with the multiple are exact, so that no digit is lost.
  */
 struct QuarterTurns {
   Lanes rest;
@@ -71,9 +70,8 @@ LANES_INLINE struct QuarterTurns quarter_turns(Lanes x) {
 }
 
 /*
- * Taylor polynomials of sin and cos; for
- * x
- *  <= pi/4 the first omitted term is below a hundredth of the rounding error.
+ * Taylor polynomials of sin and cos; for |x| <= pi/4 the first omitted term is below a hundredth of the rounding
+ * error.
  */
 LANES_INLINE Lanes sine_near_zero(Lanes x) {
   Lanes z = x * x;

@@ -1,10 +1,6 @@
 #include "lane_limit.h"
 
-/*
- * Returns the sum over k >= 1 of
- * u_k
- *  step^k; even and odd powers are two independent chains.
- */
+/* Returns the sum over k >= 1 of |u_k| step^k; even and odd powers are two independent chains. */
 static Lanes excursion(const Lanes *u, int order, Lanes step) {
   Lanes square = step * step, even = {0}, odd = {0};
   int k = order;

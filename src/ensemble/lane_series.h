@@ -108,11 +108,7 @@ LANES_INLINE Lanes series_sign(int k, const Lanes *a) {
   return WHERE(first > 0.0, 1.0, WHERE(first < 0.0, -1.0, 0.0));
 }
 
-/*
- *
- * a
- * _k just after t = 0
- */
+/* |a|_k just after t = 0 */
 LANES_INLINE Lanes series_absolute(int k, const Lanes *a) {
   return series_sign(k, a) * a[k];
 }

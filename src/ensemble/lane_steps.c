@@ -124,11 +124,7 @@ static Lanes rough_logarithm(Lanes x) {
   return ((Lanes)exponent - whole_numbers) - 1022.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
 }
 
-/*
- * Returns 2^x to 1 %, for
- * x
- *  < 1000.
- */
+/* Returns 2^x to 1 %, for |x| < 1000. */
 static Lanes rough_power_of_two(Lanes x) {
   Lanes sum = x + whole_numbers, rest = x - (sum - whole_numbers);
   Lanes power = (Lanes)(((Bits)sum + 1023) << 52);

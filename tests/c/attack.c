@@ -1,8 +1,8 @@
 /*
- * Calls an FMU at random in ways that its caller should not: attack LIBRARY GUID VARIABLES STATES CALLS SEED, for
- * sanitizers to watch. Pointers are NULL, references unknown, functions called in wrong states, numbers extreme, saved
- * states damaged, or forged with the right checksum. Fails where a value that was got with fmi2OK is not finite, a status
- * is none of the standard's, or memory is not given back. The same numbers give the same calls.
+ * Calls an FMU at random in invalid ways, under sanitizers: attack LIBRARY GUID VARIABLES STATES CALLS SEED. Pointers
+ * are NULL, references unknown, functions called in wrong states, numbers extreme, saved states damaged, or forged
+ * with a valid checksum. Fails if a value that came with fmi2OK is not finite, a status is not in the standard, or
+ * memory leaks. The same seed gives the same calls.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,7 +14,8 @@
 #include "counted_memory.h"
 #include "fmu_library.h"
 
-enum { LENGTH = 64, SAVED = 4, BYTES = 100000, HEADER = 64 /* bytes before the situation; the last 8 its checksum */ };
+/* bytes before the saved state; the last 8 are its checksum */
+enum { LENGTH = 64, SAVED = 4, BYTES = 100000, HEADER = 64 };
 
 static struct FmuLibrary fmu;
 static const char *guid;
@@ -27,7 +28,7 @@ static fmi2FMUstate saved[SAVED];
 static double numbers[LENGTH], results[LENGTH];
 static fmi2ValueReference references[LENGTH];
 static fmi2Integer integers[LENGTH];
-static double now; /* the communication point, as far as it is known */
+static double now; /* the communication point, if it is known */
 
 /* xorshift64 */
 static uint64_t random_below(uint64_t limit) {
@@ -51,7 +52,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
   if (name == NULL || status > fmi2Error || category == NULL || *message == '\0') failures++;
 }
 
-/* Mostly a number of everyday size. */
+/* Returns mostly numbers of ordinary size. */
 static double number(void) {
   static const double extremes[] = {0.0,    -0.0,    1e-9,     -1e-9,    1e9,       -1e9, 1e150,
                                     -1e300, 1.7e308, 4.9e-324, INFINITY, -INFINITY, NAN};
@@ -63,7 +64,7 @@ static void *or_null(void *pointer) {
   return one_in(25) ? NULL : pointer;
 }
 
-/* Fills the arguments; returns how many elements of them the next call takes. */
+/* Fills the arguments. Returns how many of their elements the next call uses. */
 static size_t draw(void) {
   for (int i = 0; i < LENGTH; i++) {
     numbers[i] = number();
@@ -86,7 +87,8 @@ static fmi2Status initialize(void) {
 }
 
 static fmi2Status step(void) {
-  static const double wrong[] = {0.0, -1.0, 1e-300, 1e-16, INFINITY, NAN}; /* a long one may be right, and take long */
+  /* no long ones, which may be valid and take long */
+  static const double wrong[] = {0.0, -1.0, 1e-300, 1e-16, INFINITY, NAN};
   double size = one_in(20) ? wrong[random_below(sizeof wrong / sizeof *wrong)] : 0.001 * (double)(1 + random_below(20));
   fmi2Status status = fmu.fmi2DoStep(c, one_in(20) ? number() : now, size, fmi2True);
   double reached = now;
@@ -98,7 +100,7 @@ static fmi2Status step(void) {
   return status;
 }
 
-/* Reads what FMI lets an instance read; only finite numbers may come with fmi2OK. */
+/* Reads values; only finite ones may come with fmi2OK. */
 static fmi2Status get(size_t count) {
   fmi2Status status;
   switch (random_below(5)) {
@@ -133,14 +135,14 @@ static fmi2Status set(size_t count) {
   }
 }
 
-/* FNV-1a, as src/runtime/snapshot.c has it. */
+/* Sets the checksum: FNV-1a, as in src/runtime/instance/snapshot.c. */
 static void sign(char *bytes, size_t size) {
   uint64_t hash = 0xcbf29ce484222325u;
   for (size_t i = HEADER; i < size; i++) hash = (hash ^ (unsigned char)bytes[i]) * 0x100000001b3u;
   memcpy(bytes + HEADER - sizeof hash, &hash, sizeof hash);
 }
 
-/* A few places of the situation get other values. */
+/* Overwrites a few numbers of the saved state. */
 static void damage(char *bytes, size_t size) {
   for (uint64_t i = 0; i <= random_below(4); i++) {
     size_t place = HEADER + 8 * random_below((size - HEADER) / 8);
@@ -221,7 +223,7 @@ int main(int count, char **words) {
   const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   for (int type = fmi2ModelExchange; type <= fmi2CoSimulation; type++) {
     c = NULL;
-    for (int tries = 0; tries < 1000 && c == NULL; tries++) /* it is given no memory now and then */
+    for (int tries = 0; tries < 1000 && c == NULL; tries++) /* allocations fail at times */
       c = fmu.fmi2Instantiate("attack", (fmi2Type)type, guid, NULL, &callbacks, fmi2False, fmi2True);
     if (c == NULL) {
       fprintf(stderr, "%s does not instantiate with the GUID %s\n", words[1], guid);

@@ -1,4 +1,4 @@
-/* Memory for an FMU that its caller counts, to see that all of it is given back. */
+/* Memory functions for an FMU that count blocks, to detect leaks. */
 #ifndef COUNTED_MEMORY_H
 #define COUNTED_MEMORY_H
 
@@ -6,7 +6,7 @@
 
 static long blocks; /* allocated and not freed */
 
-/* Zeros; NULL where there is no memory. */
+/* Returns zeroed memory; NULL if exhausted. */
 static inline void *count_allocation(size_t count, size_t size) {
   void *block = calloc(count, size);
   if (block != NULL) blocks++;

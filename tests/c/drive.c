@@ -1,7 +1,7 @@
 /*
- * Takes an FMU through its whole life, right calls and wrong ones, for sanitizers and valgrind to watch, and after it is
- * unloaded and loaded anew, again: drive LIBRARY GUID REALS STATES. Prints what it logs. Fails where a right call fails, a
- * value is not finite, or memory of the caller's functions is not given back.
+ * Takes an FMU through its whole life cycle with valid and invalid calls, under sanitizers and valgrind, and repeats
+ * that after the library is unloaded and loaded again: drive LIBRARY GUID REALS STATES. Prints the log. Fails if a
+ * valid call fails, a value is not finite, or memory leaks.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -61,7 +61,7 @@ static void read_all(const struct Drive *drive, fmi2Component c) {
   }
 }
 
-/* Save, go on, come back, by way of bytes too. */
+/* Saves and restores the state, also by bytes. */
 static void exercise_state(const struct Drive *drive, fmi2Component c) {
   const struct FmuLibrary *fmu = &drive->fmu;
   fmi2FMUstate state = NULL, copy = NULL;
@@ -117,7 +117,7 @@ static void exchange_model(const struct Drive *drive, fmi2Component c) {
   EXPECT(fmu->fmi2Terminate(c) == fmi2OK);
 }
 
-/* Calls that are wrong in some state, or have wrong arguments; each must return an error and do no harm. */
+/* Makes calls in wrong states or with wrong arguments; each must return an error and do no harm. */
 static void call_wrongly(const struct Drive *drive, fmi2Component c) {
   const struct FmuLibrary *fmu = &drive->fmu;
   const fmi2ValueReference unknown = 100000;

@@ -1,6 +1,6 @@
 /*
- * Prints what the functions of a generated system, which is linked in, give at a point and along a direction. Reads
- * both from the standard input, each as time, state, inputs and parameters.
+ * Prints the results of the functions of a generated system, which is linked in, at a point and along a direction.
+ * Reads both from standard input: time, state, inputs and parameters.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ static void *zeros(size_t count, size_t size) {
   return values;
 }
 
-/* As many numbers, the first of which are read. */
+/* Returns an array of count numbers, the first of which are read from standard input. */
 static double *read_numbers(size_t count, size_t read) {
   double *numbers = zeros(count, sizeof *numbers);
   for (size_t i = 0; i < read; i++)
@@ -62,7 +62,7 @@ static void print_series(const struct Point *point) {
   free(derivative);
 }
 
-/* The modes of branches are the signs of their indicators, which may rest on one another. */
+/* Sets the modes of branches to the signs of their indicators, which may depend on one another. */
 static void set_modes(const struct Point *point, double *parameter) {
   const struct SwitchTable *switches = lagrangian.switches;
   double *indicator = zeros(indicator_count(switches), sizeof *indicator);

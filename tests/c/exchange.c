@@ -1,8 +1,8 @@
 /*
- * Times model exchange by CVODE as FMPy has it (BDF, difference quotients for the Jacobian matrix, steps of at most a fiftieth
- * of the time, roots of the event indicators), without Python: exchange LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS
- * POINTS COUNTS STATES INDICATORS [REFERENCE=VALUE ...]. Words and output are those of stepping, with two numbers of the model
- * description; STEPS is how often CVODE is asked.
+ * Times model exchange with CVODE configured as in FMPy (BDF, difference quotients for the Jacobian matrix, steps of
+ * at most a fiftieth of the time, roots of the event indicators), without Python: exchange LIBRARY GUID TOLERANCE END
+ * STEPS REPEATS OUTPUTS POINTS COUNTS STATES INDICATORS [REFERENCE=VALUE ...]. Arguments and output are those of
+ * stepping, with the numbers of states and indicators; STEPS is the number of calls of CVODE.
  */
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -42,7 +42,7 @@ static int roots(double time, N_Vector x, double *values, void *user) {
          importer->fmu.fmi2GetEventIndicators(importer->component, values, importer->indicators) != fmi2OK;
 }
 
-/* Until no discrete state is new, then on in continuous time with the states as they are now. */
+/* Iterates the event to convergence, then enters continuous-time mode with the new states. */
 static int leave_event(const struct Importer *importer) {
   const struct FmuLibrary *fmu = &importer->fmu;
   fmi2EventInfo info = {.newDiscreteStatesNeeded = fmi2True};
@@ -57,7 +57,7 @@ static int leave_event(const struct Importer *importer) {
   return 1;
 }
 
-/* Lets CVODE go on to a time, with all events before it. */
+/* Integrates to a time, with all events before it. */
 static int go_to(struct Importer *importer, double end) {
   const struct FmuLibrary *fmu = &importer->fmu;
   for (double time = -1.0; time < end;) {
@@ -74,7 +74,7 @@ static int go_to(struct Importer *importer, double end) {
   return 1;
 }
 
-/* The seconds of a run in which up to so many points are printed; negative where CVODE or the FMU gives up. */
+/* Returns the seconds of a run that prints up to `points` points; negative on failure. */
 static double run(struct Importer *importer, double end, long steps, long points, const char *outputs) {
   struct Moment start = moment();
   if (!leave_event(importer) || CVodeReInit(importer->cvode, 0.0, importer->x) != CV_SUCCESS) return -1.0;
@@ -102,7 +102,7 @@ static bool create(struct Importer *importer, SUNContext context, double end) {
          CVodeSetNoInactiveRootWarn(importer->cvode) == CV_SUCCESS;
 }
 
-/* For the process's life: what SUNDIALS has allocated goes with it. */
+/* Memory of SUNDIALS is freed with the process. */
 int main(int count, char **words) {
   if (count < 12) return 2;
   struct Importer importer = {.fmu = fmu_library_open(words[1]), .tolerance = strtod(words[3], NULL)};

@@ -1,4 +1,4 @@
-/* The functions of an FMU's shared library, found by name as an importer does. */
+/* Loads the functions of an FMU's shared library by name, as an importer does. */
 #ifndef FMU_LIBRARY_H
 #define FMU_LIBRARY_H
 
@@ -25,7 +25,7 @@ struct FmuLibrary {
 };
 #undef DECLARE_POINTER
 
-/* Ends the program with a message where the library or one of the functions is not there. */
+/* Ends the program with a message if the library or a function is missing. */
 struct FmuLibrary fmu_library_open(const char *path);
 void fmu_library_close(struct FmuLibrary *library);
 

@@ -1,7 +1,7 @@
 /*
- * Lets the solver of a generated system, which is linked in, go to a time by steps of its own, and prints them: start,
- * end, then at a third of the step and at its end whether the solver knows the state, and the first state variable.
- * inside_steps END
+ * Integrates a generated system, which is linked in, by the solver's own steps, and prints each: start, end, then at a
+ * third of the step and at its end whether the solver can interpolate the state, and the first state variable:
+ * inside_steps END.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,10 +18,10 @@ static void write_message(void *receiver, enum Status status, const char *messag
 struct Task {
   struct Instance *instance;
   double end;
-  int status; /* of the program */
+  int status; /* exit status */
 };
 
-/* Steps to the end. */
+/* Steps to the end; called by the solver. */
 static void go(void *argument) {
   struct Task *task = argument;
   struct Instance *instance = task->instance;

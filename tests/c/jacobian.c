@@ -1,7 +1,7 @@
 /*
- * Compares the Jacobian matrix of a generated system, which is linked in, with the derivatives of its right side along
- * each state. Prints the states, the elements of the pattern, and the largest difference as a share of the largest
- * element, over points where coordinates and velocities lie between -1 and 1.
+ * Compares the Jacobian matrix of a generated system, which is linked in, with directional derivatives of its right
+ * side. Prints the states, the elements of the pattern, and the largest difference relative to the largest element,
+ * over random points with coordinates and velocities between -1 and 1.
  */
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 
 enum { POINTS = 20 };
 
-/* Evenly distributed between -1 and 1, the same on all machines. */
+/* Returns a uniform random number between -1 and 1, the same on all platforms. */
 static double draw(void) {
   static unsigned long seed = 1;
   seed = (seed * 1103515245ul + 12345ul) & 0x7ffffffful;
@@ -24,7 +24,7 @@ static double *zeros(size_t count) {
   return values;
 }
 
-/* Element (row, j) where k is the place of the first element of column j that is not above it. */
+/* Returns element (row, j); *k is the index of the first element of column j in this row or below, and advances. */
 static double element(const double *values, size_t row, size_t j, int *k) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   if (*k == pattern->start[j + 1] || (size_t)pattern->row[*k] != row) return 0.0;

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <time.h>
 
-static const double short_time = 1e-3; /* s */
+/* Times below are taken by the wall clock, in s. */
+static const double short_time = 1e-3;
 
 static double seconds_of(clockid_t clock) {
   struct timespec now;
@@ -34,7 +35,7 @@ int initialize(const struct FmuLibrary *fmu, fmi2Component c, double tolerance, 
   return fmu->fmi2EnterInitializationMode(c) == fmi2OK && fmu->fmi2ExitInitializationMode(c) == fmi2OK;
 }
 
-/* Takes the next reference off the list; 0 where there is none. */
+/* Removes the next reference from the list. Returns 0 if there is none. */
 static int next_reference(const char **references, fmi2ValueReference *reference) {
   char *rest;
   *reference = (fmi2ValueReference)strtoul(*references, &rest, 10);

@@ -1,29 +1,29 @@
-/* What the programs share that time an FMU. Functions return 0 where the FMU gives up. */
+/* Shared by the programs that time an FMU. Functions return 0 if the FMU fails. */
 #ifndef MEASURING_H
 #define MEASURING_H
 
 #include "fmu_library.h"
 
-/* What two clocks show: the machine's, and the processor's for this program. */
+/* The times of two clocks in s: the wall clock, and the processor time of this program. */
 struct Moment {
   double machine, processor;
 };
 struct Moment moment(void);
 
 /*
- * The processor's seconds since then, which other work on the machine hardly lengthens; of short times, which it rarely
- * interrupts, the machine's: where a virtual machine is denied its processor, that clock is set back by microseconds, and
- * the shortest of many times would be one of those.
+ * Returns the processor time since then, which other processes hardly affect; for times below 1 ms, the wall-clock
+ * time. When a virtual machine is descheduled, its processor clock may go back by microseconds, and the shortest of
+ * many short times would be such an outlier.
  */
 double seconds_since(struct Moment begin);
 
-/* Resets the FMU and leaves its initialization mode; starts: REFERENCE=VALUE. */
+/* Resets and initializes the FMU; starts: REFERENCE=VALUE. */
 int initialize(const struct FmuLibrary *fmu, fmi2Component c, double tolerance, int count, char **starts);
 
-/* A line with the Real variables whose references are listed, with commas between them. */
+/* Prints a line with the Real variables in a comma-separated list of references. */
 int print_outputs(const struct FmuLibrary *fmu, fmi2Component c, const char *references);
 
-/* The same for Integer variables. */
+/* Does the same for Integer variables. */
 int print_counts(const struct FmuLibrary *fmu, fmi2Component c, const char *references);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * Each allocation of a simulation in turn is refused, once, and then together with all that follow:
- * out_of_memory LIBRARY GUID OUTPUT, the value reference of an output. Fails where no message speaks of memory, where
- * memory is not given back, or where the instance does not simulate after a reset as a new one does.
+ * Lets each allocation of a simulation fail in turn, alone, and then with all that follow: out_of_memory LIBRARY GUID
+ * OUTPUT, the value reference of an output. Fails if no message mentions memory, if memory leaks, or if the instance
+ * does not simulate after a reset like a new one.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -17,11 +17,11 @@ static struct FmuLibrary fmu;
 static const char *guid;
 static fmi2ValueReference output;
 
-static long count;            /* allocations asked for */
-static long first_refused;    /* the number of an allocation */
-static bool refused_for_good; /* those after it, too */
-static bool refuses;          /* now */
-static bool told;             /* that there is no memory */
+static long count;            /* number of allocations so far */
+static long first_refused;    /* number of the first allocation to fail */
+static bool refused_for_good; /* those after it fail, too */
+static bool refuses;          /* false: all allocations succeed */
+static bool told;             /* a message mentioned memory */
 
 static void *allocate(size_t number, size_t size) {
   count++;
@@ -37,7 +37,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
   if (status == fmi2Error && strstr(message, "memory") != NULL) told = true;
 }
 
-/* A state by way of its bytes. */
+/* Saves and restores the state by its bytes. */
 static bool save_and_restore(fmi2Component c) {
   fmi2FMUstate state = NULL, copy = NULL;
   size_t size = 0;
@@ -51,7 +51,7 @@ static bool save_and_restore(fmi2Component c) {
   return done;
 }
 
-/* From an instance that is new or reset to the value of the output after the last step; false after an error. */
+/* Simulates a new or reset instance, and returns the output after the last step in *end. Returns false on an error. */
 static bool simulate(fmi2Component c, double *end) {
   const fmi2Integer order = 1;
   double derivative, time = 0.0;
@@ -75,7 +75,7 @@ static bool expect(bool right, const char *what) {
   return right;
 }
 
-/* Simulates; after a refusal, again with all the memory. */
+/* Simulates with failing allocations; after a failure, resets and simulates without. */
 static bool survives(double expected) {
   const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   double end = 0.0;

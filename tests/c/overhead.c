@@ -1,6 +1,6 @@
 /*
- * What the FMI layer costs: fmi2DoStep beside the core called directly, for communication steps of 0.001 s, and how
- * many times memory is allocated meanwhile: overhead STEPS. Linked with the parts of one FMU.
+ * Measures the cost of the FMI layer: fmi2DoStep against the core called directly, for communication steps of 0.001 s,
+ * and the number of allocations in them: overhead STEPS. Linked with the parts of one FMU.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static const double step_size = 0.001;
 
 static long allocations, steps;
 
-/* The functions of the C library, past those that SUNDIALS gets in their place. */
+/* The functions of the C library; SUNDIALS gets wrappers of them. */
 void *__real_calloc(size_t count, size_t size);
 void __real_free(void *block);
 

@@ -1,6 +1,6 @@
 /*
- * The Taylor loop that one would write by hand for theta'' = -(g/l) sin(theta), as a measure for the generated code:
- * pendulum_by_hand END ORDER REPEATS. Prints the seconds of the fastest repeat and the angle at the end.
+ * A hand-written Taylor loop for theta'' = -(g/l) sin(theta), to compare with generated code: pendulum_by_hand END
+ * ORDER REPEATS. Prints the seconds of the fastest repeat and the final angle.
  */
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,8 @@
 /*
- * How long communication steps of an FMU take, one by one: realtime LIBRARY GUID RESOURCES STEP COUNT RUNS SECONDS. Goes COUNT
- * steps of STEP s in each of RUNS runs of at most so many SECONDS. Prints how many steps were taken; in ns the median, what
- * 99.9 % of them do not exceed, and the longest, where of each step the fastest of all runs counts, which leaves out what
- * else the machine did; the longest as seen; and how often the FMU allocated. A call of getppid stands before and behind the
- * steps, for strace.
+ * Times the communication steps of an FMU one by one: realtime LIBRARY GUID RESOURCES STEP COUNT RUNS SECONDS. Takes
+ * COUNT steps of STEP s in each of RUNS runs of at most SECONDS. Prints the number of steps; in ns the median, the
+ * 99.9 % quantile and the maximum of the fastest time of each step in all runs, which excludes interruptions; the
+ * maximum of all times; and the number of allocations. A call of getppid marks begin and end of the steps for strace.
  */
 #define _GNU_SOURCE
 #include <stdio.h>
@@ -37,7 +36,7 @@ struct Experiment {
   size_t count;
 };
 
-/* Returns the steps that were taken; taken[] has the time of each. */
+/* Returns the number of steps; taken[] has the time of each. */
 static size_t run(const struct FmuLibrary *fmu, fmi2Component c, const struct Experiment *experiment, double *taken) {
   size_t i = 0;
   double begin = now(), before = begin;
@@ -62,10 +61,10 @@ static int start(const struct FmuLibrary *fmu, fmi2Component c) {
          fmu->fmi2EnterInitializationMode(c) <= fmi2Warning && fmu->fmi2ExitInitializationMode(c) <= fmi2Warning;
 }
 
-/* Of all runs. */
+/* Times over all runs. */
 struct Times {
-  double *taken, *least, longest; /* of the present run; of each step the least; as seen */
-  size_t steps;                   /* that all runs took */
+  double *taken, *least, longest; /* of the present run; the least of each step; the longest of all */
+  size_t steps;                   /* taken by all runs */
   long allocations;
 };
 
@@ -73,7 +72,7 @@ static struct Times times_create(size_t count) {
   struct Times times = {
       .taken = malloc(count * sizeof(double)), .least = malloc(count * sizeof(double)), .steps = count};
   if (times.taken == NULL || times.least == NULL) exit(1);
-  for (size_t i = 0; i < count; i++) times.taken[i] = times.least[i] = 1e9; /* so that no page is new in a step */
+  for (size_t i = 0; i < count; i++) times.taken[i] = times.least[i] = 1e9; /* touches all pages before the steps */
   return times;
 }
 

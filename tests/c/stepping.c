@@ -1,10 +1,9 @@
 /*
- * Times the steps of an FMU, by the processor's time: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS
+ * Times the steps of an FMU in processor time: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS
  * [REFERENCE=VALUE ...] [REFERENCE~AMPLITUDE]. Prints a line with the Real variables OUTPUTS for each of up to POINTS
- * communication points that are evenly spaced, then the seconds of the fastest repeat, then a line with the Integer
- * variables COUNTS; both are lists of references, with commas between them. What has an amplitude is an input that changes
- * before every step. Points are printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is
- * none.
+ * evenly spaced communication points, then the seconds of the fastest repeat, then a line with the Integer variables
+ * COUNTS; both are comma-separated lists of references. An input with an amplitude changes before every step. Points
+ * are printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is none.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,13 +15,13 @@ struct ChangingInput {
   double amplitude; /* 0 for none */
 };
 
-/* The same values as changing_input() of scripts/numerics/driver.py: eleven levels, by turns. */
+/* Sets the changing input as changing_input() of scripts/numerics/driver.py: eleven levels in turn. */
 static int change(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingInput input, long k) {
   double value = input.amplitude * (double)(7 * k % 11 - 5) / 5.0;
   return input.amplitude == 0.0 || fmu->fmi2SetReal(c, &input.reference, 1, &value) == fmi2OK;
 }
 
-/* Takes the last word where it is REFERENCE~AMPLITUDE, and leaves one word less. */
+/* Removes and returns the last argument if it is REFERENCE~AMPLITUDE. */
 static struct ChangingInput take_changing_input(int *count, char **words) {
   char *rest;
   fmi2ValueReference reference = (fmi2ValueReference)strtoul(words[*count - 1], &rest, 10);
@@ -37,7 +36,7 @@ static int step(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingIn
   return change(fmu, c, input, k) && fmu->fmi2DoStep(c, from, to - from, fmi2True) == fmi2OK;
 }
 
-/* The seconds of a run in which up to so many points are printed; negative where the FMU gives up. */
+/* Returns the seconds of a run that prints up to `points` points; negative on failure. */
 static double run(const struct FmuLibrary *fmu, fmi2Component c, struct ChangingInput input, double end, long steps,
                   long points, const char *outputs) {
   struct Moment start = moment();

@@ -1,6 +1,6 @@
 /*
- * 8 threads with 8 instances each step them in turn, for ThreadSanitizer to watch: threads LIBRARY GUID. Fails where a
- * call fails, or where the end state differs between instances that were treated alike.
+ * 8 threads step 8 instances in turn, under ThreadSanitizer: threads LIBRARY GUID. Fails if a call fails, or if
+ * instances that were treated alike end in different states.
  */
 #include <pthread.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /*
- * Two FMUs of C sources linked into one program: steps both in turn and prints the first two outputs of each: two_in_one
- * GUID GUID STEPS STEP. FIRST and SECOND are the FMUs' names, with which their functions begin.
+ * Links two FMUs of C sources into one program, steps both in turn and prints the first two outputs of each:
+ * two_in_one GUID GUID STEPS STEP. FIRST and SECOND are the FMUs' names, with which their functions begin.
  */
 #include <stdio.h>
 #include <stdlib.h>

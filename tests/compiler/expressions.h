@@ -33,7 +33,7 @@ static inline struct Expressions expressions_create(void) {
   return e;
 }
 
-/* Parses; errors are counted in e->diagnostics. */
+/* Parses an expression; errors are counted in e->diagnostics. */
 static inline Node parse(struct Expressions *e, const char *text) {
   e->scope->diagnostics = &e->diagnostics;
   struct Place place = {.line = 1, .what = "the test", .kinds = 1u << COORDINATE};
@@ -46,7 +46,7 @@ static inline double value_at(const struct Expressions *e, Node node, double x, 
   return value;
 }
 
-/* The text that the expression prints as. */
+/* Asserts the text that the expression prints as. */
 static inline void assert_prints(struct Expressions *e, const char *text, const char *expected) {
   char *printed = expression_text(e->graph, parse(e, text));
   assert_string_equal(printed, expected);

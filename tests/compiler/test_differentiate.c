@@ -10,7 +10,7 @@ static const char *const functions[] = {
     "log(x + y)", "min(x, y)",  "max(x*x, y)", "abs(y - z)", "sign(x)*x",    "pow(x, z)",  "1/(1 + x^2*y^2)",
 };
 
-/* A difference quotient of fourth order. */
+/* Returns a difference quotient of fourth order. */
 static double quotient(const struct Expressions *e, Node node, const double *at, int which) {
   static const double weights[] = {1.0, -8.0, 8.0, -1.0}, places[] = {-2, -1, 1, 2};
   const double h = 1e-3;
@@ -55,7 +55,7 @@ static void test_directions_and_weights(void **state) {
   assert_true(fabs(value_at(&e, gradient[2], 0.8, 1.1, 0.6) - 2 * 0.8 * cos(0.6)) < 1e-14);
 }
 
-/* A gradient holds just the symbols of its kinds that the target depends on, whatever else the graph has. */
+/* A gradient has exactly the symbols of its kinds that the target depends on. */
 static void test_sparse_gradient(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -72,7 +72,7 @@ static void test_sparse_gradient(void **state) {
   assert_int_equal(none.count, 0);
 }
 
-/* The gradient of sum x_i x_(i+1) has two terms an element: its nodes grow as the sum does. */
+/* The gradient of sum x_i x_(i+1) has two terms for each element: its nodes grow as the sum does. */
 static void test_long_sums(void **state) {
   (void)state;
   enum { LENGTH = 20000 };
@@ -99,7 +99,7 @@ static void test_no_expression_swell(void **state) {
   assert_true(e.graph->count - before < 4 * before);
 }
 
-/* x^p along x and p: a base that is not positive has a derivative where p is not varied, and log(x) counts where it is. */
+/* x^p along x and p: a nonpositive base has a derivative if p is not varied; if p is, log(x) takes part. */
 static void test_varied_exponents(void **state) {
   (void)state;
   struct Expressions e = expressions_create();

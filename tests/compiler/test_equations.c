@@ -1,4 +1,4 @@
-/* Equations of motion, energies and linearizations of small systems, against what follows by hand. */
+/* Equations of motion, energies and linearizations of small systems, against derivations by hand. */
 #include <stdio.h>
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include "mechanics/linearize.h"
 #include "read/reader.h"
 
-/* A system, and its linearization where a point is given. */
+/* A system, and its linearization if a point is given. */
 struct Derived {
   struct Diagnostics diagnostics;
   struct Model *model;
@@ -18,7 +18,7 @@ struct Derived {
 
 enum { POINT_LIMIT = 8 };
 
-/* Reads a file with this text; point: "name=value ..." for a linearization, NULL for none. */
+/* Reads a file with this text. point: "name=value ..." for a linearization, or NULL. */
 static struct Model *read_text(const char *text, const char *point, struct Diagnostics *diagnostics) {
   char path[] = "/tmp/equationsXXXXXX", *words = point == NULL ? NULL : copy_text(point);
   const char *names[POINT_LIMIT];
@@ -36,7 +36,7 @@ static struct Model *read_text(const char *text, const char *point, struct Diagn
   return model;
 }
 
-/* Errors are counted in the diagnostics; what they prevent is NULL. */
+/* Derives a system. Errors are counted in the diagnostics; results that they prevent are NULL. */
 static struct Derived derive(const char *text, const char *point) {
   struct Derived derived = {.diagnostics = {.file = "test"}};
   derived.model = read_text(text, point, &derived.diagnostics);
@@ -51,7 +51,7 @@ struct Given {
   double value;
 };
 
-/* The value of a node where symbols have the given values, and the others their start values. */
+/* Returns the value of a node for the given values of symbols; the others have their start values. */
 static double value_of(const struct Derived *derived, Node node, const struct Given *given, size_t count) {
   const struct Graph *graph = derived->model->graph;
   double *symbols = start_values(derived->model);
@@ -70,7 +70,7 @@ static void assert_value(const struct Derived *derived, Node node, const struct 
   if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g, expected %.17g", value, expected);
 }
 
-/* A charge in a magnetic field: terms that are linear in velocities bend the path, and store nothing. */
+/* A charge in a magnetic field: terms linear in velocities bend the path and store no energy. */
 static void test_magnetic_terms(void **state) {
   (void)state;
   struct Derived charge =
@@ -91,7 +91,7 @@ static void test_magnetic_terms(void **state) {
   assert_value(&charge, equations->residual[1], at, 6, -1.8 + 3.3, 1e-14);
 }
 
-/* A cart with a rod that hangs from it, a wheel on the cart, and a spring. */
+/* A cart with a hanging rod, a wheel on the cart, and a spring. */
 #define CART                                                                                                           \
   "<system name='Cart'><parameter name='m' start='2'/><parameter name='g' start='9'/><input name='F'/>"                \
   "<coordinate name='x' velocity='v'/><coordinate name='theta' velocity='omega'/>"                                     \
@@ -128,7 +128,7 @@ static long double output_of_cart(const struct Motion *at) {
 
 typedef long double OfMotion(const struct Motion *);
 
-/* Taylor's polynomial at the point, for the deviation, by difference quotients along it. */
+/* Returns the Taylor polynomial at the point for the deviation, by difference quotients along it. */
 static double polynomial(OfMotion *of, const struct Motion *point, const struct Motion *deviation, int order) {
   const long double h = 1e-3L;
   long double values[5], first, second;
@@ -143,7 +143,7 @@ static double polynomial(OfMotion *of, const struct Motion *point, const struct 
   return (double)(values[2] + first + (order == 2 ? second / 2 : 0));
 }
 
-/* Positions and outputs to first order, energies to second, about a point that is no equilibrium. */
+/* Positions and outputs to first order, energies to second, about a point that is not an equilibrium. */
 static void test_linearization(void **state) {
   (void)state;
   struct Derived cart = derive(CART, "x=2 theta=1 v=0.5 omega=-1.5 F=4");
@@ -183,7 +183,7 @@ static void test_equations_of_coupled_coordinates(void **state) {
   }
 }
 
-/* (q + s)^2 - (q - s)^2 - 4 q s: an element that vanishes only once it is multiplied out couples nothing. */
+/* (q + s)^2 - (q - s)^2 - 4 q s: an element that vanishes only when expanded couples nothing. */
 static void test_elements_that_vanish(void **state) {
   (void)state;
   struct Derived pair =
@@ -249,7 +249,7 @@ static void test_points_without_a_linearization(void **state) {
   assert_true(in_time.linear == NULL && in_time.diagnostics.errors == 1);
 }
 
-/* Masses in a ring, each tied to the ground, with inerters between neighbours: M couples what the order of elimination fills in. */
+/* Masses in a ring, each tied to the ground, with inerters between neighbours: the elimination of M has fill-in. */
 #define RING(count, ground)                                                                                            \
   "<system name='Ring'><constant name='N' value='" #count "'/><for index='i' from='1' to='N'>"                         \
   "<coordinate name='x[i]' velocity='v[i]'/><potential>i*x[i]^2/2</potential></for>"                                   \
@@ -258,7 +258,7 @@ static void test_points_without_a_linearization(void **state) {
 
 enum { RING_SIZE = 5 };
 
-/* A linearization is solved symbolically, whatever its size: M a = -i x_i. */
+/* A linearization of any size is solved symbolically: M a = -i x_i. */
 static void test_symbolic_solution_of_larger_systems(void **state) {
   (void)state;
   struct Derived ring = derive(RING(5, " + v[1]^2"), "x[1]=0");
@@ -282,7 +282,7 @@ static void test_symbolic_solution_of_larger_systems(void **state) {
   }
 }
 
-/* Without a mass of its own the ring as a whole moves freely: no velocity, no kinetic energy. */
+/* Without masses the ring as a whole moves freely, without kinetic energy. */
 static void test_mass_matrices_that_are_singular_everywhere(void **state) {
   (void)state;
   struct Derived free_ring = derive(RING(9, ""), NULL), held_ring = derive(RING(9, " + 1e-3*v[1]^2"), NULL);

@@ -1,4 +1,4 @@
-/* Every row of the table of operations is complete, and true: against long doubles and difference quotients of them. */
+/* Every row of the table of operations is complete and correct, against long doubles and difference quotients. */
 #include "algebra/functions.h"
 
 #include "algebra/differentiate.h"
@@ -38,10 +38,10 @@ static long double sign_of(long double x) {
 }
 
 /*
- * C's own functions, by the names of the language and of C; none of C where an expression does. A limit is due to what
- * has a singular point or an end of its domain where the auxiliary is 0, and to what grows like exp or has poles where
- * the operand, as a complex number, moves; the others rest on roots or such functions, whose nodes are limited, or are
- * sine and cosine, which a polynomial of the usual order sees.
+ * C's own functions, by their names in the language and in C (NULL if it is an expression), and their step limits.
+ * auxiliary_limit: the function has a singularity, or its domain ends, where the auxiliary is 0. operand_limit: for
+ * complex operands, the function grows like exp or has poles. Other functions depend on roots or such functions, which
+ * have limits themselves, or are sine and cosine, which need none.
  */
 static const struct Reference {
   const char *name, *c_name;
@@ -98,7 +98,7 @@ static long double value(const struct Reference *reference, long double left, lo
   return reference->of_one != NULL ? reference->of_one(left) : reference->of_two(left, right);
 }
 
-/* A difference quotient of fourth order along one operand. */
+/* Returns a difference quotient of fourth order along one operand. */
 static double slope(const struct Reference *reference, double left, double right, int which) {
   static const long double weights[] = {1, -8, 8, -1}, steps[] = {-2, -1, 1, 2}, h = 1e-5L;
   long double sum = 0;
@@ -113,7 +113,7 @@ static void assert_near(double found, double expected, const char *what, enum Op
     fail_msg("%s of %s at (%g, %g) is %.17g, expected %.17g", what, operation_name(operation), x, y, found, expected);
 }
 
-/* Calls test for each operation, at pairs of places in its domain. */
+/* Calls test for each operation, at pairs of values in its domain. */
 static void at_places(void (*test)(struct Expressions *e, Node node, double x, double y)) {
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
     if (is_leaf(operation)) continue;
@@ -175,7 +175,10 @@ static void test_names_in_c_and_limits(void **state) {
   }
 }
 
-/* A call with the right number of arguments is this operation; one argument less or more is a mistake, and so is a seed that moves. */
+/*
+ * A call with the right number of arguments gives this operation. One argument less or more is an error, and so is a
+ * varying seed.
+ */
 static void test_the_language_follows(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
@@ -216,7 +219,7 @@ static void check_derivative(struct Expressions *e, Node node, double x, double 
   const struct Reference *reference = reference_of(operation);
   double by_x = value_at(e, derivative_by(e->graph, node, e->x), x, y, 0);
   assert_near(by_x, slope(reference, x, y, 0), "the derivative", operation, x, y);
-  /* A negative base has no derivative along its exponent. */
+  /* a negative base has no derivative along its exponent */
   if (reference->of_one != NULL || (operation == POWER && x < 0)) return;
   double by_y = value_at(e, derivative_by(e->graph, node, e->y), x, y, 0);
   assert_near(by_y, slope(reference, x, y, 1), "the derivative", operation, x, y);
@@ -227,7 +230,7 @@ static void test_derivatives(void **state) {
   at_places(check_derivative);
 }
 
-/* What enum Recurrence says of each. */
+/* Checks the equation of enum Recurrence. */
 static void check_recurrence(struct Expressions *e, Node node, double x, double y) {
   enum Operation operation = e->graph->vertices[node].operation;
   const struct Function *row = &functions[operation];
@@ -280,7 +283,7 @@ static void test_auxiliaries_of_powers(void **state) {
   }
 }
 
-/* Odd is what changes its sign with its argument at all places, even what keeps its value. */
+/* A function is odd if it changes its sign with its argument at all tested values, and even if it keeps its value. */
 static void test_parity_and_sign(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
@@ -303,7 +306,7 @@ static void test_parity_and_sign(void **state) {
   }
 }
 
-/* A unit twice as large halves the arguments. A value that keeps the unit is halved as well, a number is not. */
+/* Doubling the unit halves the arguments. A value that keeps the unit is halved as well, a pure number is not. */
 static void test_units(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
@@ -324,7 +327,7 @@ static void test_units(void **state) {
   }
 }
 
-/* Whether the operation has a real value at a place; a power is asked for a root. */
+/* True if the operation has a real value at x; a power with the exponent 0.5. */
 static bool is_real(enum Operation operation, double x) {
   return isfinite((double)value(reference_of(operation), x, 0.5));
 }
@@ -350,17 +353,18 @@ static void test_domains(void **state) {
   }
 }
 
-/* Where the auxiliary of a function with pieces is 0, the slope or the value changes at once; nothing else has pieces. */
+/* Piecewise functions have a kink or a jump where the auxiliary is 0; other functions have none. */
 static void test_pieces(void **state) {
   (void)state;
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
     if (is_leaf(operation) || operation == POWER || operation == ATAN2) continue;
-    if (operation == FLOOR || operation == UNIFORM || operation == GAUSS) continue; /* pieces by floor_of(), or none */
+    /* handled by floor_of(), or not piecewise */
+    if (operation == FLOOR || operation == UNIFORM || operation == GAUSS) continue;
     const struct Reference *reference = reference_of(operation);
     const long double h = 1e-6L;
     bool has_pieces = false;
     for (int j = 0; j < PLACES; j++) {
-      long double y = places[j], x = reference->of_one != NULL ? 0 : y; /* a pole at 0 is none of these */
+      long double y = places[j], x = reference->of_one != NULL ? 0 : y; /* a pole at 0 is neither */
       long double below = value(reference, x - h, y), at = value(reference, x, y), above = value(reference, x + h, y);
       has_pieces = has_pieces || fabsl(above - 2 * at + below) > h / 10 || fabsl(above - below) > 0.5L;
     }
@@ -369,7 +373,7 @@ static void test_pieces(void **state) {
   }
 }
 
-/* A function of another one is folded where it is piecewise linear, but no straight line. */
+/* A composition of two functions is folded if it is piecewise linear, but not linear. */
 static void test_folds(void **state) {
   (void)state;
   for (enum Operation outer = 0; outer < OPERATION_COUNT; outer++) {

@@ -52,7 +52,7 @@ static void test_growth(void **state) {
   assert_true(fabs(value_at(&e, sum, 0.01, 0, 0) - expected) < 1e-6);
 }
 
-/* Nothing may recurse as deep as a product is long: the stack would not hold it. */
+/* Recursion must not be as deep as a product is long, which would overflow the stack. */
 static void test_long_products(void **state) {
   (void)state;
   struct Expressions e = expressions_create();

@@ -1,4 +1,4 @@
-/* The mass matrix as expressions: which coordinates it couples, and its symbolic factors. */
+/* The symbolic mass matrix: coupled coordinates and factors. */
 #include "base/memory.h"
 #include "expressions.h"
 #include "mechanics/mass_matrix/mass_elements.h"
@@ -6,14 +6,17 @@
 
 enum { COORDINATES = 12, ELEMENTS = COORDINATES * (COORDINATES + 1) / 2 };
 
-/* Whether each pair is coupled, directly or by way of others: the transitive closure, by Warshall. */
+/* Computes the transitive closure by Warshall's algorithm: true for pairs coupled directly or indirectly. */
 static void close_pattern(bool coupled[COORDINATES][COORDINATES]) {
   for (size_t k = 0; k < COORDINATES; k++)
     for (size_t i = 0; i < COORDINATES; i++)
       for (size_t j = 0; j < COORDINATES; j++) coupled[i][j] |= coupled[i][k] && coupled[k][j];
 }
 
-/* Elements at positions (i, j), j <= i, of a matrix that has all of its diagonal. The node of an element tells it again. */
+/*
+ * Checks the components of a matrix with elements at positions (i, j), j <= i, and the whole diagonal. The node of an
+ * element encodes its position.
+ */
 static void check_components(struct Position *positions, size_t count) {
   struct Elements elements = {.count = count};
   bool coupled[COORDINATES][COORDINATES] = {{false}};
@@ -69,7 +72,7 @@ static void test_components(void **state) {
   }
 }
 
-/* A tridiagonal matrix is one component, whatever the order of its elements; without an element, two. */
+/* A tridiagonal matrix is one component in any order of its elements; without one element, two. */
 static void test_components_of_a_chain(void **state) {
   (void)state;
   struct Position chain[2 * COORDINATES];
@@ -99,7 +102,7 @@ static struct Inertia factor(struct Expressions *e, struct InertiaBlock *block, 
   return inertia;
 }
 
-/* L D L^T is M, and the solution of M x = b solves it, at numbers. */
+/* L D L^T equals M, and the solution of M x = b satisfies it, for numeric values. */
 static void test_symbolic_factors(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -132,7 +135,7 @@ static void test_symbolic_factors(void **state) {
   assert_int_equal(inertia.pivot_count, SIZE);
 }
 
-/* The size of the terms of a diagonal element with |sin| and |cos| taken as 1, at x = 3, y = 0.5, z = 2. */
+/* The magnitude of the terms of a diagonal element with |sin| and |cos| taken as 1, at x = 3, y = 0.5, z = 2. */
 static void test_scales_of_pivots(void **state) {
   (void)state;
   static const struct {
@@ -144,7 +147,7 @@ static void test_scales_of_pivots(void **state) {
       {"x^2*(2 - 2*cos(y))", 36},
       {"x*(sin(y) - y*cos(z))^2", 3 * 1.5 * 1.5},
       {"5*sin(y)^4*cos(z)^2", 5},
-      {"(4 + cos(y))^-1", 1 / (4 + 0.8775825618903728)}, /* of a quotient: itself */
+      {"(4 + cos(y))^-1", 1 / (4 + 0.8775825618903728)}, /* a quotient counts as itself */
       {"exp(x)*cos(z)^2", 20.085536923187668},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

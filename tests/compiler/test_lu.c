@@ -1,4 +1,4 @@
-/* The factorizations of implicit methods, full and sparse, against products of matrices with known vectors. */
+/* The LU factorizations of implicit methods, dense and sparse, against products with known vectors. */
 #include "support/lu.h"
 
 #include "expressions.h"
@@ -10,7 +10,7 @@ static int place[SIZE], start[SIZE + 1], column[POSITIONS];
 const struct Lagrangian lagrangian = {
     .coordinate_count = SIZE, .state_count = 2 * SIZE, .implicit = {.lu_pattern = {place, start, column}}};
 
-/* From -1 to 1. */
+/* Returns a random number from -1 to 1. */
 static double next(unsigned *seed) {
   *seed = *seed * 1103515245u + 12345u;
   return (double)(*seed >> 16) / 32768.0 - 1.0;
@@ -31,7 +31,7 @@ static void set(const struct Lu *lu, size_t width, size_t i, size_t j, const dou
   number_add_product(width, right + width * i, value, x + width * j);
 }
 
-/* The largest error of the solution for a random matrix with this on its diagonal. */
+/* Returns the largest error of the solution for a random matrix with this diagonal. */
 static double error_of(const struct Lu *lu, size_t width, const struct Position *positions, size_t count,
                        double diagonal) {
   double matrix[NUMBERS] = {0}, x[COMPLEX * SIZE], right[COMPLEX * SIZE] = {0}, work[2 * COMPLEX * SIZE], error = 0.0;
@@ -69,7 +69,7 @@ static void test_solutions(void **state) {
   }
 }
 
-/* The unit matrix but for two rows and columns in its midst. */
+/* Factors the unit matrix with two rows and columns changed. Returns false if that fails. */
 static bool factors(const struct Lu *lu, size_t width, double a, double b, double c, double d) {
   double matrix[NUMBERS] = {0}, work[2 * COMPLEX * SIZE];
   for (size_t i = 0; i < SIZE; i++) matrix[width * lu->place(i, i)] = 1.0;
@@ -80,7 +80,7 @@ static bool factors(const struct Lu *lu, size_t width, double a, double b, doubl
   return lu->factor(width, matrix, work);
 }
 
-/* Without row pivots, no number is better than one without digits. */
+/* Without row pivoting, a pivot without correct digits must be rejected. */
 static void test_pivots_that_are_lost(void **state) {
   (void)state;
   struct Position positions[2 * SIZE];

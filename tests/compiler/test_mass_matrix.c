@@ -1,11 +1,11 @@
-/* The factorization of large blocks of the mass matrix. */
+/* The numeric factorization of blocks of the mass matrix. */
 #include "expressions.h"
 #include "ldlt.h"
 #include "mechanics/mass_matrix/elimination.h"
 
 enum { SIZE = 30 };
 
-/* A random positive definite matrix in packed storage. */
+/* Fills a random positive definite matrix in packed storage. */
 static void random_matrix(double m[SIZE * (SIZE + 1) / 2]) {
   double factor[SIZE][SIZE];
   unsigned seed = 5;
@@ -46,7 +46,10 @@ static void test_matrices_that_are_not_definite(void **state) {
   assert_int_equal(ldlt_factor(1, NULL, NULL, nan), 1);
 }
 
-/* Pivots that rounding alone leaves are none, of whatever sign; a small one with digits is. By rows of the lower triangle. */
+/*
+ * Pivots that consist of rounding errors, of either sign, are rejected; small ones with correct digits are not.
+ * Matrices by rows of the lower triangle.
+ */
 static void test_pivots_near_zero(void **state) {
   (void)state;
   const size_t start[] = {0, 1, 3}, column[] = {0, 0, 1};
@@ -70,7 +73,7 @@ static unsigned next(unsigned *seed) {
   return *seed >> 16;
 }
 
-/* Solves by Gauss's elimination of a full matrix, which is lost. */
+/* Solves by Gaussian elimination of the full matrix, which is overwritten. */
 static void solve_by_gauss(size_t n, double m[SPARSE][SPARSE], double *x) {
   for (size_t k = 0; k < n; k++)
     for (size_t i = k + 1; i < n; i++) {
@@ -84,7 +87,7 @@ static void solve_by_gauss(size_t n, double m[SPARSE][SPARSE], double *x) {
   }
 }
 
-/* Compares the sparse factorization with the elimination of the full matrix; returns the elements of L. */
+/* Compares the sparse factorization with elimination of the full matrix. Returns the number of elements of L. */
 static size_t check_sparse(size_t n, const struct Position *positions, size_t count, unsigned seed) {
   double full[SPARSE][SPARSE] = {{0}}, m[POSITIONS] = {0}, x[SPARSE], expected[SPARSE];
   struct Graph *graph = graph_create();
@@ -123,7 +126,7 @@ static void test_sparse_patterns(void **state) {
     }
 }
 
-/* A chain, a star and a tree fill nothing in; a full matrix stays in its order. */
+/* A chain, a star and a tree have no fill-in; a full matrix keeps its order. */
 static void test_order_of_elimination(void **state) {
   (void)state;
   struct Position chain[2 * SPARSE], star[2 * SPARSE], tree[2 * SPARSE], full[POSITIONS];

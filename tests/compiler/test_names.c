@@ -1,4 +1,4 @@
-/* The table of names, against a plain list of what should be in it. */
+/* The table of names, against a plain list of its content. */
 #include "base/memory.h"
 #include "expressions.h"
 #include "read/names/names.h"

@@ -1,4 +1,4 @@
-/* Fractions of polynomials: what they cancel, and that they give up where they would change a value. */
+/* Fractions of polynomials: they cancel common factors, and give up where a value would change. */
 #include "expressions.h"
 #include "algebra/polynomials/rational.h"
 
@@ -6,7 +6,7 @@ static Node fraction(struct Expressions *e, const char *text) {
   return simplify_fraction(e->graph, parse(e, text));
 }
 
-/* Products are multiplied out before their like terms meet; 0.1 + 0.2 - 0.3 is 5.6e-17 in doubles. */
+/* Products are expanded before like terms combine; 0.1 + 0.2 - 0.3 is 5.6e-17 in doubles. */
 static void test_rounding_errors_of_zero(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -16,7 +16,7 @@ static void test_rounding_errors_of_zero(void **state) {
   assert_true(fabs(value_at(&e, smaller, 2, 3, 0) - 6e-9) < 1e-14);
 }
 
-/* Exponents end at 255, coefficients where they lose digits, polynomials at 400 terms. */
+/* Exponents are limited to 255, coefficients where they lose digits, polynomials to 400 terms. */
 static void test_limits_keep_values(void **state) {
   (void)state;
   static const struct {
@@ -46,7 +46,7 @@ static void test_large_polynomials_stay_as_they_are(void **state) {
   }
 }
 
-/* What is 0 only once multiplied out has no reciprocal; the rest is brought to lowest terms all the same. */
+/* An expression that vanishes only when expanded has no reciprocal; the rest is reduced to lowest terms. */
 static void test_reciprocal_of_zero(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -92,7 +92,7 @@ static void test_many_atoms(void **state) {
 
 enum { SIZE = 3 };
 
-/* matrix * solution = right side, for two right sides, at numbers. */
+/* matrix * solution = right side, for two right sides, for numeric values. */
 static void test_linear_equations(void **state) {
   (void)state;
   struct Expressions e = expressions_create();

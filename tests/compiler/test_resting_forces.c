@@ -1,4 +1,7 @@
-/* Forces of contacts that slide, against closed forms: S = 1 - k J, J all ones, has the forces -free/(1 - n k) of n that press. */
+/*
+ * Forces of sliding contacts, against closed forms: S = 1 - k J, with J all ones, gives -free/(1 - n k) for n closed
+ * contacts.
+ */
 #include "contacts/resting_forces.h"
 
 #include "expressions.h"
@@ -7,7 +10,7 @@ enum { MOST = 16 };
 
 static double block[4 * MOST * MOST + 20 * MOST + MOST * (2 * MOST + 3)];
 
-/* Groups of so many contacts, with free accelerations of 1, and k of each group. */
+/* Returns groups of `size` contacts, with free accelerations of -1, and k for each group. */
 static struct RestingForces groups(size_t count, size_t size, const double *k) {
   assert_true(resting_forces_bytes(count) <= sizeof block);
   struct RestingForces resting = resting_forces_in(block, count);
@@ -27,7 +30,7 @@ static void test_groups(void **state) {
     assert_true(fabs(resting.found_force[i] - (i < 8 ? 1.0 / 0.92 : 1.0 / 0.84)) < 1e-14);
     assert_true(fabs(resting.found[i]) < 1e-14);
   }
-  /* Of the second all may press, or none, though there are more than 12 in both. */
+  /* in the second group all contacts or none may press, though both groups have more than 12 */
   resting = groups(16, 8, (double[]){0.01, 0.2});
   for (size_t i = 8; i < 16; i++) resting.free[i] = 1.0;
   assert_int_equal(resting_forces_solve(&resting, true), SEVERAL_MOTIONS);
@@ -39,7 +42,7 @@ static void test_many(void **state) {
   (void)state;
   struct RestingForces resting = groups(14, 14, (double[]){0.02});
   assert_int_equal(resting_forces_solve(&resting, true), ONE_MOTION);
-  resting.free[3] = resting.free[5] = 10.0; /* part, which leaves 12 that press */
+  resting.free[3] = resting.free[5] = 10.0; /* these separate, and 12 stay closed */
   assert_int_equal(resting_forces_solve(&resting, false), ONE_MOTION);
   for (size_t i = 0; i < 14; i++) {
     bool parts = i == 3 || i == 5;

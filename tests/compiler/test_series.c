@@ -11,12 +11,12 @@ static void exponential(Series a, double first, double rate) {
   for (int k = 1; k <= ORDER; k++) a[k] = a[k - 1] * rate / k;
 }
 
-/* What a recurrence subtracts is larger than the result, by up to four digits. */
+/* Recurrences lose up to four digits by cancellation. */
 static void assert_near(double value, double expected) {
   if (!(fabs(value - expected) <= 1e-9 * fabs(expected))) fail_msg("%.17g, expected %.17g", value, expected);
 }
 
-/* The same for an order that the compiler knows, and for one that it does not. */
+/* Checks each order, as a constant and as a variable of the compiler. */
 #define EACH_ORDER(CHECK)                                                                                              \
   CHECK(1)                                                                                                             \
   CHECK(2)                                                                                                             \
@@ -64,7 +64,7 @@ static void test_products(void **state) {
   }
 }
 
-/* As series() of a generated system has them: the sums of all products of an order first, in one loop or from a list. */
+/* As in series() of a generated system: all products of an order first, in one loop or from a list. */
 static void test_products_that_are_begun_together(void **state) {
   (void)state;
   Series a, b, product, square, quotient, root;
@@ -85,7 +85,8 @@ static void test_products_that_are_begun_together(void **state) {
     assert_near(series_rest_around(m[0], k, a, b), product[k] - a[0] * b[k]);
     assert_near(series_square_around(m[1], k, a), square[k]);
     assert_near(series_quotient_around(m[2], k, a[k], 1 / b[0], b, quotient), quotient[k]);
-    assert_near(series_root_around(m[3], k, a, root) + a[k], root[k] + a[k]); /* it takes the middle from a_k */
+    /* it subtracts the middle terms from a_k */
+    assert_near(series_root_around(m[3], k, a, root) + a[k], root[k] + a[k]);
     assert_near(series_integral_around(m[4], k, a, b), product[k - 1] / k);
   }
 #undef PRODUCTS
@@ -105,7 +106,7 @@ static void test_quotients_roots_and_powers(void **state) {
   for (int k = ORDER; k >= 0; k--) cube[k] = k >= 3 ? cube[k - 3] : 0.0;
   for (int k = 1; k <= ORDER; k++) {
     assert_near(series_quotient(k, a[k], 1 / b[0], b, quotient), quotient[k]);
-    assert_near(series_root(k, a, root) + a[k], root[k] + a[k]); /* it takes the middle from a_k */
+    assert_near(series_root(k, a, root) + a[k], root[k] + a[k]); /* it subtracts the middle terms from a_k */
     assert_near(series_power(k, -1.5, a, power), power[k]);
     assert_near(series_power(k, 3, moved, cube), cube[k]);
     assert_true(isnan(series_power(k, 0.5, moved, zero)) && isnan(series_power(k, -1, moved, zero)));
@@ -141,7 +142,7 @@ static void test_signs(void **state) {
   assert_true(series_absolute(2, rises) == -9.0 && series_absolute(2, zero) == 0.0);
 }
 
-/* The limit is found to a factor of 8^(1/16), and never exceeded. */
+/* Limits are found to a factor of 8^(1/16), and never exceeded. */
 static void assert_limited(const struct SeriesLimit *limit, double expected, const char *function) {
   if (!(limit->step <= expected * (1 + 1e-14) && limit->step >= 0.878 * expected))
     fail_msg("%.17g, expected %.17g", limit->step, expected);
@@ -164,7 +165,7 @@ static void test_limits_of_functions(void **state) {
   series_limit_exponential(&limit, LINE(3, -2), "exp"); /* a factor of e^5 */
   assert_limited(&limit, 2.5, "exp");
   limit = far_away;
-  series_limit_exponential(&limit, LINE(-900, 2), "exp"); /* 0 as far as u = -700 */
+  series_limit_exponential(&limit, LINE(-900, 2), "exp"); /* 0 up to u = -700 */
   assert_limited(&limit, 100, "exp");
   limit = far_away;
   series_limit_hyperbolic(&limit, LINE(3, 0.5), "cosh");
@@ -173,7 +174,7 @@ static void test_limits_of_functions(void **state) {
   series_limit_tanh(&limit, LINE(0.3, 2));
   assert_limited(&limit, 2.5, "tanh");
   limit = far_away;
-  series_limit_tanh(&limit, LINE(-120, 2)); /* 1 as far as |u| = 20 */
+  series_limit_tanh(&limit, LINE(-120, 2)); /* 1 down to |u| = 20 */
   assert_limited(&limit, 50, "tanh");
   limit = far_away;
   series_limit_tangent(&limit, LINE(4, 0.5)); /* the poles are at pi/2 and 3 pi/2 */
@@ -198,13 +199,14 @@ static void test_limits_of_powers(void **state) {
   series_limit_root(&limit, LINE(-3, 0.5), series_limit_share(0.5));
   assert_limited(&limit, 6 * 0.99, "a root");
   limit = far_away;
-  series_limit_whole_power(&limit, (const Series){2, -1, 0, 0.25}, series_limit_share(10)); /* turns at 2/sqrt(3) */
+  /* turning point at 2/sqrt(3) */
+  series_limit_whole_power(&limit, (const Series){2, -1, 0, 0.25}, series_limit_share(10));
   assert_limited(&limit, 2 / sqrt(3), "a power");
   limit = far_away;
-  series_limit_whole_power(&limit, LINE(2, -1), series_limit_share(10)); /* without one */
+  series_limit_whole_power(&limit, LINE(2, -1), series_limit_share(10)); /* no turning point */
   assert_limited(&limit, 1e6, NULL);
   limit = far_away;
-  series_limit_division(&limit, LINE(3, 0.5), (const Series){0}, series_limit_share(-1)); /* 0 at all times */
+  series_limit_division(&limit, LINE(3, 0.5), (const Series){0}, series_limit_share(-1)); /* vanishes at all times */
   assert_limited(&limit, 1e6, NULL);
   series_limit_division(&limit, LINE(3, 0.5), (const Series){0, 0, 1}, series_limit_share(-1));
   assert_limited(&limit, 6 * 0.99, "a division or power");
@@ -227,9 +229,9 @@ static void test_limits_of_pieces(void **state) {
   limit = far_away;
   series_limit_sign(&limit, LINE(3, 0.5), "abs"); /* away from 0 */
   assert_limited(&limit, 1e6, NULL);
-  series_limit_sign(&limit, LINE(0, -0.5), "abs"); /* from 0, to one side */
+  series_limit_sign(&limit, LINE(0, -0.5), "abs"); /* leaves 0 to one side */
   assert_limited(&limit, 1e6, NULL);
-  series_limit_angle(&limit, LINE(1, 1), LINE(3, 0)); /* on the right of the y axis */
+  series_limit_angle(&limit, LINE(1, 1), LINE(3, 0)); /* right of the y axis */
   assert_limited(&limit, 1e6, NULL);
   series_limit_angle(&limit, LINE(2, -0.5), LINE(-3, 1));
   assert_limited(&limit, 4 * 0.99, "atan2");
@@ -244,7 +246,7 @@ static void test_limits_of_pieces(void **state) {
   assert_limited(&limit, 6 * 0.99, "a division or power");
 }
 
-/* |u_k| step^k of all orders, also where these are no multiple of four. */
+/* The sum of |u_k| step^k for all orders, multiples of four or not. */
 static void test_excursions(void **state) {
   (void)state;
   for (int order = 1; order <= ORDER; order++) {
@@ -252,7 +254,7 @@ static void test_excursions(void **state) {
     for (int k = 0; k <= ORDER; k++) u[k] = k % 3 == 0 ? -1.0 : 1.0;
     struct SeriesLimit limit = {.order = order, .step = 1e3};
     series_limit_hyperbolic(&limit, u, "sinh");
-    double low = 0.0, high = 5.0; /* where the geometric sum is 5 */
+    double low = 0.0, high = 5.0; /* bisection for a geometric sum of 5 */
     for (int i = 0; i < 60; i++) {
       double middle = (low + high) / 2, sum = 0.0;
       for (int k = 1; k <= order; k++) sum += pow(middle, k);

@@ -1,4 +1,4 @@
-/* Products of the same factors: what is grouped, what stays as it is, and that values stay. */
+/* Products of the same factors: which are shared, which are not, and that values stay. */
 #include "expressions.h"
 #include "algebra/cone.h"
 #include "algebra/polynomials/shared_products.h"
@@ -14,7 +14,7 @@ static size_t operations(const struct Expressions *e, const Node *nodes) {
   return operations;
 }
 
-/* Three expressions, of which the leading ones decide, and the operations that they need before and after. */
+/* Three expressions, of which the leading ones decide; and the number of operations before and after. */
 static void test_operations(void **state) {
   (void)state;
   static const struct {
@@ -26,10 +26,10 @@ static void test_operations(void **state) {
       {{"x*y*z + 1", "(x*y*cos(z) + 2)*x*y", "0"}, COUNT, 8, 7},      /* inside a factor, too */
       {{"sin(x)*z*y", "cos(z)*sin(x)*y", "sin(x)*y/x"}, COUNT, 9, 7}, /* of numerators */
       {{"x^3*y", "x^3*z", "x*y*z"}, COUNT, 5, 5},                     /* powers stay whole */
-      {{"x*y + 1", "y*z + 2", "x*z + 3"}, COUNT, 6, 6},               /* no pair is there twice */
+      {{"x*y + 1", "y*z + 2", "x*z + 3"}, COUNT, 6, 6},               /* no pair occurs twice */
       {{"sqrt(x*y*z)", "x*y + 1", "exp(x*z*y)"}, COUNT, 7, 7},        /* operands of functions stay */
       {{"x*z*y", "cos(z)*x*y", "exp(z)*(y*x)"}, 2, 8, 6},             /* the third takes x y from the others */
-      {{"x*y*z", "sin(z)*y", "cos(z)*y*z"}, 2, 7, 7},                 /* and decides nothing: no y z */
+      {{"x*y*z", "sin(z)*y", "cos(z)*y*z"}, 2, 7, 7},                 /* and does not decide: y z is not shared */
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     struct Expressions e = expressions_create();

@@ -1,4 +1,4 @@
-/* The algebra of the graph: what it simplifies, and that it never changes a value. */
+/* The simplifications of the graph, and that they never change a value. */
 #include "expressions.h"
 #include "algebra/polynomials/rational.h"
 
@@ -25,7 +25,7 @@ static void test_simplifications(void **state) {
   assert_int_equal(e.diagnostics.errors, 0);
 }
 
-/* A root of an even power has a kink, which abs shows; values for both signs of the base are the test's own. */
+/* A root of an even power has a kink, written as abs; values are tested for both signs of the base. */
 static void test_roots_of_even_powers(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -44,7 +44,7 @@ static void test_roots_of_even_powers(void **state) {
     assert_true(fabs(value_at(&e, parse(&e, cases[i].text), -3, 5, 0) - cases[i].value) < 1e-13);
 }
 
-/* More factors than are looked at, and longer products; something in them cancels. */
+/* More factors than the algebra examines, and longer products; some factors cancel. */
 static void test_long_products_keep_values(void **state) {
   (void)state;
   struct Expressions e = expressions_create();
@@ -65,7 +65,7 @@ static void test_long_products_keep_values(void **state) {
   }
 }
 
-/* Functions of equal operands, of abs and of what is negative: at x = -3, y = 0.5. */
+/* Functions of equal operands, of abs and of negative arguments, at x = -3, y = 0.5. */
 static void test_functions_of_special_operands(void **state) {
   (void)state;
   static const struct {
@@ -96,7 +96,7 @@ static void test_signs_and_precedence(void **state) {
   assert_true(fabs(value_at(&e, node, 3, 5, 7) - (-9.0 + 10 + 7.0 / 8 - 81)) < 1e-12);
 }
 
-/* A random expression as text, so that parser, algebra and evaluation are met together. */
+/* Writes a random expression as text, to test parser, algebra and evaluation together. */
 static void random_text(unsigned *seed, int depth, char *text, size_t size) {
   static const char *const forms[] = {"(%s + %s)", "(%s - %s)", "%s*%s", "(%s)/(3 + (%s)^2)", "sin(%s)*cos(%s)"};
   static const char *const leaves[] = {"x", "y", "z", "2", "0.5", "sin(x)", "cos(x)", "sin(y)^2", "cos(y)^2"};
@@ -115,7 +115,7 @@ static void random_text(unsigned *seed, int depth, char *text, size_t size) {
 #pragma GCC diagnostic pop
 }
 
-/* Evaluates the text with no algebra at all: every number, name and operator by itself. */
+/* Evaluates the text without algebra: every number, name and operator by itself. */
 static double plain_sum(const char **text, const double *values);
 
 static double plain_primary(const char **text, const double *values) {

@@ -1,4 +1,4 @@
-/* Units: reading, products, and writing them in base units. */
+/* Units: parsing, products, and conversion to base units. */
 #include <stdio.h>
 
 #include "expressions.h"
@@ -25,7 +25,7 @@ static void test_units_in_base_units(void **state) {
   assert_unit("Hz", "1/s");
 }
 
-/* The derived units as the SI brochure expresses them in each other. */
+/* The derived units in terms of each other, as in the SI brochure. */
 static void test_units_in_each_other(void **state) {
   (void)state;
   static const char *const equal[][2] = {{"Hz", "1/s"}, {"J", "N.m"},  {"W", "J/s"},   {"Pa", "N/m2"},

@@ -1,12 +1,12 @@
 /*
- * Motions with contacts, dry friction and events, in long doubles, up to the first change of a mode. The source that is
- * generated for one system defines the sizes N, SIZE (with the rows of constraints), CONTACTS, FRICTIONS, EVENTS,
- * FIRST_MODE (where the modes begin in the constants), HOLDERS (of each friction the contact that it rests on, or -1) and
- * parts(), and includes reference.c before this file.
+ * Motions with contacts, dry friction and events, in long doubles, up to the first change of a mode. The generated
+ * source of a system defines the sizes N, SIZE (with the rows of constraints), CONTACTS, FRICTIONS, EVENTS, FIRST_MODE
+ * (index of the first mode in the constants), HOLDERS (for each friction its contact, or -1) and parts(), and includes
+ * reference.c before this file.
  */
 enum {
-  PER_CONTACT = 3 + N,  /* gap, its rate, what a = 0 leaves of its acceleration; its gradient */
-  PER_FRICTION = 4 + N, /* velocity, what a = 0 leaves of its derivative, force, stiction; its gradient */
+  PER_CONTACT = 3 + N,  /* gap, its rate, its acceleration for a = 0; its gradient */
+  PER_FRICTION = 4 + N, /* velocity, its derivative for a = 0, force, stiction; its gradient */
   AT_TERMS = SIZE * SIZE,
   AT_CONTACTS = AT_TERMS + SIZE,
   AT_FRICTIONS = AT_CONTACTS + CONTACTS * PER_CONTACT,
@@ -30,7 +30,7 @@ static const real *held_of(const real *k) {
   return k + FIRST_MODE + CONTACTS + FRICTIONS;
 }
 
-/* M a = h + G^T l - W^T f, with rows for the forces l of contacts and f of frictions. */
+/* Solves M a = h + G^T l - W^T f, with rows for the forces l of contacts and f of frictions. */
 static void solve_forces(const real *p, const real *k, real *x) {
   static _Thread_local real m[FULL * FULL];
   memset(m, 0, sizeof m);
@@ -76,20 +76,20 @@ void right(real t, const real *y, const real *k, real *d, real *operand, real *s
   memcpy(scale, p + AT_GUARDS + GUARDS_HERE, GUARDS_HERE * sizeof *scale);
 }
 
-/* All parts, and behind them the accelerations and forces. */
+/* Computes all parts, followed by the accelerations and forces. */
 void look(real t, const real *y, const real *k, real *p) {
   parts(t, y, k, p);
   solve_forces(p, k, p + PARTS);
 }
 
-/* Whether a mode does not hold any more. */
+/* True if a mode is no longer consistent. */
 static bool has_changed(real t, const real *y, const real *k) {
   real p[PARTS + FULL];
   look(t, y, k, p);
   const real *force = p + PARTS + SIZE;
   for (int i = 0; i < CONTACTS; i++) {
     const real *contact = p + AT_CONTACTS + i * PER_CONTACT;
-    /* Where a gap has a kink, what was closed is pushed, or left behind. */
+    /* at a kink of the gap, a closed contact is pushed or left behind */
     bool ends = force[i] < -rounding || fabsl(contact[1]) > least_jump;
     if (closed_of(k)[i] != 0 ? ends : contact[0] < -rounding && contact[1] < 0) return true;
   }
@@ -104,7 +104,7 @@ static bool has_changed(real t, const real *y, const real *k) {
   return false;
 }
 
-/* The state within a step by Hermite's cubic, which is to tell signs alone. */
+/* Interpolates the state by a cubic Hermite polynomial, which is accurate enough for signs. */
 static void interpolate(const real *before, const real *rate_before, const real *behind, const real *rate_behind,
                         real h, real share, real *state) {
   real s = share, r = 1 - share;
@@ -113,7 +113,10 @@ static void interpolate(const real *before, const real *rate_before, const real 
                h * s * r * (r * rate_before[i] - s * rate_behind[i]);
 }
 
-/* Where in a step a mode changes first, just behind: the length of the way there, or 0 where none does. */
+/*
+ * Finds the first change of a mode in a step. Returns the time from the start of the step to just after it, or 0
+ * without a change.
+ */
 static real find_change(struct Run *run, real time, real h, const real *before, const real *behind, real *state) {
   real first[2 * N], last[2 * N], operand[GUARDS], scale[GUARDS], low = 0;
   right(time, before, run->constant, first, operand, scale);
@@ -139,7 +142,7 @@ static real find_change(struct Run *run, real time, real h, const real *before, 
   return 0;
 }
 
-/* For Python: as integrate(), up to the first change of a mode; *changed, and the time in *reached. */
+/* Called from Python: integrate() up to the first change of a mode; sets *changed, and the time in *reached. */
 int advance(int columns, double tolerance, double fraction, double longest, const real *time, const real *end,
             real *state, const real *constant, real *step, long *evaluations, long limit, real *reached, int *changed) {
   struct Run run = {.right = right,

@@ -1,7 +1,8 @@
 /*
- * The motion in long doubles by extrapolation of the modified midpoint rule (Hairer, Norsett, Wanner: Solving Ordinary
- * Differential Equations I, section II.9). Besides the usual control of the error, no step may change the operand of a
- * function by more than a fraction of the scale on which that function bends, so that nothing narrow is stepped over.
+ * A reference integrator in long doubles: extrapolation of the modified midpoint rule (Hairer, Norsett, Wanner:
+ * Solving Ordinary Differential Equations I, section II.9). Beside the usual error control, no step may change the
+ * operand of a function by more than a fraction of the scale on which that function varies, so that no narrow feature
+ * is stepped over.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -11,14 +12,14 @@ enum { STATES = 20, COLUMNS = 12, GUARDS = 400 };
 
 typedef long double real;
 
-/* The derivative of the state, and the operands with their scales. */
+/* Computes the derivative of the state, and the operands of functions with their scales. */
 typedef void (*Right)(real time, const real *state, const real *constant, real *derivative, real *operand, real *scale);
 
 struct Run {
   Right right;
-  int states, guards, columns; /* columns of the extrapolation: the order is twice that */
-  real tolerance, fraction;    /* of the scales */
-  real longest;                /* step */
+  int states, guards, columns; /* columns of the extrapolation table; the order is twice that */
+  real tolerance, fraction;    /* fraction: of the scales */
+  real longest;                /* longest step */
   long evaluations, limit;
   const real *constant;
   real operand[GUARDS], scale[GUARDS];
@@ -26,7 +27,10 @@ struct Run {
 
 enum Outcome { DONE, TOO_LONG, NOT_FINITE };
 
-/* Evaluates; false where an operand has gone too far from where the step began; 1 + exp(...) may stay infinite. */
+/*
+ * Evaluates the right side. Returns false if it is not finite, or an operand has moved too far since the start of the
+ * step. An infinite operand, as of 1 + exp(...), may stay so.
+ */
 static bool evaluate(struct Run *run, real time, const real *state, real *derivative, bool guarded) {
   real operand[GUARDS], scale[GUARDS];
   run->right(time, state, run->constant, derivative, operand, scale);
@@ -60,7 +64,7 @@ static bool midpoint(struct Run *run, real time, real h, int steps, const real *
   return true;
 }
 
-/* One step; the error in units of the tolerance, or -1 where the step must be shorter. */
+/* Attempts one step. Returns the error in units of the tolerance, or -1 if the step must be shorter. */
 static real attempt(struct Run *run, real time, real h, const real *state, real *result, bool guarded) {
   real first[STATES], table[COLUMNS][STATES], error = 0;
   run->right(time, state, run->constant, first, run->operand, run->scale);
@@ -86,8 +90,8 @@ static real attempt(struct Run *run, real time, real h, const real *state, real 
 }
 
 /*
- * One step that is not longer than to the end; step holds its length and receives that of the next. A step that is as short
- * as rounding is taken whatever its error: it ends at a jump.
+ * Takes one step of at most *step, not beyond end; *step becomes the next length. A step at the limit of rounding is
+ * accepted with any error: it ends at a jump.
  */
 static enum Outcome step_once(struct Run *run, real *time, real end, real *state, real *step) {
   real shortest = 1e-16L * fmaxl(1, fabsl(end));
@@ -120,7 +124,7 @@ static enum Outcome follow(struct Run *run, real time, real end, real *state, re
   return outcome;
 }
 
-/* For Python: the outcome, and evaluations added to the count. */
+/* Called from Python. Returns the outcome, and adds the evaluations to the count. */
 int integrate(Right right, int states, int guards, int columns, double tolerance, double fraction, double longest,
               double time, double end, real *state, const real *constant, real *step, long *evaluations, long limit) {
   struct Run run = {.right = right,

@@ -1,6 +1,6 @@
 /*
- * lagc on any bytes, for libFuzzer (scripts/fuzz): it ends with files or with messages, and neither crashes, nor leaks,
- * nor works for long.
+ * Runs lagc on arbitrary bytes, for libFuzzer (scripts/fuzz). It must end with files or messages, without crashes,
+ * leaks or long work.
  */
 #include <stdint.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /*
- * Seconds of one evaluation of the derivatives of a generated system, with which it is linked: accelerations COUNT. The
- * state changes from one evaluation to the next; what it is does not matter for the time.
+ * Prints the seconds that one evaluation of the derivatives takes, of a generated system that is linked in:
+ * accelerations COUNT. The state changes between evaluations; its values do not affect the time.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static double seconds(void) {
   return (double)clock() / CLOCKS_PER_SEC;
 }
 
-/* The start values, but for joints that are turned a little and move. */
+/* Sets the start values, with all joints displaced and moving. */
 static void set_point(double *state, double *parameter) {
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];

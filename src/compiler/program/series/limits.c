@@ -1,21 +1,16 @@
 /*
  * Step limits by bounds of series. A feature of f(u(t)) whose Taylor coefficients vanish at the start of a step, such
- * as a pulse of exp(u) or a pole of 1/u, is invisible to the truncated series of f. The argument u is a polynomial in
- * t whose excursion over a step h,
+ * as a pulse of exp(u) or a pole of 1/u, is invisible to the truncated series of f. The excursion of the polynomial u
+ * over a step h,
  *
- *     sum over k >= 1 of
- * u_k
- *  h^k,
+ *     sum over k >= 1 of |u_k| h^k,
  *
- * bounds
- * u(t) - u_0
- *  on the complex disc
- * t
- *  <= h. The runtime shortens h until the excursion is so small that f has no singularity in the disc and changes at
- *  most by the factor e^5, so that by Cauchy's estimate its coefficients decay as the truncation assumes. This file
- *  finds which checks a system needs: one for each rule, argument and guard, shared by all powers of one base. Whole
- *  powers up to HIGHEST_WIDE_POWER need none. One pass over the nodes; at run time, a check costs a few evaluations
- *  of a polynomial.
+ * bounds |u(t) - u_0| on the complex disc |t| <= h. The runtime shortens h until f has no singularity within the
+ * excursion of u_0, and changes at most by the factor e^5 or is constant to rounding. By Cauchy's estimate its
+ * coefficients then decay as the truncation assumes. At kinks and jumps u must keep its sign on the real axis. This
+ * file finds which checks a system needs: one for each rule, argument and guard, shared by all powers of one base.
+ * Whole powers up to HIGHEST_WIDE_POWER need none. One pass over the nodes; at run time, a check costs a few
+ * evaluations of a polynomial.
  */
 #include "program/series/limits.h"
 
