@@ -1,7 +1,7 @@
 /*
  * Projection onto the constraints c(q) = 0 (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, section
- * VII.2). The nearest point q + d in the metric of the mass matrix M minimizes d^T M d / 2. Newton's method solves for
- * it with the matrix of the equations of motion, where d is the sum of the moves so far:
+ * VII.2). The nearest point q + d in the metric of the mass matrix M minimizes d^T M d / 2. Newton's method, without
+ * second derivatives of c, has the matrix of the equations of motion; d is the sum of the moves so far:
  *
  *   M dq + J^T mu = -M d,   J dq = -c(q + d)
  *

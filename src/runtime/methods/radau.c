@@ -13,8 +13,8 @@
  *
  * The error estimate is that of an embedded formula of order s with the additional node 0, filtered by (mu - J)^-1, so
  * that it stays bounded for stiff parts. The step follows from it by Gustafsson's predictive controller. The order
- * follows from the contraction (1999, choose_method()). A failed attempt shortens the step to 0.9 of it or less; the
- * loop ends after ATTEMPT_LIMIT attempts or where time is too coarse.
+ * follows from the contraction, as in the paper of 1999 (choose_method()). A failed attempt shortens the step to 0.9 of
+ * it or less; the loop ends after ATTEMPT_LIMIT attempts or at the resolution of time.
  *
  * A step costs one Jacobian, (s + 1) / 2 factorizations per attempt and s evaluations per iteration. The snapshot holds
  * all that determines a step: its start, the stages, and the numbers of the controllers.
