@@ -15,7 +15,7 @@ char *linearized_path(xmlNodePtr root, const char *path) {
   return path_beside_file(path, of);
 }
 
-/* Removes the state of <work/>: at an equilibrium the power of the forces is zero to first order. */
+/* Removes the state of <work/>, which a linearization does not have. */
 static void remove_work(struct Model *model) {
   struct Graph *graph = model->graph;
   size_t kept = 0;

@@ -4,9 +4,9 @@
  *
  *   s'' = (d a / d q) s + (d a / d v) s' + (d a / d z) r + d a / d p,
  *
- * where z are further states, z' = f, and r = d z / d p obeys r' = the same derivative of f. Each right-hand side is
- * one directional derivative (forward mode) of the expressions, along the direction of the neighbouring motion. The
- * size of the expressions grows by a constant factor per name.
+ * where z are further states with z' = f, and r = d z / d p obeys the same equation with f and r' on the left. Each
+ * right-hand side is one directional derivative (forward mode) of the expressions, along the direction of the
+ * neighbouring motion. Each name adds expressions of about the size of the equations.
  *
  * E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd edition, 1993, section I.14.
  */

@@ -210,7 +210,7 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
   return source != NULL && source->root != NULL ? source : NULL;
 }
 
-/* True if the override has the element name of the declaration. Reports the first use of one that has not. */
+/* True if the override has the element name of the declaration. Reports a wrong name at its first use. */
 static bool check_kind(struct Reader *reader, struct Given *given, const char *element, const char *name) {
   const char *as = (const char *)given->node->name;
   bool is_right = strcmp(element, as) == 0;

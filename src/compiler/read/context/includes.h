@@ -6,7 +6,7 @@
 
 #include "read/context/attributes.h"
 
-/* An included file, once per <include> and repetition. */
+/* A file of the system: the main one, or an included one, once per <include> and repetition. */
 struct Source {
   const char *file;     /* name for messages */
   char *canonical_path; /* equal for all names of the same file */

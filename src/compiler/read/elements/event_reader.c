@@ -7,6 +7,7 @@
 #include "read/expressions/comparisons.h"
 #include "read/names/pieces_of_functions.h"
 
+/* Kinds of symbols in conditions and assignments of events. */
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 
 /* Returns the symbol that a <set> assigns: a coordinate, velocity, state or mode. ZERO after reporting an error. */
@@ -138,8 +139,8 @@ static const char *words_for(const struct Event *event) {
 }
 
 /*
- * Reports events that depend on accelerations; among these symbols only the forces of contacts, frictions and
- * constraints are allowed.
+ * Reports events that depend on accelerations of coordinates. Of symbols of this kind only the forces of contacts,
+ * frictions and constraints are allowed.
  */
 static void check_forces(const struct Reader *reader, struct Event *event, long line) {
   const struct Model *model = reader->model;
@@ -172,7 +173,7 @@ static void append_event(struct Reader *reader, const struct Event *event) {
   switches->events[switches->event_count++] = *event;
 }
 
-/* True if the system is linearized, which has no events. */
+/* True if the system is read for a linearization, which has no events. */
 static bool is_linearized(const struct Reader *reader) {
   return reader->scope->switches == NULL;
 }

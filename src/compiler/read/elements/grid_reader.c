@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "read/elements/table_lines.h"
 
-/* Largest number of values of a table; interpolation makes a mode of each knot. */
+/* Largest number of values of a table; the size of its expression is proportional to it. */
 enum { VALUE_LIMIT = 1000 };
 
 struct Grid {

@@ -11,6 +11,7 @@
 #include "read/shapes/shape_contacts.h"
 #include "read/space/forces.h"
 
+/* Kinds of symbols in gaps of contacts and limits of stops. */
 enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 
 /* --- Declarations --- */

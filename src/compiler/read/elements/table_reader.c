@@ -8,7 +8,7 @@
 #include "read/elements/table_lines.h"
 #include "read/tables/table.h"
 
-/* Largest number of points of a table; interpolation makes a mode of each knot. */
+/* Largest number of points of a table; each needs a mode. */
 enum { POINT_LIMIT = 500 };
 
 /* Collects the points of a table of one argument. */

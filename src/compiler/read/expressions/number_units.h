@@ -12,8 +12,8 @@ struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFa
 struct NumberFactor factor_raised(struct NumberFactor factor, double power);
 
 /*
- * Returns the numeric factor of a sum; none unless both terms have one, as a unit on one term alone would not repair
- * the sum.
+ * Returns the numeric factor of a sum, apart from terms that are numbers alone. There is none unless both terms have
+ * one: a unit on one term would not repair the sum.
  */
 struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second);
 

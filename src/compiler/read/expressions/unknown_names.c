@@ -38,7 +38,7 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
 
 /* Returns the largest n for which name[1], ..., name[n] are known, up to LIMIT. */
 static int count_indices(const struct Parser *parser, const char *name) {
-  enum { LIMIT = 1000 };
+  enum { LIMIT = 1000 }; /* bounds the search */
   for (int i = 1; i <= LIMIT; i++) {
     bool known = is_known(parser, format_text("%s[%d]", name, i));
     if (!known) return i - 1;

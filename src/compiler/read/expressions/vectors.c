@@ -176,7 +176,7 @@ static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct 
 
 /* Parses a sum of vectors. Parentheses count toward the same nesting limit as those of scalars. */
 static struct Arrow parse_vector(struct Parser *parser) {
-  enum { NESTING_LIMIT = 1000 };
+  enum { NESTING_LIMIT = 1000 }; /* as in parser.c */
   if (++parser->nesting > NESTING_LIMIT)
     FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->place.what, NESTING_LIMIT);
   if (parser->failed) return no_arrow;

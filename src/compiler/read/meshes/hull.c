@@ -10,8 +10,8 @@
  * The hull begins as a tetrahedron of distant points. Each step finds the point farthest from the hull and removes the
  * faces that see it. It connects the horizon, the boundary of these faces, to the point. The loop ends when no point is
  * farther than the tolerance, or at MOST_CORNERS corners. Corners within the tolerance of the hull of the others are
- * then removed; if the hull was full, the search is repeated without them. A step costs points times faces, so that the
- * total is linear in the number of points.
+ * then removed; if the hull was full, the search is repeated without them, which leaves fewer points each time. A step
+ * costs points times faces, so that the total is linear in the number of points.
  *
  * C. B. Barber, D. P. Dobkin, H. Huhdanpaa, The Quickhull algorithm for convex hulls, ACM Trans. Math. Softw. 22
  * (1996).
@@ -42,7 +42,7 @@ struct Site {
 /* A triangle whose corners run anticlockwise seen from outside. */
 struct Face {
   const struct Site *corners[3];
-  int64_t normal[3]; /* outward, not normalised */
+  int64_t normal[3]; /* outward, not normalized */
   double length;     /* of the normal */
 };
 

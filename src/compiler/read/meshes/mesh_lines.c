@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 
+/* Largest number of triangles of a mesh, which bounds memory and time. */
 enum { TRIANGLE_LIMIT = 1000000 };
 
 /* Skips blanks and continued line ends. */

@@ -17,8 +17,8 @@ Node side_of(struct Scope *scope, Node node, long line);
 bool rests_on_parameters(const struct Graph *graph, Node node);
 
 /*
- * Returns a mode for a condition on parameters. An event compares it with the condition to see whether setting
- * parameters changed it.
+ * Returns a mode with the sign of a condition on parameters. By it an event detects that setting parameters changed the
+ * condition.
  */
 Node tuned_condition(struct Scope *scope, Node node, long line);
 
@@ -37,7 +37,9 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node);
  */
 Node with_pieces(struct Scope *scope, Node node, long line);
 
-/* Returns floor(node). Along the motion its events are the zeros of sin(pi x), whose sign is the parity of floor(x). */
+/*
+ * Returns floor(node). Along the motion its events are the zeros of sin(pi x), whose sign gives the parity of floor(x).
+ */
 Node floor_of(struct Scope *scope, Node node, long line);
 
 /* Returns abs, sign, min or max of nodes in terms of modes. */

@@ -16,6 +16,7 @@ struct Dummy {
   Node symbol, low, high;
 };
 
+/* Largest depth of nested integrals and derivatives. */
 enum { DUMMY_LIMIT = 20 };
 
 struct Scope {

@@ -11,7 +11,7 @@ static const char ground[] = "ground";
 
 /*
  * m: depth at which a single contact point bears the whole weight, which sets the stiffness. s/m: damping. Coefficient
- * of friction: rubber on concrete.
+ * of friction, if the file gives none.
  */
 static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
 

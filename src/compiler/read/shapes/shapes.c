@@ -16,6 +16,7 @@ struct Measure {
   unsigned types, needing; /* types that require it */
 };
 
+/* The bit of a type in sets of types. */
 #define TYPE(type) (1u << (type))
 
 enum {

@@ -2,7 +2,10 @@
 
 #include "algebra/simplify.h"
 
-/* Orthonormal vectors that are not aligned with the base's axes, as typical normals are. */
+/*
+ * Orthonormal vectors, oblique to the base's axes: normals of shapes that are placed along these axes are never
+ * opposite to the third vector.
+ */
 static const double oblique[3][3] = {
     {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
 

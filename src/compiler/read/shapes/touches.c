@@ -235,9 +235,12 @@ static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
   touch_nearest(pair, seen, touches);
 }
 
-/* added to 1 - (u . w)^2, which is 0 for parallel lines */
+/*
+ * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
+ * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
+ */
 static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
-  static const double nothing = 1e-12; /* of lines that are parallel, which are nearest everywhere */
+  static const double nothing = 1e-12; /* for parallel lines, where any point is nearest */
   struct Graph *graph = pair->graph;
   struct Vector first = middle_of(pair, pair->first), second = middle_of(pair, pair->second);
   struct Vector u = axis_of(pair, pair->first), w = axis_of(pair, pair->second);

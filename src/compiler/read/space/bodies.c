@@ -32,7 +32,7 @@ const struct Body *find_body(const struct Reader *reader, const char *name) {
   return named != NULL ? &reader->model->mechanism.bodies[named->place] : NULL;
 }
 
-/* If several bodies have the same name, which is reported, it refers to the first. */
+/* If several bodies have the same name, which is reported, the name refers to the first. */
 static void append_body(struct Reader *reader, struct Body body) {
   struct Model *model = reader->model;
   struct NamedBody *named = allocate(1, sizeof *named);

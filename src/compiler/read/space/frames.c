@@ -77,6 +77,7 @@ static char *whole_name(bool is_frame, const char *name) {
 }
 
 static void collect(struct Reader *reader, xmlNodePtr node, char *name, const char *attribute) {
+  /* Units of work that a named expression counts. */
   enum { DEFINITION_WORK = 400 };
   graph_work(reader->model->graph, DEFINITION_WORK);
   definitions_add(reader->definitions, name, &(struct NamedExpression){node, attribute, reader->source, NULL});

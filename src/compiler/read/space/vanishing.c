@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 
+/* Samples that must all be 0; a nonzero analytic function is hardly ever 0 at one of them. */
 enum { SAMPLES = 3 };
 
 /* Relative bound of a zero: some thousand roundings. */

@@ -1,6 +1,6 @@
 /*
- * Piecewise functions of tables, with a mode for each knot, see pieces_of_functions.h. A mode of 0, on the knot,
- * selects the piece to its right; way_before() excludes the knot.
+ * Piecewise functions of tables, with a mode for each knot, see pieces_of_functions.h. A mode of 0, exactly on the
+ * knot, selects the piece to its right.
  */
 #pragma once
 

@@ -10,9 +10,10 @@
 #include "read/names/similar.h"
 #include "read/xml/nodes.h"
 
+/* Names that are kept for a position of the schema. */
 enum { CHOICE_LIMIT = 40 };
 
-/* The names or values that the schema allows in one position, at most CHOICE_LIMIT of them. */
+/* The names or values that the schema allows in one position. */
 struct Choices {
   char *names[CHOICE_LIMIT];
   size_t count;

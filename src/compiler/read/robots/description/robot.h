@@ -101,9 +101,10 @@ struct Tendon {
   double lower, upper; /* limits of the length; NAN for none */
   double stiffness, damping, friction, armature;
   double relaxed[2]; /* interval of lengths without spring force */
-  double start;      /* length at the initial positions of all joints */
+  double start;      /* length with all joints as placed */
 };
 
+/* Coefficients of the polynomial between two tendons, as in MuJoCo's polycoef. */
 enum { TENDON_POWERS = 5 };
 
 /* A constraint: the extension of one tendon beyond its start length is a polynomial of that of another. */

@@ -9,6 +9,7 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
+/* Kinds of elements and attributes that are reported at most, and numbers in an attribute. */
 enum { LEFT_OUT_LIMIT = 20, UNREAD_LIMIT = 100, NUMBERS_LIMIT = 64 };
 
 struct RobotFile {

@@ -1,9 +1,9 @@
 /*
  * Conversion of MJCF to links and joints.
  *
- * A body with n joints becomes a chain of n links, the last of which is the body; the others have no mass. A joint with
- * its anchor at `pos` moves its link relative to the anchor. If the last anchor is not the origin of the body, one more link
- * at the anchor carries the body by a fixed joint. A hinge or slide is at `ref` when its body is as placed, so that the
+ * A body with n joints becomes a chain of n links, the last of which is the body; the others have no mass. The frame of
+ * a joint has its origin at the anchor `pos`. If the last anchor is not the origin of the body, one more link at the
+ * anchor carries the body by a fixed joint. A hinge or slide is at `ref` when its body is as placed, so that the
  * constant placement of the joint includes the displacement by -ref. Sites become links that are fixed to their body.
  * Geoms give inertias and shapes.
  *

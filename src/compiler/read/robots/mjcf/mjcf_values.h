@@ -7,6 +7,7 @@
 #include "read/names/names.h"
 #include "read/robots/description/robot_file.h"
 
+/* MuJoCo's groups 0 to 30 of actuators. */
 enum { ACTUATOR_GROUPS = 31 };
 
 enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
