@@ -148,10 +148,7 @@ static void warn_at_start(const struct Reader *reader) {
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
 }
 
-/*
- * Returns the values of all nodes at the start with other velocities: `even` for those of even index, `odd` for the
- * rest.
- */
+/* Returns the values of all nodes at the start, with these velocities for even and for odd indices. */
 static double *values_at_velocities(const struct Model *model, double even, double odd) {
   double *symbols = start_values(model);
   for (size_t i = 0; i < model->velocities.count; i++)

@@ -3,8 +3,5 @@
 
 #include "read/context/attributes.h"
 
-/*
- * Warns of events whose expression depends on time alone and never crosses zero in the event's direction after the
- * start.
- */
+/* Warns of events whose expression depends on time alone and never crosses zero in the event's direction. */
 void warn_of_events(const struct Reader *reader);

@@ -17,9 +17,7 @@
 #include "read/elements/elements.h"
 #include "read/names/definitions.h"
 
-/*
- * Largest number of repetitions of a <for>, and the units of work that a repetition, an include and an element count.
- */
+/* Largest number of repetitions of a <for>; units of work of a repetition, an include and an element. */
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
 
 /* Bound of indices, all of which are exact in a double. */
@@ -132,8 +130,7 @@ void expand(struct Reader *reader, xmlNodePtr root) {
 }
 
 /*
- * True if every <for> around an element is valid. Names defined since the last pass may collide with an index, which is
- * reported.
+ * True if every <for> around an element is valid. Reports indices that collide with names defined since the last pass.
  */
 static bool check_loops(struct Reader *reader, const struct Loop *loops) {
   const struct Loop *taken = NULL;

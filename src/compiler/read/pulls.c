@@ -28,10 +28,7 @@ static struct Vector append_vector(struct Reader *reader, const char *const name
   return vector;
 }
 
-/*
- * Returns the vector from the body's position to the grabbed point along the base's axes; zero for a body without
- * orientation.
- */
+/* Returns the vector from the body's position to the grabbed point; zero for a body without orientation. */
 static struct Vector lever_of(const struct Model *model, const struct Body *body, struct Vector held) {
   struct Graph *graph = model->graph;
   if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, held);

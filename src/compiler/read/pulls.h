@@ -6,8 +6,5 @@
 
 #include "read/context/attributes.h"
 
-/*
- * Adds the inputs pull.x, ... and pull.of.BODY, and the forces. If there are many bodies, only every second, third, ...
- * gets one.
- */
+/* Adds the inputs pull.x, ... and pull.of.BODY, and the forces: on at most MOST_PULLED bodies, evenly chosen. */
 void add_pulls(struct Reader *reader);

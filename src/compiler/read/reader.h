@@ -5,8 +5,5 @@
 #include "model/model.h"
 #include "read/context/reader_options.h"
 
-/*
- * Reads a system, or a <linearization> with the system that it names. Reports every error and returns NULL if there was
- * one.
- */
+/* Reads a system, or a <linearization> with its system. Reports every error and returns NULL if there was one. */
 struct Model *model_read(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics);

@@ -40,10 +40,7 @@ static struct Variable derivative_of(const struct Model *model, const struct Var
   return derivative;
 }
 
-/*
- * Appends the sensitivity of a coordinate and of its velocity. The acceleration is set later. reaction: index of its
- * reaction force.
- */
+/* Appends the sensitivity of a coordinate and its velocity, without acceleration. reaction: index of its force. */
 static void append_coordinate(struct Model *model, size_t of, const struct Variable *by, size_t reaction) {
   struct Graph *graph = model->graph;
   struct Variable position = derivative_of(model, &model->coordinates.items[of], by);
@@ -112,10 +109,7 @@ static void number_forces(struct Model *model, size_t total) {
     graph->symbols[graph->vertices[model->unknowns.forces[j]].left].index = (int)(total + j);
 }
 
-/*
- * Appends the reaction force that prescribed accelerations need, which is 0 and shared by all sensitivities. Returns
- * its index.
- */
+/* Appends the reaction of prescribed accelerations, which is 0 for all sensitivities. Returns its index. */
 static size_t append_reaction(struct Model *model) {
   struct Variable reaction = variable_create(copy_text("variations.force"), NULL, 0);
   reaction.node = graph_symbol(model->graph, REACTION, (int)model->reactions.count, reaction.name);

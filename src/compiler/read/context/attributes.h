@@ -7,10 +7,7 @@
 #include "read/names/pieces_of_functions.h"
 #include "read/xml/nodes.h"
 
-/*
- * The passes over the list of elements, in this order. Each uses names that earlier passes defined, anywhere in the
- * file.
- */
+/* The passes over the list of elements, in this order. Each uses names that earlier passes defined. */
 enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
 
 struct Dissipation {
@@ -66,10 +63,7 @@ struct Reader {
 void report_at(const struct Reader *reader, xmlNodePtr node, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/*
- * Kinds of symbols that an expression may depend on, one bit each as in struct Place. Higher bits hold further
- * conditions.
- */
+/* Kinds of symbols that an expression may depend on, as in struct Place. Higher bits hold further conditions. */
 #define KIND(kind) (1u << (kind))
 
 enum {
@@ -90,9 +84,7 @@ enum {
 /* Returns the context of an expression on the line of an element that may depend on these kinds of symbols. */
 struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds);
 
-/*
- * Sets the value of a numeric attribute and returns true. Returns false if it is missing, or after reporting an error.
- */
+/* Reads a number from an attribute. Returns false if it is missing, or after reporting an error. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
 
 /* Like number_attribute(), for a text. name: the attribute for messages. */
@@ -119,8 +111,7 @@ struct Vector vector_without_displacements(struct Reader *reader, long line, con
 struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
 
 /*
- * Adds a term of an element to the sum over displaced positions, and the term at zero displacements to the other sum.
- * Returns the latter term.
+ * Adds a term to the sum over displaced positions, and the term at zero displacements to the other sum. Returns that.
  */
 Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node term, struct Quantity *displaced,
                 struct Quantity *sum);
@@ -137,9 +128,7 @@ char *next_listed(const char **text);
 /* Returns the unit in an attribute; unknown if missing or after an error. */
 struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/*
- * Records that a node of parameters should not be negative at the start values: an error if required, else a warning.
- */
+/* Records that a node of parameters should not be negative at the start: an error if required, else a warning. */
 void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required);
 
 /* Records that a node of parameters must be positive and finite at the start values. */

@@ -53,9 +53,7 @@ char *path_beside(const struct Reader *reader, const char *file) {
 
 enum { DEPTH_LIMIT = 100 };
 
-/*
- * Bounds the depth of includes, so that no chain of files overflows the stack. Returns false after reporting an error.
- */
+/* Bounds the depth of includes, and so the stack. Returns false after reporting an error. */
 static bool check_depth(struct Reader *reader, xmlNodePtr node, const struct Source *source) {
   int depth = 0;
   for (const struct Source *outer = source->outer; outer != NULL; outer = outer->outer) depth++;

@@ -40,9 +40,7 @@ struct Source *source_enter(struct Reader *reader, struct Source *source);
 /* Returns the path of a file that the current one names, relative to it. */
 char *path_beside(const struct Reader *reader, const char *file);
 
-/*
- * Returns the overrides of the element of this full name; NULL for none. Reports overrides by another kind of element.
- */
+/* Returns the overrides of the element of this full name; NULL for none. Reports those by other elements. */
 const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Returns the outermost override with this attribute; NULL for none. */
@@ -51,10 +49,7 @@ const struct Given *giver_of(const struct Given *given, const char *attribute);
 /* Returns the outermost override with a value, unless one further out has a start; NULL for none. */
 const struct Given *giver_of_value(const struct Given *given);
 
-/*
- * Makes the file of an override current and sets the node to its element; does nothing for NULL. Returns the previous
- * file.
- */
+/* Enters the file of an override, unless NULL, and sets the node to its element. Returns the previous file. */
 struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node);
 
 /* Like number_attribute(), for the outermost override with the attribute, else for the node itself. */

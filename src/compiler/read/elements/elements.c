@@ -25,8 +25,7 @@
 #include "read/space/springs.h"
 
 /*
- * Reads the value of a constant from an override, a list or its attribute. Returns false if there is none or after an
- * error.
+ * Reads the value of a constant: its override, item of a list or attribute. Returns false for none or after an error.
  */
 static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given, char *listed,
                                 struct Quantity *value) {
@@ -103,10 +102,7 @@ static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const ch
   return nominal;
 }
 
-/*
- * Returns a start value that is a plain number, else 0. Integrals need start values before the start expressions are
- * read.
- */
+/* Returns a start value that is a plain number, else 0, for integrals, which precede the start expressions. */
 static double plain_number(xmlNodePtr node, const char *name) {
   const char *text = attribute(node, name);
   char *end = NULL;
@@ -157,10 +153,7 @@ static void read_displacement(struct Reader *reader, xmlNodePtr node) {
   append_variable(&model->displacements, displacement);
 }
 
-/*
- * Adds the element's expression to a sum over displaced positions, and at zero displacements to another sum. Returns
- * the latter term.
- */
+/* Adds the expression to the sum over displaced positions, at zero displacements to the other. Returns the latter. */
 static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity *displaced, struct Quantity *sum,
                         const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);

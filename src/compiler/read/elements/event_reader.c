@@ -84,10 +84,7 @@ static Node condition_of_modes(struct Reader *reader, Node value, long line) {
   return tuned_condition(reader->scope, subtract(graph, holds, half), line);
 }
 
-/*
- * Reads a condition whose change from false to true is the event, or an expression with the direction of its zero
- * crossing.
- */
+/* Reads a condition, whose change to true is the event, or an expression with the direction of its zero crossing. */
 static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
   struct Graph *graph = reader->model->graph;
   struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};

@@ -22,10 +22,7 @@ static void report_circle(const struct Definitions *definitions, struct Reader *
   source_enter(reader, present);
 }
 
-/*
- * Marks the definition at stack position `top` as waiting for those above it. Reports a cycle if one of these waits
- * already.
- */
+/* Marks the definition at `top` as waiting for those above it. Reports a cycle if one of these waits already. */
 static void keep_waiting(struct Definitions *definitions, struct Reader *reader, size_t top) {
   size_t *stack = definitions->stack, closing = 0;
   bool is_circle = false;

@@ -22,10 +22,7 @@ Node new_mode(struct Reader *reader, const char *of, const char *what) {
                       format_text("%s.%s", of, what));
 }
 
-/*
- * Adds a mode that is also a name for expressions: the observed mode of a contact or friction, also a variable of the
- * FMU.
- */
+/* Adds a mode that expressions know by name: the observed mode of a contact or friction, a variable of the FMU. */
 static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
   Node mode = new_mode(reader, constraint->name, what);
   char *name = format_text("%s.%s", constraint->name, what);

@@ -23,10 +23,7 @@ void read_contact(struct Reader *reader, xmlNodePtr node);
 void read_stop(struct Reader *reader, xmlNodePtr node);
 void read_friction(struct Reader *reader, xmlNodePtr node);
 
-/*
- * Adds the constraint and the sliding force of a friction whose velocities, force and stiction are set. unit: of the
- * forces.
- */
+/* Adds the constraint and the sliding force of a friction whose other fields are set. unit: of the forces. */
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit);
 
 void read_event(struct Reader *reader, xmlNodePtr node);
@@ -38,8 +35,5 @@ void read_sample(struct Reader *reader, xmlNodePtr node);
  */
 void undisplace_branches(struct Reader *reader);
 
-/*
- * Replaces NAME.force of frictions in events and outputs: while sliding it is the sliding force. Called after all
- * expressions.
- */
+/* Replaces NAME.force of frictions, after all expressions, by the sliding force while they slide. */
 void complete_friction_forces(struct Reader *reader);

@@ -15,10 +15,7 @@ static const struct Quantity nothing = {.node = ZERO};
 static const char integral_form[] = "integral(name, from, to, expression)";
 static const char derivative_form[] = "diff(expression, name)";
 
-/*
- * Adds a dummy variable with this range to the scope and returns its symbol. The caller removes it by decrementing
- * dummy_count.
- */
+/* Adds a dummy variable with this range to the scope. Returns its symbol; the caller decrements dummy_count. */
 static Node open_dummy(struct Parser *parser, Node low, Node high) {
   struct Scope *scope = parser->scope;
   struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
@@ -106,10 +103,7 @@ static bool is_variable(const struct Graph *graph, Node node) {
   return kind == PARAMETER || kind == TIME || kind == COORDINATE || kind == VELOCITY || kind == STATE || kind == INPUT;
 }
 
-/*
- * Copies the list of local names and replaces each value that depends on the variable by a dummy. The caller removes
- * the dummies.
- */
+/* Copies the local names with dummies for values that depend on the variable. The caller removes the dummies. */
 static struct Local *hold_locals(struct Parser *parser, Node variable) {
   struct Local *held = NULL, **end = &held;
   for (const struct Local *local = parser->locals; local != NULL && !parser->failed; local = local->outer) {

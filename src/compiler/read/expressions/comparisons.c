@@ -105,9 +105,7 @@ static Node parse_group(struct Parser *parser) {
   return condition;
 }
 
-/*
- * Parses { not } and a condition. More than two negations are reduced to one or two; two map the condition to 1 or 0.
- */
+/* Parses { not } and a condition. Beyond two, only the parity of negations counts; two map the condition to 1 or 0. */
 static Node parse_factor(struct Parser *parser) {
   long negations = 0;
   while (accept_word(parser, "not")) negations++;

@@ -12,10 +12,7 @@ struct Place {
   int input_derivatives; /* time derivatives that each input in the expression must have */
 };
 
-/*
- * A name that is valid in a part of an expression: the index of a sum, the variable of an integral, an argument of a
- * function.
- */
+/* A name that is valid in a part of an expression: an index of a sum, a variable of an integral, an argument. */
 struct Local {
   const char *name;
   struct Quantity value;
@@ -51,10 +48,7 @@ void expect_character(struct Parser *parser, char c, const char *context);
 /* Returns the token at the reading position in quotes, or "the end", for messages. The text may be in the buffer. */
 const char *found(const struct Parser *parser, char buffer[32]);
 
-/*
- * Returns the value of a name at the reading position: of a local name, else of one in the scope. NULL if it is
- * unknown.
- */
+/* Returns the value of a local name, else of a name in the scope; NULL if it is unknown. */
 const struct Quantity *find_quantity(const struct Parser *parser, const char *name);
 
 /* Returns the line of the reading position. */

@@ -128,10 +128,7 @@ static void choose_state(struct Sampling *sampling, double share) {
   }
 }
 
-/*
- * Adds the quadrature over a part of the interval to the sums of values and magnitudes. from, to: fractions of the
- * interval.
- */
+/* Adds the quadrature over a part of the interval, from and to as fractions of it, to the sums. */
 static void add_part(struct Sampling *sampling, const struct Rule *rule, double from, double to) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
@@ -308,10 +305,7 @@ static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value)
   return multiply(graph, length, sum);
 }
 
-/*
- * True if a node with these first derivatives is a quadratic polynomial in the moving symbols. Sets its second
- * derivatives.
- */
+/* True if a node with these derivatives is quadratic in the moving symbols. Sets its second derivatives. */
 static bool is_quadratic(struct Graph *graph, const struct Gradient *slopes, struct Gradient *curvatures) {
   for (size_t i = 0; i < slopes->count; i++) {
     curvatures[i] = gradient_by_kinds(graph, slopes->values[i], moving);

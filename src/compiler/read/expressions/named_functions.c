@@ -78,9 +78,7 @@ static void require_value_unit(struct Parser *parser, const struct NamedFunction
   *value = (struct Quantity){.node = value->node, .dimension = function->value};
 }
 
-/*
- * Returns the subject of messages about the function's expression: the outermost call with its line, and the function.
- */
+/* Returns the subject of messages about the expression: the outermost call with its line, and the function. */
 static const char *name_of_use(struct Parser *parser, const struct NamedFunction *function) {
   if (parser->function != NULL) return format_text("%s '%s'", parser->use, function->name);
   parser->use = format_text("%s of line %ld, in the function", parser->place.what, current_line(parser));

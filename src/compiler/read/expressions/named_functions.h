@@ -1,7 +1,4 @@
-/*
- * Functions that a system defines with <function>. Each call parses the function's expression with the arguments as
- * local names.
- */
+/* Functions defined by <function>. Each call parses the expression with the arguments as local names. */
 #pragma once
 
 #include "read/expressions/cursor.h"

@@ -22,10 +22,7 @@ struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second)
   return first.factor.text != NULL ? second.factor : first.factor;
 }
 
-/*
- * Returns the unit that the number needs for the quantity to have the expected one, without radians; "..." if exponents
- * are fractional.
- */
+/* Returns the unit that the number should have, without radians; "..." if exponents are fractional. */
 static const char *missing_unit(struct Quantity quantity, struct Dimension expected) {
   struct Dimension ratio = dimension_multiply(expected, quantity.dimension, -1.0);
   struct Dimension unit = dimension_multiply(dimension_one, ratio, 1.0 / quantity.factor.power);

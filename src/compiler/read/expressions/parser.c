@@ -191,10 +191,7 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
   return *quantity;
 }
 
-/*
- * True if both bounds are literals. Bounds with names may be reversed on purpose: sum(j, 2, i-1, ...) is empty for i =
- * 1.
- */
+/* True if both bounds are literals. Others may be reversed on purpose: sum(j, 2, i-1, ...) is empty for i = 1. */
 static bool bounds_are_numbers(const char *begin, const char *end) {
   while (begin < end && !isalpha((unsigned char)*begin)) begin++;
   return begin == end;
@@ -263,9 +260,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   return total;
 }
 
-/*
- * True if the current expression must wait for the rate of a state in the node, because the rate has not been parsed.
- */
+/* True if the current expression must wait for the rate of a state in the node, which has not been parsed. */
 static bool waits_for_rates(struct Parser *parser, Node node) {
   const struct Graph *graph = parser->graph;
   bool waits = false;
@@ -395,9 +390,7 @@ static struct Quantity parse_parentheses(struct Parser *parser) {
   return value;
 }
 
-/*
- * Parses a variable or a call. Of callable names, only those of tables and <function>s may have an index or a prefix.
- */
+/* Parses a variable or a call. Only names of tables and <function>s may have an index or a prefix in a call. */
 static struct Quantity parse_named(struct Parser *parser) {
   char *name = read_identifier(parser);
   const char *end = parser->next; /* errors about the name are reported on its line */

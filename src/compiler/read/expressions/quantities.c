@@ -125,10 +125,7 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
   return result;
 }
 
-/*
- * Reports a constant function value that is not finite. A variable argument is recorded for the check of domains at the
- * start values.
- */
+/* Reports a constant value that is not finite. Records a variable argument for the check of domains at the start. */
 static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
   if (parser->graph->not_finite)
     FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
@@ -157,10 +154,7 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
   return result;
 }
 
-/*
- * Returns floor(node). In a <set> it is evaluated at the event; elsewhere it is piecewise constant, and its jumps are
- * events.
- */
+/* Returns floor(node): in a <set> evaluated at the event, elsewhere piecewise constant with events at its jumps. */
 static Node floor_in_place(struct Parser *parser, Node node) {
   bool is_value = (parser->place.kinds & AT_INSTANT) != 0;
   return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));

@@ -16,10 +16,7 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
 /* Returns floor, ceil, round or mod, by name; b is used by mod only. */
 struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b);
 
-/*
- * Returns uniform or gauss, by name, of a seed and an index. An index that varies continuously is rounded to the
- * nearest integer.
- */
+/* Returns uniform or gauss, by name, of a seed and an index, rounded to an integer if it varies continuously. */
 struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number);
 
 /* Returns a function of the expression graph other than a power; b is ignored for functions of one argument. */

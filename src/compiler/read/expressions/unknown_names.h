@@ -6,8 +6,5 @@
 void report_unknown_name(struct Parser *parser, const char *name);
 void report_unknown_function(struct Parser *parser, const char *name);
 
-/*
- * Reports a reserved name that has no value in expressions: a function or table without its argument, a constraint, or
- * a result.
- */
+/* Reports a name without a value in expressions: a function, table or constraint itself, or a result. */
 void report_reserved(struct Parser *parser, const char *name);

@@ -28,9 +28,7 @@ bool is_function_of_vectors(const char *name) {
   return false;
 }
 
-/*
- * Returns a component by its name; 0 if it does not exist, as z of a particle in the plane. Sets is_known if it exists.
- */
+/* Returns a component by its name, or 0 if it does not exist, as z in the plane. Sets is_known if it exists. */
 static Node parse_component(struct Parser *parser, const char *name, bool *is_known) {
   char *full_name = scope_full_name(parser->scope, name);
   bool is_there =

@@ -9,8 +9,5 @@
 /* True if the name is cross, distance, dot or norm. */
 bool is_function_of_vectors(const char *name);
 
-/*
- * Parses the arguments of such a function and its closing parenthesis. Returns a scalar; cross, which is none, is
- * reported.
- */
+/* Parses the arguments of such a function and its closing parenthesis. Reports cross, which is no scalar. */
 struct Quantity parse_function_of_vectors(struct Parser *parser, const char *name);

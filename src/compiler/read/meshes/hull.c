@@ -111,10 +111,7 @@ static bool has_edge(const struct Face *faces, size_t count, const struct Site *
   return false;
 }
 
-/*
- * Inserts a corner: replaces the faces that see it by triangles between it and their horizon. Coplanar faces do not see
- * it.
- */
+/* Inserts a corner: triangles to the horizon replace the faces that see it. Coplanar faces do not see it. */
 static void add_corner(struct Hull *hull, const struct Site *site) {
   struct Face seeing[2 * MOST_FACES];
   size_t seeing_count = 0, kept = 0;
@@ -130,10 +127,7 @@ static void add_corner(struct Hull *hull, const struct Site *site) {
   hull->corners[hull->corner_count++] = site;
 }
 
-/*
- * Sets the hull to a tetrahedron of distant sites. Returns false if all sites are nearer than `nearest` to a line or
- * plane.
- */
+/* Sets the hull to a tetrahedron of distant sites. Returns false if all are within `nearest` of a plane. */
 static bool begin_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest) {
   const struct Site *corners[4] = {sites, sites, sites, sites};
   double most[4] = {0.0};
@@ -213,10 +207,7 @@ static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count,
   return true;
 }
 
-/*
- * True if the corner is within the tolerance of the hull of the others. Rounding makes such corners of points in faces
- * and edges.
- */
+/* True if the corner is within the tolerance of the hull of the others, as rounded points of faces are. */
 static bool is_needless(const struct Hull *hull, size_t corner) {
   struct Site others[MOST_CORNERS];
   size_t count = 0;

@@ -22,10 +22,7 @@ bool next_word(struct MeshLines *lines, char *word, size_t size);
 /* Advances to the next line. Returns false at the end of the text. */
 bool next_line(struct MeshLines *lines);
 
-/*
- * Appends a point with the next three numbers of the line. Returns false with the problem set if they are missing or
- * not finite.
- */
+/* Appends a point with the line's next three numbers. Returns false with the problem set for invalid ones. */
 bool append_point_of_line(struct MeshLines *lines, struct Mesh *mesh);
 
 /* Appends a point to the mesh. */

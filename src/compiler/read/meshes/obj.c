@@ -6,10 +6,7 @@
 #include "base/memory.h"
 #include "read/meshes/mesh_lines.h"
 
-/*
- * Sets the index of the point in a corner such as 3, 3/1/2, or -1 for the last point. Returns false if there is no such
- * point.
- */
+/* Sets the index of the point in a corner such as 3, 3/1/2, or -1 for the last. Returns false for none. */
 static bool read_corner(const char *word, const struct Mesh *mesh, size_t *place) {
   char *end;
   long long number = strtoll(word, &end, 10), count = (long long)mesh->point_count;

@@ -5,8 +5,5 @@
 
 #include "model/mesh.h"
 
-/*
- * Reads the text into an empty mesh and splits polygons into triangles. Returns false with a message in *problem on
- * errors.
- */
+/* Reads the text into an empty mesh of triangles. Returns false with a message in *problem on errors. */
 bool obj_read(const char *text, struct Mesh *mesh, char **problem);

@@ -7,10 +7,7 @@
 #include "base/memory.h"
 #include "read/meshes/mesh_lines.h"
 
-/*
- * Sizes and offsets in bytes of the binary format: heading, position of the triangle count, one triangle, its normal,
- * one number.
- */
+/* Bytes in the binary format: heading, offset of the count, size of a triangle, of its normal, and of a number. */
 enum { HEADING = 84, COUNT_AT = 80, RECORD = 50, NORMAL = 12, NUMBER = 4 };
 
 /* Returns a 32-bit word in little-endian order. */

@@ -59,10 +59,7 @@ struct Definitions *definitions_create(void);
 void definitions_enter(struct Definitions *definitions, struct Loop loop);
 void definitions_leave(struct Definitions *definitions);
 
-/*
- * Define the indices of all enclosing loops as numbers, and remove them again. An index whose name has another meaning
- * is skipped.
- */
+/* Define the indices of all loops as numbers, and remove them again, except names with another meaning. */
 void bind_indices(struct Scope *scope, const struct Loop *loop);
 void unbind_indices(struct Scope *scope, const struct Loop *loop);
 
@@ -78,8 +75,5 @@ bool definitions_wait_for(struct Definitions *definitions, const char *name);
 /* True if an expression of this name was collected; false if there are no definitions. */
 bool definitions_contain(const struct Definitions *definitions, const char *name);
 
-/*
- * True if the current expression waits. Its value is then meaningless, and its errors are reported when it is parsed
- * again.
- */
+/* True if the current expression waits: its value is meaningless, and it will be parsed again. */
 bool definitions_are_waiting(const struct Definitions *definitions);

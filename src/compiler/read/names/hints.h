@@ -3,10 +3,7 @@
 
 #include "algebra/graph.h"
 
-/*
- * Returns a hint for the text at `next` that is not part of an expression, such as "; write ^ for a power"; "" for
- * none.
- */
+/* Returns a hint for the text at `next`, which is not allowed there, such as "; write ^ for a power"; "" for none. */
 const char *hint_for_text(const char *begin, const char *next);
 
 /* Returns a hint for a function of other languages; "" for none. */

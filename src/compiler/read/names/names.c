@@ -13,9 +13,7 @@ struct Names *names_create(void) {
   return names;
 }
 
-/*
- * Returns the first slot to search for a name. The hash function is FNV-1a; collisions are resolved by linear probing.
- */
+/* Returns the first slot to search for a name: hash function FNV-1a, linear probing. */
 static size_t home_of(const struct Names *names, const char *text) {
   uint64_t hash = 14695981039346656037u;
   for (; *text != '\0'; text++) hash = (hash ^ (unsigned char)*text) * 1099511628211u;

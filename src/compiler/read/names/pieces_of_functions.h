@@ -37,9 +37,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node);
  */
 Node with_pieces(struct Scope *scope, Node node, long line);
 
-/*
- * Returns floor(node). Along the motion its events are the zeros of sin(pi x), whose sign gives the parity of floor(x).
- */
+/* Returns floor(node). Its events are the zeros of sin(pi x), whose sign gives the parity of floor(x). */
 Node floor_of(struct Scope *scope, Node node, long line);
 
 /* Returns abs, sign, min or max of nodes in terms of modes. */

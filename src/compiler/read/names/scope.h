@@ -79,10 +79,7 @@ const char *scope_similar_name(const struct Scope *scope, const char *name);
 /* True if two quantities may be added; always true if units are not checked. */
 bool scope_units_agree(const struct Scope *scope, struct Dimension first, struct Dimension second);
 
-/*
- * Adds a symbol to graph and scope. Its time derivative is set by scope_set_time_derivative(), before any derivative is
- * taken.
- */
+/* Adds a symbol to graph and scope. Its time derivative must be set before any derivative is taken. */
 Node scope_symbol(struct Scope *scope, enum SymbolKind kind, int index, const char *name, struct Dimension dimension,
                   long line);
 void scope_set_time_derivative(struct Scope *scope, Node symbol, Node derivative);

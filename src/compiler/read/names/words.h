@@ -8,10 +8,7 @@
 /* Functions that are not operations of the expression graph, ending with NULL. */
 extern const char *const special_functions[];
 
-/*
- * Functions whose names a system may also give to variables, ending with NULL. Before a parenthesis the name is the
- * function.
- */
+/* Functions whose names variables may have too, up to NULL. Before a parenthesis the name is the function. */
 extern const char *const free_functions[];
 
 /* Returns the operation of this name in the language; OPERATION_COUNT for none. */

@@ -67,9 +67,7 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
 }
 
-/*
- * Writes the coordinates, frame, body and shapes of a link. The frame is in that of the link that carries the parent.
- */
+/* Writes the coordinates, frame, body and shapes of a link; the frame is in that of the parent's carrier. */
 static void write_link(struct Writer *writer, const struct Link *link) {
   bool floats = writer->options->floats;
   const struct Joint *joint = link->joint;

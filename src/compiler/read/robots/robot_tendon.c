@@ -77,10 +77,7 @@ static char *extension_of(const struct Tendon *tendon) {
   return format_text("%s - (%s)", transmission_length(&tendon->transmission), number(tendon->start));
 }
 
-/*
- * Writes the parameter for the coefficient of a power of the other tendon's extension, which has a unit, and returns
- * its name.
- */
+/* Writes the parameter for the coefficient of a power of the other tendon's extension. Returns its name. */
 static char *coefficient_of(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link,
                             int power) {
   const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];

@@ -1,7 +1,4 @@
-/*
- * Converts tendons: springs, dampers, friction, inertia and limits along a transmission, and constraints between two
- * tendons.
- */
+/* Converts tendons: elements along a transmission, and constraints between two tendons. */
 #pragma once
 
 #include "read/robots/description/robot.h"

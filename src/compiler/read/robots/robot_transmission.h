@@ -1,6 +1,4 @@
-/*
- * Transmissions: lengths that depend on several joints or on distances between sites. Forces along them, and actuators.
- */
+/* Transmissions, whose length depends on several joints or on sites: forces along them, and actuators. */
 #pragma once
 
 #include "read/robots/description/robot.h"

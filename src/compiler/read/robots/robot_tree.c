@@ -227,10 +227,7 @@ static struct Joint *mimicked_by(struct Connection *connection, const struct Joi
   return NULL;
 }
 
-/*
- * Follows the chain of mimicked joints to the one with a coordinate and composes their linear functions. Reports
- * cycles.
- */
+/* Follows mimicked joints to the one with a coordinate and composes their linear functions. Reports cycles. */
 static void find_leader(struct Connection *connection, struct Joint *joint) {
   struct Joint *leader = joint;
   joint->ratio = 1;
@@ -255,10 +252,7 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
 
-/*
- * Resolves the names in a transmission. symbol: of a tendon; coefficients with a unit become parameters with this
- * prefix.
- */
+/* Resolves the names in a transmission. symbol: of a tendon, the prefix of parameters for its coefficients. */
 static void connect_transmission(struct Connection *connection, struct Transmission *transmission, const char *kind,
                                  const char *name, const char *symbol, long line) {
   const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);

@@ -6,10 +6,7 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
-/*
- * Sets the fields of struct Link, struct Joint and others that are marked as its results. Returns false after reporting
- * errors.
- */
+/* Sets the fields marked as results of robot_connect() in robot.h. Returns false after reporting errors. */
 bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 
 /* Returns the name as an identifier of the language: letters, digits and _, with no digit first. */

@@ -68,10 +68,7 @@ static xmlNodePtr only_child_of(xmlNodePtr parent, const char *name) {
   return count == 1 ? found : NULL;
 }
 
-/*
- * Reads a <mesh>. Returns a message if it cannot be used, else NULL: robots are usable without meshes, so that this is
- * no error.
- */
+/* Reads a <mesh>. Returns why it cannot be used, else NULL; no error, as robots are usable without meshes. */
 static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touches, struct Collision *collision) {
   const char *robot = urdf->diagnostics->file;
   char *named = attribute(node, "filename"), *scale = attribute(node, "scale"), *problem = NULL;

@@ -9,8 +9,5 @@
 /* Names of the joint types, in the order of enum JointType. */
 extern const char *const joint_types[JOINT_TYPES];
 
-/*
- * Returns the links and joints of a <robot>, not yet connected. Reports every error, and warns once of elements that
- * are not read.
- */
+/* Returns the links and joints of a <robot>, not yet connected. Reports errors and warns of elements not read. */
 struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics);

@@ -86,10 +86,7 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
                  "the %s cannot depend on displacements; expected them in positions and angles", what);
 }
 
-/*
- * Reports inputs that prescribe the motion of a mass without their second derivatives. Points without mass do not need
- * these.
- */
+/* Reports inputs that prescribe the motion of a body with mass and lack second derivatives. */
 static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
   const struct Model *model = reader->model;
   struct Gradient levers = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));

@@ -3,10 +3,7 @@
 
 #include "read/context/attributes.h"
 
-/*
- * Adds a body, particle or point to the model, with its kinetic energy and its components. Of a <frame>, adds the
- * components.
- */
+/* Adds a body, particle or point with its kinetic energy and components to the model; of a <frame> the components. */
 void read_body(struct Reader *reader, xmlNodePtr node);
 
 /* Assigns a body or particle its number within its file. */

@@ -351,10 +351,7 @@ static bool is_inside(const struct Model *model, size_t frame, size_t outer) {
   return frame == outer;
 }
 
-/*
- * Returns the mean of the moments of inertia that the quaternion rotates. An inertia of this size keeps M well
- * conditioned.
- */
+/* Returns the mean of the moments of inertia that the quaternion rotates, which keeps M well conditioned. */
 static Node inertia_of_norm(const struct Model *model, size_t frame) {
   struct Graph *graph = model->graph;
   Node sum = ZERO;

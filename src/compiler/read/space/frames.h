@@ -32,10 +32,7 @@ void declare_frame(struct Reader *reader, xmlNodePtr node);
 void collect_frame(struct Reader *reader, xmlNodePtr node, const char *name);
 void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/*
- * Reads a named expression of such an element: all of its pose if attribute is "", else one component. name: of the
- * expression.
- */
+/* Reads a named expression of such an element: its pose if attribute is "", else a component. name: its name. */
 struct Quantity read_spatial(struct Reader *reader, xmlNodePtr node, const char *name, const char *attribute);
 
 /* Appends the components of an element to the model as variables. */

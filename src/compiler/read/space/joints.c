@@ -37,10 +37,7 @@ static const struct JointType types[] = {
     {"rolling", {SLIP_X, SLIP_Y, HEIGHT, NOTHING}},
 };
 
-/*
- * Per quantity: the prefixes of its name and of the name of its force, its unit, and its axis, whose letter ends both
- * names.
- */
+/* Per quantity: prefixes of its name and its force's name, its unit, and its axis, whose letter ends the names. */
 static const struct HeldWords {
   const char *name, *force, *unit;
   int axis;

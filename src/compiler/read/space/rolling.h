@@ -3,10 +3,7 @@
 
 #include "read/space/sides.h"
 
-/*
- * Returns the constraint of a screw in m: it is 0 if `to` has advanced along the z axis of `from` by the pitch per
- * revolution.
- */
+/* Returns the constraint of a screw in m, 0 if `to` has advanced by the pitch per revolution along z of `from`. */
 Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to);
 
 /* Returns its derivative along z where it is 0: 1, or -1 half a revolution from aligned x axes. */

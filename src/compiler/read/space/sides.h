@@ -10,10 +10,7 @@ struct Side {
   size_t frame;  /* index into the model's frames of the frame with these axes */
 };
 
-/*
- * Reads the end that an attribute names, as a function of displacements. Returns false after reporting that there is
- * none.
- */
+/* Reads the end that an attribute names, as a function of displacements. Returns false after reporting an error. */
 bool read_displaced_side(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side);
 
 /* Like read_displaced_side(), at zero displacements. */

@@ -18,7 +18,5 @@ struct Surface {
 /* Allocates and sets the derivatives. x and y ascend strictly; there are at least two of each. */
 void surface_interpolate(struct Surface *surface, enum Interpolation interpolation);
 
-/*
- * Returns the surface at x and y as an expression. Beyond the border it continues with the slope there, or is constant.
- */
+/* Returns the surface at x and y as an expression; beyond the border with the slope there, or constant. */
 Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y);

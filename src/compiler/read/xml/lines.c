@@ -55,9 +55,7 @@ static void pass_any(struct Scan *scan, const char *characters) {
   while (scan->next < scan->end && strchr(characters, *scan->next) != NULL) pass(scan);
 }
 
-/*
- * Sets the lines of a node. The 16-bit field of libxml2 is set too, because copies of a node keep it and lose `psvi`.
- */
+/* Sets the lines of a node, and libxml2's 16-bit field, which copies of a node keep, unlike `psvi`. */
 static void set_lines(xmlNodePtr node, long first, long content) {
   struct NodeLines *lines = allocate(1, sizeof *lines);
   *lines = (struct NodeLines){first, content};

@@ -134,9 +134,7 @@ static void report_attribute(const struct Check *check, xmlNodePtr element, cons
                what_then);
 }
 
-/*
- * Reports a missing attribute, unless a given attribute is a probable misspelling of it, which is reported by itself.
- */
+/* Reports a missing attribute, unless a given one is a probable misspelling, which is reported by itself. */
 static void report_missing_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
   for (const xmlAttr *given = element->properties; given != NULL; given = given->next) {
     struct Similar similar = {.wanted = (const char *)given->name};
@@ -197,10 +195,7 @@ static void report_root(const struct Check *check, xmlNodePtr root) {
                  name);
 }
 
-/*
- * Returns the name of the attribute that a message of libxml2 mentions; "" if the message is about the text of an
- * element.
- */
+/* Returns the attribute that a message of libxml2 mentions; "" if the message is about the element's text. */
 static char *attribute_in(const char *message) {
   static const char before[] = "attribute '";
   const char *begin = strstr(message, before);

@@ -8,9 +8,7 @@
 
 #include "base/diagnostics.h"
 
-/*
- * Reads and parses the file without validation. Returns NULL after reporting an error. The caller frees the document.
- */
+/* Parses the file without validation. Returns NULL after reporting an error. The caller frees the document. */
 xmlDocPtr xml_read(const char *path, struct Diagnostics *diagnostics);
 
 /*

@@ -81,10 +81,7 @@ struct Pull {
   char *symbol; /* parameter with the coefficient if that has a unit; else NULL */
 };
 
-/*
- * Its length is the sum of coefficients times positions; or the sum of distances along a line of sites (spatial
- * tendon).
- */
+/* Its length is the sum of coefficients times positions, or of the distances along sites (spatial tendon). */
 struct Transmission {
   struct Pull *pulls;
   size_t count;

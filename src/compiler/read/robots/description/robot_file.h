@@ -74,10 +74,7 @@ xmlNodePtr required_child_of(struct RobotFile *file, xmlNodePtr parent, const ch
 /* Returns the value of the attribute; "" after reporting that it is missing. */
 char *required_attribute(struct RobotFile *file, xmlNodePtr node, const char *name);
 
-/*
- * Parses finite decimal numbers separated by blanks. Returns their count; 0 for other texts or more numbers than the
- * limit.
- */
+/* Parses finite decimal numbers separated by blanks. Returns their count; 0 for other texts or above the limit. */
 size_t parse_numbers(const char *text, size_t limit, double *values);
 
 /*

@@ -116,10 +116,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->origin = placement_within(&joint->origin, &back);
 }
 
-/*
- * Reads a joint with several coordinates. Damping and armature are isotropic; features of single coordinates are
- * reported.
- */
+/* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
   static const char *const refused[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);

@@ -31,9 +31,7 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
   }
 }
 
-/*
- * Reports damping given as a ratio to critical damping, which MuJoCo computes from the inertia of the compiled model.
- */
+/* Reports ratios to critical damping, which MuJoCo computes from the inertia of the compiled model. */
 static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
   if (ratio != 0)
@@ -81,9 +79,7 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   actuator->control[1] = middle + half;
 }
 
-/*
- * Reports a spatial tendon if a joint limits the forces of its actuators: its force on single joints is not computed.
- */
+/* Reports a spatial tendon if a joint limits actuator forces, as its force on single joints is not computed. */
 static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   const struct Robot *robot = mjcf->file.robot;
   for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)

@@ -7,10 +7,7 @@ static const char ground_law[] = "ground_stiffness and ground_damping of the rob
 static const char extended_shapes[] = "shapes that are larger by the difference of margin and gap";
 static const char smaller_range[] = "a range that is smaller by it";
 
-/*
- * Attributes in the schema of MuJoCo 4. Those that mjcf_refuse() reports, and those of rejected elements, are listed as
- * read.
- */
+/* Attributes in the schema of MuJoCo 4. Attributes and elements that are reported elsewhere count as read. */
 static const struct Attributes table[] = {
     {"compiler",
      "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict coordinate discardvisual "

@@ -12,10 +12,7 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node);
 /* True if the geom can touch any other one, by its masks or a <pair>. */
 bool mjcf_touches(const struct Mjcf *mjcf, const struct MjcfContact *contact);
 
-/*
- * Records the geom and sets the friction of its contact with the ground. Called after the geoms of the <worldbody> are
- * read.
- */
+/* Records the geom and sets its friction on the ground; called after the geoms of the <worldbody> are read. */
 void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct Collision *shape);
 
 /* Warns of contacts that exist in MuJoCo only, once all geoms are read. */

@@ -22,9 +22,7 @@ struct Geom {
   const struct MjcfMesh *mesh; /* NULL for other types, and for a shape that MuJoCo would fit to a mesh */
 };
 
-/*
- * Places a geom between the two points of `fromto`, along its z axis. Boxes and ellipsoids get equal widths in x and y.
- */
+/* Places a geom along z between the points of `fromto`. Boxes and ellipsoids get equal widths in x and y. */
 static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom) {
   double ends[6], along[3];
   if (mjcf_numbers(mjcf, node, "fromto", 6, 6, ends) == 0) return;

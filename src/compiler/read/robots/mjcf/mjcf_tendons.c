@@ -68,9 +68,7 @@ static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *t
   return length;
 }
 
-/*
- * Returns the length with all joints as placed. Segments at missing sites are left out; these are reported elsewhere.
- */
+/* Returns the length with all joints as placed, without segments at missing sites, reported elsewhere. */
 static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
   double length = sum_of_pulls(mjcf, transmission, false);
   for (size_t i = 1; i < transmission->site_count; i++) {

@@ -18,10 +18,7 @@ struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
 /* Fixes a link to its parent. */
 void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place);
 
-/*
- * Records the placement of a body or site with all joints at their ref. place: in the parent; parent: NULL for the
- * world.
- */
+/* Records a body's or site's placement in its parent (NULL for the world), with all joints at their ref. */
 void mjcf_note_place(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *place);
 
 /* Returns the placement in the world that was recorded; NULL for none. */

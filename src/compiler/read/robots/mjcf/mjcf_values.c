@@ -63,10 +63,7 @@ static bool is_actuator(xmlNodePtr node) {
 static const char *const of_laws[] = {"kp",     "kv",       "dampratio", "timeconst", "inheritrange", "dyntype",
                                       "dynprm", "gaintype", "gainprm",   "biastype",  "biasprm",      NULL};
 
-/*
- * True if a <default> of this node applies to the attribute of the element. Common attributes of actuators apply to all
- * kinds.
- */
+/* True if this <default> applies to the attribute of the element: common ones of actuators to all kinds. */
 static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name) {
   if (is_actuator(element) && !is_one_of(name, of_laws)) return is_actuator(node);
   bool is_tendon = is_element(element, "fixed") || is_element(element, "spatial");

@@ -71,10 +71,7 @@ double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *
 
 bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value);
 
-/*
- * Returns the index of the attribute's value among the words, which end with NULL; 0 if it is missing. Reports any
- * other value.
- */
+/* Returns the index of the value among the words, which end with NULL; 0 if it is missing. Reports others. */
 size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *const *words);
 
 /* Returns the placement by pos and one of quat, axisangle, euler, xyaxes, zaxis. */
