@@ -3,6 +3,7 @@
 /* Sines of multiples of 15 degrees, as constants so that all platforms round alike. The circle is a polygon. */
 static const double sines[] = {
     0.0, 0.25881904510252074, 0.5, 0.70710678118654757, 0.86602540378443860, 0.96592582628906831, 1.0};
+/* Corners of a quarter of the circle, and of the whole. */
 enum { QUARTER = 6, CORNERS = 4 * QUARTER };
 
 static double sine(int corner) {

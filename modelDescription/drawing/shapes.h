@@ -15,6 +15,7 @@ struct LookStyle {
   unsigned char colour[3]; /* red, green, blue on white */
 };
 
+/* Side of a picture, in pixels. */
 enum { PICTURE_SIZE = 160 };
 
 extern const struct LookStyle looks[LOOK_COUNT];

@@ -130,6 +130,7 @@ static double *evaluate(const struct Configurations *configurations, const doubl
 }
 
 double *values_at(const struct Configurations *configurations, const double *offsets) {
+  /* Newton steps; a few suffice near a solution, and more than 30 mean divergence. */
   enum { MOST_STEPS = 30 };
   const struct Model *model = configurations->model;
   double *symbols = start_values(model);

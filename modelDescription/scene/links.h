@@ -3,6 +3,7 @@
 
 #include "samples.h"
 
+/* Constraint forces in a planar joint, and coordinates of its point on both objects. */
 enum { FORCES = 2, PLACES = 4 };
 
 /* Two objects at constant distance. Its compressive force, in N, is factor times the force of the constraint. */

@@ -45,8 +45,8 @@ LANE_FUNCTION_OF_TWO(random_gauss)
 
 /*
  * The angle x minus the nearest multiple of pi/2, and that multiple modulo 4; for |x| <= LARGEST_ANGLE. Argument
- * reduction by W. J. Cody and W. Waite (Software Manual for the Elementary Functions, 1980): pi/2 is split into parts
- * whose products with the multiple are exact, so that no digit is lost.
+ * reduction by W. J. Cody and W. Waite (Software Manual for the Elementary Functions, 1980): pi/2 is split into parts.
+ * The products of all but the last with the multiple are exact, so that cancellation does not amplify rounding errors.
  */
 struct QuarterTurns {
   Lanes rest;

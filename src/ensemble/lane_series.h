@@ -5,6 +5,7 @@
 #include "lane_real.h"
 #include "reciprocals.h"
 
+/* Coefficients of a series, as in include/series.h. */
 enum { SERIES_LENGTH = 24 };
 
 typedef Real Series[SERIES_LENGTH];

@@ -282,6 +282,7 @@ static Mask approaches(const struct LaneSteps *steps, const struct SeriesLimit *
  * see methods/stiffness.c.
  */
 static Mask may_be_stiff(struct LaneSteps *steps) {
+  /* consecutive steps; two windows of auto.c */
   enum { FAST_STEPS = 12 };
   if (lagrangian.solver != &solver_auto) return (Mask){0};
   Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);

@@ -9,6 +9,7 @@
 
 /* Returns the operations of an instruction list; 0 for NULL. */
 static double operations_of(const struct Routine *routine) {
+  /* an elementary function takes the time of about 20 additions */
   enum { OPERATIONS_OF_CALL = 20 };
   if (routine == NULL) return 0.0;
   double count = (double)routine->operation_count;
@@ -71,8 +72,9 @@ static double work_of_series(const struct Program *program) {
 
 /*
  * Estimates what counts against the limit of work in a communication step. A step costs, beyond its evaluation, the
- * rest of the series, the projection onto the constraints and the search for events. The constants were fitted, like
- * those of auto.c, to measured times of the systems in fmu/.
+ * rest of the series, CORRECTIONS Newton steps of the projection onto the constraints, and SEARCHES evaluations of the
+ * indicators, with LOOK more operations each, in the search for events. EVENT is the fixed part of an event. The
+ * constants were fitted, like those of auto.c, to measured times of the systems in fmu/.
  */
 struct StepWork step_work_of(const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };

@@ -83,6 +83,7 @@ static size_t count_of(const struct Routine *routine) {
 }
 
 bool program_solves_by_statements(const struct Program *program, size_t number) {
+  /* rows up to which unrolled code is short */
   enum { ROWS = 3 };
   const struct InertiaBlock *block = program->blocks.items[number].block;
   return !program->is_table && block->count <= ROWS && block->constraint_count > 0 && block->force_count == 0;

@@ -45,6 +45,7 @@ struct Program {
   struct OperationCounts operations; /* empty unless the method integrates by Taylor series */
 };
 
+/* Builds all instruction lists of a system and chooses their form. */
 struct Program *program_create(const struct Expressions *expressions, enum CodeForm form);
 
 /* True if the block has statements of its own: at most 3 rows, some of constraints, and a symmetric matrix. */

@@ -19,6 +19,7 @@
 #include "base/memory.h"
 #include "program/expressions/lu_pattern.h"
 
+/* The kinds of symbols of the state, as bits. */
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
 
 struct Element {

@@ -15,6 +15,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
+/* The kinds of symbols that a gradient has elements for, as bits. */
 enum { KNOWN_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE | 1 << INPUT | 1 << PARAMETER | 1 << TIME };
 
 /* A sum of expressions times weights. */

@@ -112,7 +112,7 @@ static Node bare_base(const struct SeriesBuilder *builder, Node base, double *ex
   }
 }
 
-/* Adds the check of a quotient. Its numerator may be zero throughout a motion through a zero of the denominator. */
+/* Adds the check of a quotient. A numerator that vanishes throughout a motion lifts the limit at run time. */
 static void check_division(struct CheckList *list, Node numerator, Node denominator) {
   double exponent = -1.0;
   Node base = bare_base(list->builder, denominator, &exponent);

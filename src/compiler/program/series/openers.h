@@ -6,6 +6,7 @@
 
 #include "program/expressions/series_plan.h"
 
+/* Guard conditions kept for a node; with more, it counts as always needed, which only shortens steps. */
 enum { OPENER_LIMIT = 6 };
 
 /*

@@ -12,6 +12,7 @@ struct Encoding {
   size_t local_count;               /* the largest number of local variables of a routine in tables */
 };
 
+/* Collects the constants and functions that the tables of a program use. */
 struct Encoding *encoding_create(const struct Program *program);
 
 /* Returns the length of Point.work that the tables need. */

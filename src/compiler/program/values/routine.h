@@ -9,6 +9,7 @@
 #include "algebra/graph.h"
 #include "instructions.h"
 
+/* Operands of an instruction. */
 enum { OPERAND_LIMIT = 3 };
 
 struct Instruction {
