@@ -129,9 +129,7 @@ void expand(struct Reader *reader, xmlNodePtr root) {
   check_repetitions(reader, root);
 }
 
-/*
- * True if every <for> around an element is valid. Reports indices that collide with names defined since the last pass.
- */
+/* True if every <for> around an element is valid. Reports indices that collide with names defined meanwhile. */
 static bool check_loops(struct Reader *reader, const struct Loop *loops) {
   const struct Loop *taken = NULL;
   for (const struct Loop *loop = loops; loop != NULL; loop = loop->outer) {

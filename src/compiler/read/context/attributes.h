@@ -110,9 +110,7 @@ Node without_displacements(struct Reader *reader, long line, const char *what, N
 struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector);
 struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
 
-/*
- * Adds a term to the sum over displaced positions, and the term at zero displacements to the other sum. Returns that.
- */
+/* Adds a term to the sum over displaced positions, and at zero displacements to the other. Returns the latter. */
 Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node term, struct Quantity *displaced,
                 struct Quantity *sum);
 

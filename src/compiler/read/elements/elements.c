@@ -24,9 +24,7 @@
 #include "read/space/joints.h"
 #include "read/space/springs.h"
 
-/*
- * Reads the value of a constant: its override, item of a list or attribute. Returns false for none or after an error.
- */
+/* Reads the value of a constant: override, list item or attribute. Returns false for none or after an error. */
 static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given, char *listed,
                                 struct Quantity *value) {
   const struct Given *giver = giver_of(given, "value");
