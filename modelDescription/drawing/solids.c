@@ -27,7 +27,7 @@ static struct Spot corner(const struct View *view, const struct Solid *solid, co
   return seen(view, position);
 }
 
-/* Returns the axis of symmetry, whose two other moments of inertia are equal to 0.1 %; -1 for none. */
+/* Returns the axis of symmetry, whose two other moments of inertia agree to 0.1 %; -1 for none. */
 static int axis_of_revolution(const double moment[3]) {
   for (int axis = 0; axis < 3; axis++) {
     double first = moment[(axis + 1) % 3], second = moment[(axis + 2) % 3];

@@ -19,7 +19,7 @@
 /* Coordinates up to which constraints are taken into account: all their derivatives are formed. */
 enum { MOST_COORDINATES = 200 };
 
-/* True if the constraint belongs to a contact or friction, and so holds at times only. */
+/* True if the constraint belongs to a contact or friction, and so holds only at times. */
 static bool belongs_to_switch(const struct Switches *switches, size_t constraint) {
   bool belongs = false;
   for (size_t i = 0; i < switches->contact_count; i++) belongs |= switches->contacts[i].constraint == constraint;

@@ -16,7 +16,7 @@ enum { MOST_PARAMETERS = 40, TRIALS = 2 };
 /* Coefficients below this are rounding errors. */
 static const double NO_MULTIPLE = 1e-9;
 
-/* Returns the change of a parameter: a tenth of its value; 0 for integers. */
+/* Returns the change of a parameter: a tenth of its value, 0.1 if that is 0; 0 for integers. */
 static double change_of(const struct Model *model, size_t parameter) {
   double start = model->parameters.items[parameter].start;
   return model->parameters.items[parameter].type != TYPE_REAL ? 0.0 : start != 0.0 ? 0.1 * start : 0.1;

@@ -141,7 +141,7 @@ static void fill_joint(const struct Samples *samples, const struct Joint *joint,
 
 /*
  * With r + A c = 0 for the distance r of both points and two constraints c, constraint forces l do the work l^T A^-1
- * dr, so that the force on the first object is F = A^-T l. Without exactly two constraints there is no force.
+ * dr, so that the force on the first object is F = A^-T l. Forces are found for exactly two constraints only.
  */
 static void set_forces(const struct Samples *samples, const double *multiples, struct Joint *joint) {
   double a[FORCES][2] = {{0}};

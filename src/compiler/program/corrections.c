@@ -15,7 +15,7 @@
 #include "saddle.h"
 
 /*
- * Factor on the diagonal elements of M of fixed coordinates: large enough that only the other coordinates move at the
+ * Factor on the diagonal elements of M for fixed coordinates: large enough that only the other coordinates move at the
  * start, small enough that the factors of K keep their digits.
  */
 static const double weight_of_fixed = 1e12;

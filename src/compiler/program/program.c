@@ -5,8 +5,8 @@
 
 /*
  * Lengths, in instructions, above which functions become tables, as compile time grows faster than linearly with the
- * length of a function. STATEMENT_LIMIT takes a second or two to compile; a table takes a fraction of one. The
- * derivatives and the series get higher limits, since their statements run in a fifth and in three quarters of the
+ * length of a function. STATEMENT_LIMIT instructions compile in a second or two, a table of them in a fraction of one.
+ * The derivatives and the series get higher limits, since their statements run in a fifth and in three quarters of the
  * time of their tables. Code of kinematic trees, and directional derivatives that give the columns of a Jacobian, are
  * written as several functions, whose compile time grows linearly.
  */

@@ -118,7 +118,10 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
   fputs("};\n\n", file);
 }
 
-/* Subtracts, from the elements left of one in its row, the products of the columns that both rows share. */
+/*
+ * Subtracts from element (row, j) of K the products K(row, c) L(j, c) over the columns c < j that both rows have; j is
+ * the column of the element at place.
+ */
 static void write_shared_products(FILE *file, const struct InertiaBlock *block, size_t row, size_t place) {
   const size_t *start = block->start, *column = block->column, other = column[place];
   for (size_t a = place; a-- > start[row];)

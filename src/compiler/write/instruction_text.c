@@ -78,7 +78,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
   if (is_number) fputs(")", file);
 }
 
-/* Writes the begin of a call: size and pattern of the block, its row numbers if takes_rows, and its elements. */
+/* Writes the start of a call: size and pattern of the block, its row numbers if takes_rows, and its elements. */
 static void write_block_call(FILE *file, const struct Program *program, const char *function, bool takes_rows,
                              size_t number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
@@ -89,7 +89,7 @@ static void write_block_call(FILE *file, const struct Program *program, const ch
   fprintf(file, ", mass + %zu", looped->first_mass);
 }
 
-/* Writes the begin of a call for a small block, with its elements one by one. */
+/* Writes the start of a call for a small block, with its elements one by one. */
 static void write_small_factor_call(FILE *file, const struct Program *program, unsigned number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   fprintf(file, "factor%u(mass + %zu", number, looped->first_mass);

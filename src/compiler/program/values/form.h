@@ -1,4 +1,4 @@
-/* Fused operations: an operation of the graph, or one operation that replaces two. */
+/* How a node is computed: by its operation in the graph, or by a fused operation that replaces two. */
 #pragma once
 
 #include "algebra/cone.h"
