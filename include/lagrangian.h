@@ -94,7 +94,8 @@ static inline bool is_unknown(const struct ScalarVariable *variable) {
 
 /* True for a variable that has values within a communication step. */
 static inline bool is_intermediate(const struct ScalarVariable *variable) {
-  return variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_DERIVATIVE ||
+  return variable->kind == VARIABLE_INPUT || variable->kind == VARIABLE_STATE ||
+         variable->kind == VARIABLE_DERIVATIVE ||
          (variable->kind == VARIABLE_RESULT && !is_calculated_parameter(variable));
 }
 

@@ -11,6 +11,8 @@ from fmu import ERROR
 from test_fmi3 import FUNCTIONS
 
 NAME = "ParticlePolar"
+# While the importer sets inputs at times within a step.
+REQUEST = {"fmi3SetDebugLogging", "fmi3SetFloat64", "fmi3SetFloat32"}
 CS_STATES = ["instantiated", "initialization", "step", "intermediate", "terminated", "error"]
 ME_STATES = ["instantiated", "initialization", "event", "continuous", "terminated", "error"]
 
@@ -100,13 +102,14 @@ def call(instance, function, *words):
 
 
 class Caller:
-    """Calls a function from inside a step."""
+    """Calls a function from inside a step: while inputs are asked for, or values can be read."""
 
-    def __init__(self, function=None):
-        self.function, self.instance, self.status, self.messages = function, None, None, None
+    def __init__(self, function=None, requested=False):
+        self.function, self.requested = function, requested
+        self.instance, self.status, self.messages = None, None, None
 
-    def __call__(self, *words):
-        if self.function is None or self.status is not None:
+    def __call__(self, environment, time, set_requested, *words):
+        if self.function is None or self.status is not None or set_requested != self.requested:
             return
         before = len(self.instance.messages)
         self.status = call(self.instance, self.function, *arguments(self.instance, self.function))
@@ -130,12 +133,14 @@ def bring_to(instance, state):
 
 
 def status_in(function, state, kind):
-    caller = Caller(function if state == "intermediate" else None)
-    options = dict(intermediateUpdate=caller) if kind is FMU3Slave else {}
+    is_inside = state in ("intermediate", "request")
+    caller = Caller(function if is_inside else None, state == "request")
+    force = [variable.valueReference for variable in fmi3.description(NAME).modelVariables if variable.name == "Fr"]
+    options = dict(intermediateUpdate=caller, requiredIntermediateVariables=force) if kind is FMU3Slave else {}
     instance = caller.instance = fmi3.Instance(NAME, kind=kind, **options)
     try:
         bring_to(instance, state)
-        if state == "intermediate":
+        if is_inside:
             try:
                 instance.step(0.5)
                 stopped = False
@@ -159,6 +164,13 @@ def test_life_cycle(function, interface, kind, states):
         else:
             assert status == ERROR, state
             assert f"{function} is not allowed in the state" in messages[0][2]
+
+
+@pytest.mark.parametrize("function", sorted(TABLE))
+def test_calls_while_inputs_are_asked_for(function):
+    status, messages = status_in(function, "request", FMU3Slave)
+    assert status == (0 if function in REQUEST else ERROR), messages
+    assert status == 0 or f"{function} is not allowed in the state" in messages[0][2]
 
 
 def test_table_is_complete():

@@ -107,6 +107,32 @@ class Importer:
             return_time[0] = self.end_at
 
 
+class Supplier:
+    """Sets inputs within steps, {name: function of time}; calls what it is given at each request."""
+
+    def __init__(self, signals, action=None):
+        self.signals, self.action, self.times, self.instance, self.problem = signals, action, [], None, None
+
+    def __call__(self, environment, time, set_requested, get_allowed, finished, can_return, requested, return_time):
+        if not set_requested:
+            return
+        assert not get_allowed and not finished and not can_return
+        self.times.append(time)
+        try:
+            if self.signals:
+                self.instance.set({name: signal(time) for name, signal in self.signals.items()})
+            if self.action is not None:
+                self.action(self.instance)
+        except FMICallException as problem:
+            self.problem = problem
+
+
+def supplied(opened, name, supplier, variables, **options):
+    references = [v.valueReference for v in description(name).modelVariables if v.name in variables]
+    supplier.instance = opened(name, intermediateUpdate=supplier, requiredIntermediateVariables=references, **options)
+    return supplier.instance
+
+
 def observed(opened, name, importer, variables, **options):
     references = [v.valueReference for v in description(name).modelVariables if v.name in variables]
     importer.names = variables

@@ -111,9 +111,10 @@ static bool is_free_at_event(const struct Instance *instance, const struct Scala
 
 /* True if variables of this kind may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
+  int32_t phase = instance->situation->phase;
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
-  case VARIABLE_PARAMETER: return instance->situation->phase != PHASE_CONTINUOUS_TIME;
+  case VARIABLE_PARAMETER: return phase != PHASE_CONTINUOUS_TIME && phase != PHASE_INPUT_REQUEST;
   case VARIABLE_MODE: return is_before_start(instance);
   case VARIABLE_STATE:
     return is_before_start(instance) || is_exchanged(instance) || is_variation_at_event(instance, variable) ||

@@ -20,6 +20,17 @@ static double call_back(struct Component *component, double time, double end) {
   return requested_time;
 }
 
+/* Requests the inputs at a time within the coming step. */
+static void request(void *receiver, double time) {
+  struct Component *component = receiver;
+  fmi3Boolean requested = fmi3False;
+  fmi3Float64 requested_time = time;
+  const char *function = component->instance.function;
+  component->intermediate_update(component->environment, time, fmi3True, fmi3False, fmi3False, fmi3False, &requested,
+                                 &requested_time);
+  component->instance.function = function;
+}
+
 static double update(void *receiver, double time, double end) {
   return call_back(receiver, time, end);
 }
@@ -37,9 +48,11 @@ static void update_at_end(struct Component *component) {
 static void observe(struct Component *component) {
   if (component->intermediate_update == NULL) return;
   component->intermediate.update = update;
+  component->intermediate.request = request;
   component->intermediate.receiver = component;
   component->instance.intermediate = &component->intermediate;
   component->instance.observe = intermediate_observe;
+  if (component->sets_inputs) component->instance.request_inputs = intermediate_request_inputs;
 }
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,

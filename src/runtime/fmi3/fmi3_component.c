@@ -55,20 +55,29 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
   return true;
 }
 
+/* Frees a component whose instance holds no memory. */
+static void component_free(struct Component *component) {
+  fmi3_memory.free(component->before);
+  fmi3_memory.free(component->intermediate.kept);
+  fmi3_memory.free(component->intermediate.inputs);
+  for (int i = 0; i < WORKSPACE_COUNT; i++) fmi3_memory.free(component->workspaces[i].block);
+  fmi3_memory.free(component);
+}
+
 /* Creates a component. NULL without memory; then nothing is allocated. */
 static struct Component *component_create(const struct Component *description, enum Kind kind) {
   struct Component *component = fmi3_memory.allocate(1, sizeof *component);
-  void *before = fmi3_memory.allocate(1, situation_size()), *kept = fmi3_memory.allocate(1, situation_size());
-  if (component != NULL && before != NULL && kept != NULL) {
-    *component = *description;
-    component->before = before;
-    component->intermediate.kept = kept;
-    struct Log log = log_of(component);
-    if (instance_create(&component->instance, kind, &fmi3_memory, &log)) return component;
-  }
-  fmi3_memory.free(component);
-  fmi3_memory.free(before);
-  fmi3_memory.free(kept);
+  if (component == NULL) return NULL;
+  *component = *description;
+  struct Intermediate *intermediate = &component->intermediate;
+  component->before = fmi3_memory.allocate(1, situation_size());
+  intermediate->kept = fmi3_memory.allocate(1, situation_size());
+  intermediate->inputs = fmi3_memory.allocate(1 + INPUT_NODES * lagrangian.input_count, sizeof(double));
+  struct Log log = log_of(component);
+  if (component->before != NULL && intermediate->kept != NULL && intermediate->inputs != NULL &&
+      instance_create(&component->instance, kind, &fmi3_memory, &log))
+    return component;
+  component_free(component);
   return NULL;
 }
 
@@ -120,6 +129,9 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
   }
   struct Component *component = instantiate(&description, KIND_CO_SIMULATION, &log, __func__);
   if (component == NULL) return NULL;
+  for (size_t i = 0; i < nRequiredIntermediateVariables; i++)
+    component->sets_inputs |=
+        lagrangian.variables[place_of_reference(requiredIntermediateVariables[i])].kind == VARIABLE_INPUT;
   component->instance.uses_event_mode = eventModeUsed;
   component->instance.stops_at_events = eventModeUsed && earlyReturnAllowed;
   return component;
@@ -150,8 +162,5 @@ void fmi3FreeInstance(fmi3Instance c) {
   struct Component *component = c;
   if (component == NULL) return;
   instance_destroy(&component->instance);
-  fmi3_memory.free(component->before);
-  fmi3_memory.free(component->intermediate.kept);
-  for (int i = 0; i < WORKSPACE_COUNT; i++) fmi3_memory.free(component->workspaces[i].block);
-  fmi3_memory.free(component);
+  component_free(component);
 }

@@ -22,6 +22,7 @@ struct Component {
   unsigned categories;                                /* bits of the enabled log categories */
   fmi3IntermediateUpdateCallback intermediate_update; /* NULL for none */
   struct Intermediate intermediate;
+  bool sets_inputs; /* some of requiredIntermediateVariables are inputs */
   bool early_return_allowed;
   bool has_returned_early; /* the callback asked for the end of the step */
   void *before;            /* the snapshot before a communication step */

@@ -137,6 +137,7 @@ const char *instance_phase_name(const struct Instance *instance) {
       [PHASE_TERMINATED] = "terminated",
       [PHASE_ERROR] = "error",
       [PHASE_INTERMEDIATE_UPDATE] = "intermediate update mode",
+      [PHASE_INPUT_REQUEST] = "intermediate update mode for inputs",
   };
   return names[instance->situation->phase];
 }

@@ -24,6 +24,7 @@ enum Phase {
   PHASE_TERMINATED,
   PHASE_ERROR,
   PHASE_INTERMEDIATE_UPDATE, /* within a communication step, while intermediate values are read */
+  PHASE_INPUT_REQUEST,       /* as a communication step begins, while inputs at times within it are set */
   PHASE_COUNT
 };
 
@@ -118,7 +119,9 @@ struct Instance {
   void *solver_memory;
   /* Called at each end of a solver step within a communication step (intermediate.h); NULL for none. */
   void (*observe)(struct Instance *instance, struct CommunicationStep *step, double time);
-  const struct Intermediate *intermediate; /* the data of observe */
+  /* Requests the inputs at times within a communication step (intermediate.h); NULL for none. */
+  void (*request_inputs)(struct Instance *instance, const struct CommunicationStep *step);
+  const struct Intermediate *intermediate; /* the data of both */
 };
 
 /* Creates an instance. False without memory; then nothing is allocated. Logs nothing. */

@@ -33,3 +33,47 @@ void intermediate_observe(struct Instance *instance, struct CommunicationStep *s
   step->end = fmax(time, end);
   step->length = step->end - step->start;
 }
+
+/*
+ * The nodes of Lobatto's quadrature of order 6. Both ends are among them, so that inputs are continuous from step to step. A
+ * smooth input and its cubic differ by O(h^4), and so do outputs that depend on it directly; the motion errs by O(h^6).
+ */
+static const double node[INPUT_NODES] = {0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
+
+/* Writes the derivatives of orders 1 to 3, at the step's start, of the cubic through values at the nodes. Overwrites the values. */
+static void differentiate_cubic(double *value, double length, double *derivative, size_t stride) {
+  for (size_t order = 1; order < INPUT_NODES; order++) /* Newton's divided differences */
+    for (size_t i = INPUT_NODES - 1; i >= order; i--)
+      value[i] = (value[i] - value[i - 1]) / (node[i] - node[i - order]);
+  double a = node[1], b = node[2];
+  derivative[0] = (value[1] - a * value[2] + a * b * value[3]) / length;
+  derivative[stride] = 2.0 * (value[2] - (a + b) * value[3]) / (length * length);
+  derivative[2 * stride] = 6.0 * value[3] / (length * length * length);
+}
+
+void intermediate_request_inputs(struct Instance *instance, const struct CommunicationStep *step) {
+  const struct Intermediate *intermediate = instance->intermediate;
+  struct Situation *situation = instance->situation;
+  size_t n = lagrangian.input_count;
+  int32_t phase = situation->phase;
+  situation->phase = PHASE_INPUT_REQUEST;
+  for (size_t k = 0; k < INPUT_NODES; k++) {
+    intermediate->request(intermediate->receiver,
+                          k + 1 < INPUT_NODES ? step->start + node[k] * step->length : step->end);
+    if (situation->phase == PHASE_ERROR) return;
+    for (size_t i = 0; i < n; i++) intermediate->inputs[i * INPUT_NODES + k] = instance->input[i];
+  }
+  situation->phase = phase;
+  for (size_t i = 0; i < n; i++) {
+    double *value = intermediate->inputs + i * INPUT_NODES;
+    instance->input[i] = value[0];
+    differentiate_cubic(value, step->length, instance->input_derivatives + i, n);
+  }
+  for (size_t i = 0; i < INPUT_ORDER * n; i++) {
+    if (instance->input_derivatives[i] != 0.0) situation->input_derivatives_set = 1;
+    if (isfinite(instance->input_derivatives[i])) continue;
+    refuse_call(instance, "an input changes too fast within the step from time %g; expected smaller values",
+                step->start);
+    return;
+  }
+}

@@ -302,9 +302,11 @@ enum Status communication_step(struct Instance *instance, double time, double si
   situation->time = time;
   if (!situation->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
+  struct CommunicationStep step = step_within_experiment(situation, time, size);
+  if (instance->request_inputs != NULL) instance->request_inputs(instance, &step);
+  if (situation->phase == PHASE_ERROR) return STATUS_ERROR;
   guides_begin_step(instance);
   instance->unkept = 0;
-  struct CommunicationStep step = step_within_experiment(situation, time, size);
   double reached;
   enum StepResult result = run(instance, &step, &reached);
   if (result == STEP_FAILED) return refuse_call(instance, "the step from time %g failed", time);
