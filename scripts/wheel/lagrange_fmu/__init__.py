@@ -1,11 +1,12 @@
 """
-Energies and forces of a mechanical system become an FMU.
+Build an FMU from the energies and forces of a mechanical system, simulate it, linearize it, and fit it to measurements.
 
     path = lagrange_fmu.build("pendulum.xml")
     motion = lagrange_fmu.simulate(path, {"theta": 1})
     A, B, C, D = lagrange_fmu.linearize(path, {"theta": 3.14159})[:4]
 
-What goes wrong is a Problem, whose text names the thing and the remedy; what is a likely mistake in a system is a warning.
+All functions raise `Problem` on errors. Its text names the cause and the remedy. A likely mistake in a system is a Python warning.
+All values are in SI units.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ __all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linear
 
 
 def __getattr__(name: str) -> Any:
-    """Imports these at their first use, so that the command soon takes interrupts."""
+    """Import build, check and new at their first use, so that the command starts fast and handles Ctrl-C early."""
     if name == "__version__":
         from importlib.metadata import version
 
@@ -67,19 +68,53 @@ def simulate(
     **options: Any,
 ) -> Result:
     """
-    The motion of an FMU, or of a system, which is built first: a structured NumPy array with a row for each communication point and two for each event, which
-    have time, in s, and all outputs, in SI units, by name. It has plot(), animate() and to_pandas().
+    Simulate an FMU, or a system, which is built first.
 
-    start_values: of coordinates, velocities, inputs and parameters by name, in SI units
-    output: the names of the variables to record in place of all outputs; local ones, such as "totalEnergy", can be had so
-    input: a CSV with time and the names of inputs in its first line, or a structured array, a dict of arrays or a DataFrame of these; linear between its rows, and two rows
-        of one time are a jump. Or a function of time that returns a dict of numbers by name, or a number for each input; or a dict of such functions and numbers
-    hold: the values of the input are held from row to row, or those of a function over each step
-    record_events: rows just before and just behind each event, of the same time
-    fmi_type: "CoSimulation", by the FMU's own solver, or "ModelExchange", by CVode of FMPy
-    fmi, solver: the version of FMI, 2 or 3, and the method in place of the system's own, where the FMU is not built yet
-    stop_time, step: in s; tolerance: relative. Else as the FMU's experiment says
-    options: start_time, in s, debug_logging, visible, fmi_call_logger; in model exchange others of fmpy.simulate_fmu
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    start_values : dict of float, optional
+        Start values of coordinates, velocities, inputs and parameters by name. Other variables keep the start values of the system.
+    output : str or sequence of str, optional
+        Names of the variables to record in place of all outputs. Local variables, such as "totalEnergy", are allowed.
+    input : path, array, dict, DataFrame or callable, optional
+        A CSV, a structured array, a dict of arrays or a DataFrame has the columns "time" and names of inputs. Inputs are linear between rows;
+        two rows with the same time are a jump. A function of time returns a dict of numbers by name, or a number for each input.
+        A dict of functions and numbers by name is allowed, too.
+    hold : bool
+        True to hold each input from row to row, or the value of a function over each step, instead of interpolating.
+    record_events : bool
+        True to record two rows for each event, with the same time: one before and one after the event.
+    fmi_type : {"CoSimulation", "ModelExchange"}
+        The FMU's own solver, or CVODE as FMPy drives it.
+    fmi : {2, 3}, optional
+        Version of FMI for a system that is not built yet; 2 by default.
+    solver : str, optional
+        Method in place of the system's own, for a system that is not built yet.
+    stop_time, step : float, optional
+        End of the simulation and communication step, in s; by default those of the FMU's experiment.
+    tolerance : float, optional
+        Relative tolerance; by default that of the FMU's experiment.
+    **options
+        start_time (in s), debug_logging, visible, fmi_call_logger; in model exchange also the options of fmpy.simulate_fmu.
+
+    Returns
+    -------
+    Result
+        A structured array with a row for each communication point and two for each event. Its fields are "time", in s, and the recorded
+        variables. It has the methods plot(), animate() and to_pandas().
+
+    Raises
+    ------
+    Problem
+        If a name or an option is unknown, the system cannot be built, or the simulation stops. A stopped simulation raises `problem.Unfinished`,
+        whose `motion` has the rows until then.
+
+    Examples
+    --------
+    >>> motion = lagrange_fmu.simulate("pendulum.xml", {"theta": 1}, stop_time=5)
+    >>> motion["theta"][-1]
     """
     from .results import Result
     from .running import motion_of
@@ -92,10 +127,37 @@ def linearize(
     system: str | PathLike[str], at: Mapping[str, float] | None = None, parameters: Mapping[str, float] | None = None
 ) -> Linearization:
     """
-    The matrices A (n x n), B (n x m), C (p x n), D (p x m) of an FMU or a system to first order, for n states, m inputs and p outputs, as a
-    named tuple, which also has the names `states`, `inputs`, `outputs` and the `point`. `at` gives coordinates, velocities and inputs
-    where they are not their start values. Where there are constraints, the states are as many as are independent; `constraints` names
-    the contacts that are closed and the frictions that stick at the point, and are taken as constraints.
+    Linearize an FMU or a system at a point, by its exact directional derivatives.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    at : dict of float, optional
+        Coordinates, velocities and inputs of the point; by default their start values. Initialization moves the point onto the constraints.
+    parameters : dict of float, optional
+        Values of parameters; by default their start values.
+
+    Returns
+    -------
+    Linearization
+        A named tuple with A (n x n), B (n x m), C (p x n) and D (p x m) for n states, m inputs and p outputs; the names `states`, `inputs` and
+        `outputs`; the `point`; and `constraints`, the names of closed contacts and sticking friction. These count as constraints.
+        In a system with constraints, the states are a set of independent states.
+
+    Raises
+    ------
+    Problem
+        If a name is unknown, or the system is not differentiable at the point.
+
+    Warns
+    -----
+    UserWarning
+        If the point is not an equilibrium.
+
+    Examples
+    --------
+    >>> A, B, C, D = lagrange_fmu.linearize("cart.xml", {"theta": 0})[:4]
     """
     from .linearization import linearize
 
@@ -111,10 +173,40 @@ def sensitivities(
     tolerance: float = 1e-10,
 ) -> Sensitivities:
     """
-    The derivatives of outputs and states `of`, at increasing times in s of a motion that starts at 0 s, by start values, parameters and inputs `by`, which are constant: `.values[of]` and
-    `.derivatives[of, by]` are arrays over the times. By the variational equations to the relative tolerance, in the FMU's own solver for systems in XML, else with SciPy; events change
-    them by what they make of neighbouring motions; at the time of an event they are those before it. Several events at once, one that is only touched,
-    and one behind which neighbours are in other modes are refused.
+    Differentiate a motion with respect to start values, parameters and constant inputs, by the variational equations.
+
+    The FMU's own solver integrates the variational equations of a system in XML; SciPy integrates those of an FMU. At an event the
+    sensitivities jump (saltation matrix); values at the time of an event are those before it.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    of : sequence of str
+        Names of outputs, states and derivatives of states.
+    by : sequence of str
+        Names of start values, parameters and inputs.
+    times : sequence of float
+        Increasing times, in s. The motion starts at 0 s.
+    start_values : dict of float, optional
+        Start values, parameters and inputs of the motion by name.
+    tolerance : float
+        Relative tolerance.
+
+    Returns
+    -------
+    Sensitivities
+        `values[of]` and `derivatives[of, by]`, arrays over the times.
+
+    Raises
+    ------
+    Problem
+        If the motion has no derivative: at simultaneous events, at a grazing event, or where neighbouring motions enter other modes.
+
+    Examples
+    --------
+    >>> found = lagrange_fmu.sensitivities("pendulum.xml", of=["theta"], by=["l"], times=[0, 1, 2])
+    >>> found.derivatives["theta", "l"]
     """
     from .variational import sensitivities
 
@@ -134,10 +226,47 @@ def gradient(
     tolerance: float = 1e-10,
 ) -> Gradient:
     """
-    The derivatives of one number by parameters, start values and inputs `by`, which are constant: `.derivatives[by]`, beside the `.value`. The number is
-    the output or state `of` at the stop time, in s, or its integral over the motion until then; or, of `data`, the sum of the squares of the differences
-    between measurements and the motion, in units of the `noise`: data and noise are as for fit(). By the adjoint equation backwards along the motion to the
-    relative tolerance, with SciPy: many parameters take no longer than one. Events are treated, and refused, as by sensitivities().
+    Differentiate one number of a motion with respect to many parameters, by the adjoint equation.
+
+    The number is the output or state `of` at the stop time, or its integral, or the sum of squared residuals against `data`. SciPy integrates
+    the adjoint equation backwards in time. The cost does not grow with the number of parameters, unless an event or the start depends on them.
+    Events are handled as in sensitivities().
+
+    Parameters
+    ----------
+    system : path
+        A system in XML, a robot in URDF, a folder that contains a system.xml, or an FMU of FMI 3.0 without arrays.
+    of : str, optional
+        Name of an output or state. Give either `of` or `data`.
+    by : sequence of str
+        Names of parameters, start values and constant inputs.
+    stop_time : float, optional
+        End of the motion, in s; required with `of`.
+    data : path or structured array, optional
+        Measurements, as for fit().
+    integral : bool
+        True for the integral of `of` over the motion, in place of its value at the end.
+    noise : dict of float, optional
+        Standard deviations by measured name, as for fit(); the residuals are divided by them.
+    start_values : dict of float, optional
+        Start values, parameters and inputs of the motion by name.
+    tolerance : float
+        Relative tolerance.
+
+    Returns
+    -------
+    Gradient
+        `value`, and `derivatives` by name.
+
+    Raises
+    ------
+    Problem
+        If the motion has no derivative, as in sensitivities().
+
+    Examples
+    --------
+    >>> found = lagrange_fmu.gradient("pendulum.xml", "theta", by=["l", "b"], stop_time=2)
+    >>> found.derivatives["l"]
     """
     from .adjoint import gradient
 
@@ -155,13 +284,46 @@ def fit(
     loss: str = "linear",
 ) -> Fit:
     """
-    Parameters and start values `vary` such that the motion meets data: a CSV with time, measured outputs or states and, where there are some,
-    inputs in its first line, perhaps with units; or a structured array of these; or several experiments; NaN, or nothing, is what was not measured. Least squares from the start values on, with the exact
-    derivatives, within the bounds, which are min and max of the FMU where none are given. `noise` has standard deviations by measured name; where it
-    is not given all columns count the same. `each` has start values, parameters or inputs which are found for each experiment by itself, beginning where
-    these were measured first. `loss` "soft_l1", "huber" or "cauchy" counts residuals beyond the noise less than by their squares, for data with outliers. The Fit has values, deviations,
-    intervals of 95 %, what the data do not determine and remarks, such as of a misfit; it can write_page() and write_system(). A motion that cannot be computed is a
-    rejected step. Where there are no exact derivatives, differences are taken. Ctrl-C ends the search with the best values so far.
+    Fit parameters and start values to measurements, by nonlinear least squares with exact derivatives.
+
+    The search is a trust-region method within bounds. A motion that cannot be computed rejects the step. A motion without exact derivatives
+    is differentiated by finite differences. Ctrl-C ends the search and returns the best values so far.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    data : path, structured array, or a list of these
+        Measurements, one item for each experiment. The columns are "time", measured outputs or states, and measured inputs; the first line of
+        a CSV names them, optionally with units. NaN and empty cells are missing measurements.
+    vary : sequence of str
+        Names of the parameters and start values to fit, common to all experiments.
+    start_values : dict of float, optional
+        Initial guesses of these, and values of other variables.
+    bounds : dict of (float, float), optional
+        Bounds by name; by default the variables' min and max.
+    noise : dict of float, optional
+        Standard deviations by measured name; by default all columns have equal weight.
+    each : sequence of str
+        Names of start values, parameters or inputs to fit for each experiment separately. Their initial guesses are their first measurements.
+    loss : {"linear", "soft_l1", "huber", "cauchy"}
+        Loss function. The last three are robust against outliers and need `noise`.
+
+    Returns
+    -------
+    Fit
+        Values, standard deviations, intervals of 95 %, undetermined directions, and remarks, such as a misfit. It has the methods
+        write_page() and write_system().
+
+    Raises
+    ------
+    Problem
+        If a name is unknown, the data are malformed, or the motion from the initial guesses cannot be computed.
+
+    Examples
+    --------
+    >>> fit = lagrange_fmu.fit("pendulum.xml", "data.csv", vary=["l", "b"], noise={"theta": 0.01})
+    >>> print(fit)
     """
     from .fitting import fit
 
@@ -172,8 +334,32 @@ def run(
     system: str | PathLike[str], start_values: Mapping[str, float] | None = None, folder: str | PathLike[str] = ".", **words: Any
 ) -> dict[str, Path | str]:
     """
-    Simulates, with the words of simulate(), and leaves NAME.fmu, NAME.csv, NAME.png and NAME-motion.html in the folder; the path of each by its kind, or why
-    there is none.
+    Simulate a system or an FMU, and write NAME.fmu, NAME.csv, NAME.png and NAME-motion.html.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    start_values : dict of float, optional
+        As for simulate().
+    folder : path
+        Folder of the results.
+    **words
+        Further arguments of simulate().
+
+    Returns
+    -------
+    dict
+        The path of each result by its kind ("FMU", "CSV", "plot", "animation"), or a text with the reason why it does not exist.
+
+    Raises
+    ------
+    Problem
+        As simulate(). A simulation that stops leaves NAME-stopped.csv.
+
+    Examples
+    --------
+    >>> lagrange_fmu.run("pendulum.xml", {"theta": 1}, "results")["CSV"]
     """
     from .running import run
 
@@ -182,8 +368,30 @@ def run(
 
 def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False) -> Path:
     """
-    Writes the page in which the FMU of a system runs, in any browser and without a network, and returns its path: `output`, else NAME.html in the
-    current folder. With `edit` the system can be changed in the page; it is NAME-edit.html then.
+    Write a page in which the FMU of a system runs, in any browser and without a network.
+
+    Parameters
+    ----------
+    system : path
+        A system in XML, a robot in URDF, a folder that contains a system.xml, or an FMU, which `edit` excludes.
+    output : path, optional
+        The page; by default NAME.html, or NAME-edit.html with `edit`, in the current folder.
+    edit : bool
+        True to show the system beside its motion, so that it can be changed in the page.
+
+    Returns
+    -------
+    Path
+        The path of the page.
+
+    Raises
+    ------
+    Problem
+        If the system cannot be built, or an FMU is to be edited.
+
+    Examples
+    --------
+    >>> page = lagrange_fmu.live("pendulum.xml", edit=True)
     """
     from .pages import live
 
@@ -204,15 +412,45 @@ def sweep(
     output: str | PathLike[str] | None = None,
 ) -> Path:
     """
-    Simulates from a grid or a random sample of start values and parameters, on all cores, and returns the path of a Parquet file with a run in each row:
-    `output`, else NAME-sweep.parquet in the current folder. Finished runs of a sweep that is interrupted are kept beside it, and the same call goes on with them.
+    Simulate a grid or a random sample of start values and parameters, on all cores.
 
-    vary: by name a range, which is a tuple (FROM, TO, COUNT), or a list or an array of values; several make a grid
-    random: the number of runs of a random sample in place of the grid, from ranges (FROM, TO) and among values; seed: of the sample
-    stop_time, step: in s; tolerance: relative. Else to the end of the FMU's experiment, in one step, and the FMU's tolerance
-    record: columns beside the states at the end: "NAME.max", "NAME.min", "NAME@end", "NAME@TIME", "events", "events.first", and of a single contact or friction "NAME.events",
-        "NAME.first"; extremes are sampled at each `step`, else at the FMU's step size
-    scheduler: the address of a Dask cluster, which runs them in place of this machine's cores
+    An interrupted sweep keeps its finished runs beside the output. The same call continues with the others.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    vary : dict
+        By name, a range (FROM, TO, COUNT) as a tuple, or a list or array of values. Several names make a grid.
+    random : int, optional
+        Number of runs of a random sample in place of the grid. Ranges are then (FROM, TO).
+    seed : int
+        Seed of the random sample.
+    stop_time, step : float, optional
+        End of each run and communication step, in s; by default the end of the FMU's experiment, in one step.
+    tolerance : float, optional
+        Relative tolerance; by default that of the FMU.
+    record : str or sequence of str, optional
+        Columns beside the states at the end: "NAME.max", "NAME.min", "NAME@end", "NAME@TIME", "events", "events.first", and for a single
+        contact or friction "NAME.events" and "NAME.first". Extremes are sampled at each `step`, by default at the FMU's step size.
+    scheduler : str, optional
+        Address of a Dask cluster, which computes the runs in place of this machine.
+    output : path, optional
+        The Parquet file; by default NAME-sweep.parquet in the current folder.
+
+    Returns
+    -------
+    Path
+        The path of the Parquet file, which has a row for each run.
+
+    Raises
+    ------
+    Problem
+        If a name or a range is invalid, or pyarrow is not installed.
+
+    Examples
+    --------
+    >>> runs = lagrange_fmu.sweep("pendulum.xml", {"l": (0.5, 2, 50), "theta": [0.1, 1]}, record="theta.max")
     """
     from .sweeps import sweep
 
@@ -220,14 +458,64 @@ def sweep(
 
 
 def words(word: str | None = None) -> str:
-    """What the reference of the language says about an element, attribute or function; all of it without a word."""
+    """
+    Return the paragraphs of the language reference that mention a word.
+
+    Parameters
+    ----------
+    word : str, optional
+        An element, attribute or function; by default the whole reference is returned.
+
+    Returns
+    -------
+    str
+        Text in Markdown.
+
+    Raises
+    ------
+    Problem
+        If the reference does not mention the word.
+
+    Examples
+    --------
+    >>> print(lagrange_fmu.words("restitution"))
+    """
     from .reference import words
 
     return words(word)
 
 
 def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:
-    """Writes the system of a LagrangesMethod of sympy.physics.mechanics: see lagrange_fmu.sympy_system.from_sympy."""
+    """
+    Write the system of a LagrangesMethod of sympy.physics.mechanics as XML.
+
+    Symbols may be given by their names in all dicts.
+
+    Parameters
+    ----------
+    method : LagrangesMethod
+        Lagrangian, forces and constraints; form_lagranges_equations() is not needed.
+    path : path
+        The file to write, NAME.xml; NAME is the name of the system.
+    parameters : dict of float
+        Values of the symbols of the method.
+    **options
+        start, speeds, description, stop_time, outputs, units, constraints, points: see lagrange_fmu.sympy_system.from_sympy.
+
+    Returns
+    -------
+    Path
+        The path of the file.
+
+    Raises
+    ------
+    Problem
+        If SymPy is not installed, a value is missing, or an expression has no counterpart in the language.
+
+    Examples
+    --------
+    >>> system = lagrange_fmu.from_sympy(method, "Pendulum.xml", {m: 1, l: 0.5, g: 9.81}, start={theta: 1})
+    """
     try:
         from .sympy_system import OPTIONS, from_sympy
     except ModuleNotFoundError as missing:

@@ -1,4 +1,4 @@
-"""The command lagrange-fmu, which is python -m lagrange_fmu too. Its modules are imported behind a handler of interrupts."""
+"""Run the command lagrange-fmu; its modules are imported while a handler of interrupts is set."""
 
 import os
 import signal
@@ -7,7 +7,7 @@ import signal
 def main():
     handler = signal.getsignal(signal.SIGINT)
     if handler is signal.default_int_handler:
-        signal.signal(signal.SIGINT, lambda *received: os._exit(130))  # an exception amid imports may be lost, or become another
+        signal.signal(signal.SIGINT, lambda *received: os._exit(130))  # KeyboardInterrupt during imports may be swallowed or replaced by another exception
     from .command import main
 
     signal.signal(signal.SIGINT, handler)

@@ -1,7 +1,11 @@
 """
-The derivative of one number of a motion by many parameters, start values and inputs: the adjoint equation backwards along the motion, for which the
-FMU gives adjoint derivatives (Y. Cao, S. Li, L. Petzold, R. Serban: Adjoint sensitivity analysis for differential-algebraic equations, 2003). Its cost
-does not depend on how many they are, but where an event, or the start, depends on them.
+Differentiate one number of a motion by many parameters, start values and inputs.
+
+For x' = f(t, x, p) and the number G = sum_i g_i(x(t_i)) + integral of h(x) dt, the adjoint equation is a' = -(df/dx)^T a - (dh/dx)^T, solved
+backwards, with a jump of (dg_i/dx)^T at t_i. Then dG/dp = integral of (df/dp)^T a dt + (dx(0)/dp)^T a(0). The FMU evaluates (df/dx)^T a and
+(df/dp)^T a in one reverse sweep (adjoint derivatives of FMI 3.0). At an event a is multiplied by the transposed saltation matrix. The cost does
+not depend on the number of parameters, unless an event or the start depends on them (Y. Cao, S. Li, L. Petzold, R. Serban: Adjoint sensitivity
+analysis for differential-algebraic equations, 2003).
 """
 
 from dataclasses import dataclass
@@ -19,34 +23,35 @@ from scipy.integrate import OdeSolution  # isort: skip
 
 @dataclass(frozen=True)
 class Gradient:
-    """The number, and its derivatives by name, in SI units."""
+    """A number and its derivatives, in SI units."""
 
     value: float
-    derivatives: dict
+    derivatives: dict  # by name
 
 
 @dataclass
 class Phase:
-    """Smooth motion between events and kinks of inputs."""
+    """A phase of smooth motion, between events and kinks of inputs."""
 
-    saved: object  # the FMU's state in it
-    times: list
-    steps: list
+    saved: object  # the FMU state at its begin, with the modes of the phase
+    times: list  # of the steps: one more than steps
+    steps: list  # dense outputs of SciPy
 
     def states(self):
+        """Return the states as a function of time."""
         return OdeSolution(self.times, self.steps)
 
 
 @dataclass
 class Jump:
-    """Of an event: what the states behind it change by, a row for each state before it and for each parameter."""
+    """The derivatives of the states after an event (transposed saltation matrix): a row for each state before it, and for each parameter."""
 
-    by_states: np.ndarray
-    by_acting: np.ndarray
+    by_states: np.ndarray  # n x n
+    by_acting: np.ndarray  # parameters x n
 
 
 class Trail(Motion):
-    """A motion that can be followed back."""
+    """A motion that records its phases and jumps, so that the adjoint equation can follow it back."""
 
     def __init__(self, point, of, acting, tolerance):
         super().__init__(point, of, [], tolerance)
@@ -70,6 +75,7 @@ class Trail(Motion):
         return state
 
     def forget(self):
+        """Free the FMU states of all phases."""
         for part in self.trail:
             if isinstance(part, Phase):
                 self.model.freeFMUState(part.saved)
@@ -77,12 +83,13 @@ class Trail(Motion):
 
 class WayBack:
     """
-    What the number depends on the states by at a time, and with the weights of what is read from there on by the acting parameters: one array, in the end
-    of which is the integral, where the number is one.
+    The adjoint equation along a Trail.
+
+    The vector `now` has the n adjoint variables, the derivatives by the parameters accumulated so far, and the value of the integral.
     """
 
     def __init__(self, trail, running, inputs):
-        """running: the references of what is integrated."""
+        """`running` lists the references of the integrated variables."""
         self.trail, self.model, self.running, self.inputs = trail, trail.model, list(running), inputs
         self.state_count = len(trail.state_references)
         self.knowns = [*trail.state_references, *trail.known_acting]
@@ -90,12 +97,13 @@ class WayBack:
         self.step = None
 
     def rates(self, time, now, states):
+        """Return the right-hand side of the adjoint equation; states(time) is the motion."""
         self.trail.place(time, states(time), self.inputs)
         found = self.back([*self.trail.rate_references, *self.running], [*now[: self.state_count], *(1.0 for _ in self.running)])
         return -np.append(found, sum(self.model.getReal(self.running)) if self.running else 0.0)
 
     def jacobian(self, time, states):
-        """Of the rates by what they act on."""
+        """Return the derivative of rates() by the vector `now`."""
         self.trail.place(time, states(time), self.inputs)
         found = np.zeros((len(self.now), len(self.now)))
         for i, seed in enumerate(np.eye(self.state_count)):
@@ -103,7 +111,7 @@ class WayBack:
         return found
 
     def go(self, begin, end, states):
-        """Back from the end to the beginning."""
+        """Integrate backwards from `end` to `begin`."""
         if not begin < end:
             return
         first = None if self.step is None else min(self.step, end - begin)
@@ -113,15 +121,15 @@ class WayBack:
         while steps.take():
             sizes.append(steps.solver.step_size)
         self.now = steps.solver.y
-        self.step = sizes[-2] if len(sizes) > 1 else max(self.step or 0.0, sizes[-1])  # the last one is cut short
+        self.step = sizes[-2] if len(sizes) > 1 else max(self.step or 0.0, sizes[-1])  # the last step is shortened to end at `begin`
 
     def add(self, time, weights, states):
-        """What is read at this time."""
+        """Add the jump of the adjoint variables by the variables that are read at this time, times their weights."""
         self.trail.place(time, states(time), self.inputs)
         self.now[:-1] += self.back(self.trail.read_references, weights)
 
     def back(self, unknowns, weights):
-        """What the sum of the weighted unknowns changes by with each known."""
+        """Return the derivatives of the weighted sum of the unknowns by each known."""
         hidden, pairs = self.trail.hidden, list(zip(unknowns, weights))
         asked = [pair for pair in pairs if pair[0] not in hidden]
         found = self.model.adjoint([unknown for unknown, _ in asked], self.knowns, [weight for _, weight in asked]) if asked else np.zeros(len(self.knowns))
@@ -131,7 +139,7 @@ class WayBack:
         return found
 
     def along(self, phase, readings):
-        """readings: (time, weights) up to its end, of which those after its beginning are taken."""
+        """Integrate backwards through a phase; pop its readings, (time, weights), from the end of the list `readings`."""
         states, end, begin = phase.states(), phase.times[-1], phase.times[0]
         self.model.setFMUState(phase.saved)
         while readings and readings[-1][0] > begin:
@@ -142,6 +150,7 @@ class WayBack:
         self.go(begin, end, states)
 
     def over(self, jump):
+        """Apply the jump of an event to the adjoint variables and the derivatives."""
         by_state = self.now[: self.state_count].copy()
         self.now[: self.state_count] = jump.by_states @ by_state
         self.now[self.state_count : -1] += jump.by_acting @ by_state
@@ -149,15 +158,15 @@ class WayBack:
 
 @dataclass(frozen=True)
 class Aim:
-    """The number: sum of weights(values at the times) times these values, to first order; or the integral of what is read."""
+    """The number to differentiate: a function of the values at n times, or the integral of the values."""
 
-    of: list
-    times: np.ndarray
-    value: object  # of the values at the times, an array n x of
-    weights: object  # likewise; as many
+    of: list  # names of the variables that it depends on
+    times: np.ndarray  # n, in s
+    value: object  # function of the values, an array n x of, that returns the number
+    weights: object  # function of the values that returns the derivatives of the number by them, n x of
     is_integral: bool = False
-    inputs: object = None
-    kinks: object = ()
+    inputs: object = None  # function of time that returns names and values, or None
+    kinks: object = ()  # times, in s, at which an input changes its slope
 
 
 def _aim_at_end(name, stop_time, integral):
@@ -188,6 +197,7 @@ def _aim(point, of, data, stop_time, integral, noise):
 
 
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
+    """See lagrange_fmu.gradient."""
     check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         aim = _aim(point, of, data, stop_time, integral, noise)
@@ -206,7 +216,7 @@ def gradient(system, of, by, stop_time, data, integral, noise, start_values, tol
 
 def _back(trail, aim, values):
     weights = np.zeros_like(values) if aim.is_integral else aim.weights(values)
-    size = np.max(abs(weights)) or 1.0  # the tolerance counts from here
+    size = np.max(abs(weights)) or 1.0  # scaling to 1 makes the tolerance relative to the weights
     readings = [(time, row) for time, row in zip(aim.times, weights / size) if row.any()]
     way = WayBack(trail, trail.read_references if aim.is_integral else [], aim.inputs)
     for part in reversed(trail.trail):

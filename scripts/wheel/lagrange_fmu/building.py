@@ -1,4 +1,4 @@
-"""From a system in XML to an FMU: lagc derives, zig compiles, and all is packed."""
+"""Build an FMU from a system in XML: lagc derives the equations, zig compiles them, and the files are packed into an archive."""
 
 import functools
 import os
@@ -30,7 +30,7 @@ NATIVE = {"Windows": "win64", "Darwin": "darwin64"}.get(platform.system(), "linu
 
 
 def system_file(system):
-    """The file of a system, which may be given by its folder."""
+    """Return the path of a system's file; `system` may be the folder that contains system.xml. Raise Problem if there is none."""
     path = Path(system)
     if path.is_dir():
         path = path / "system.xml"
@@ -40,13 +40,17 @@ def system_file(system):
 
 
 def origin_of(system):
-    """For pages with more than the FMU."""
+    """Return the Origin of a system, from which live pages derive the variant whose bodies can be pulled."""
     runtime = HERE / "runtime"
     return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name))
 
 
 def derive(system, folder, solver, words=()):
-    """Lets lagc, with these words, write into the folder; returns modelDescription.xml as a tree."""
+    """
+    Run lagc, with `words` as further arguments, so that it writes C, modelDescription.xml and the documentation into the folder.
+
+    Return the root of modelDescription.xml. Raise Problem with the message of lagc; its warnings become Python warnings.
+    """
     words = [LAGC, system_file(system), "-o", folder, *words]
     if solver is not None:
         words += ["--solver", solver]
@@ -59,13 +63,36 @@ def derive(system, folder, solver, words=()):
 
 
 def method_of(folder):
-    """The method of the system whose equations are there; "none" for one without states."""
+    """Return the name of the method in the folder's system.c; "none" for a system without states."""
     found = re.search(r"\.solver = &solver_([a-z]+)", (folder / "system.c").read_text(encoding="utf-8"))
     return found[1] if found else "none"
 
 
 def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
-    """Derives the equations and builds nothing; mistakes are a Problem. Returns in a line what came out."""
+    """
+    Derive the equations of a system without building an FMU.
+
+    Parameters
+    ----------
+    system : path
+        A system in XML, a robot in URDF, or a folder that contains a system.xml.
+    solver : str, optional
+        Method in place of the system's own.
+
+    Returns
+    -------
+    str
+        One line with the numbers of states, inputs, outputs and parameters, and the method.
+
+    Raises
+    ------
+    Problem
+        If the system has mistakes; the text has file and line.
+
+    Examples
+    --------
+    >>> print(lagrange_fmu.check("pendulum.xml"))
+    """
     with tempfile.TemporaryDirectory() as scratch:
         description = derive(system, Path(scratch), solver)
         method = method_of(Path(scratch))
@@ -78,7 +105,7 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
 
 @functools.cache
 def runtime_key():
-    """Of what every library is built from beside its system.c."""
+    """Return the hash of all sources that every library is built from, beside its system.c."""
     files = [file for part in ("runtime", "sundials/include") for file in sorted((HERE / part).rglob("*.[ch]"))]
     files += sorted((HERE / "runtime" / "src" / "ensemble").glob("*.flags"))
     files += sorted((HERE / "runtime" / "scripts").rglob("*.py"))
@@ -86,12 +113,16 @@ def runtime_key():
 
 
 def tell(text):
-    """Progress, beside what commands print."""
+    """Print a line about the progress to stderr."""
     print(f"lagrange-fmu: {text}", file=sys.stderr, flush=True)
 
 
 def take_or_compile(key, folder, what, compile_library):
-    """What was compiled before is taken from the cache, else compiled into the folder and kept; what: how its message begins."""
+    """
+    Copy a library from the cache into the folder, or compile it with compile_library() and add it to the cache.
+
+    Raise Problem if the compilation fails; its text begins with `what`.
+    """
     if caching.take(key, folder):
         return
     caching.keep_what_zig_compiles()
@@ -103,7 +134,7 @@ def take_or_compile(key, folder, what, compile_library):
 
 
 def compile_libraries(folder, name, platforms, fmi, content):
-    """Into the folder content/binaries."""
+    """Compile the libraries of all platforms into the folder content/binaries; `folder` contains system.c."""
     system = folder / "system.c"
     for platform_name in platforms:
         libraries = folder / "libraries" / platform_name
@@ -123,7 +154,7 @@ def compile_libraries(folder, name, platforms, fmi, content):
 
 
 def copy_licenses(file, target):
-    """Of libraries that are linked into the FMU: lagc's license.txt names the files."""
+    """Copy the licenses of the libraries that are linked into the FMU; `file` is license.txt of lagc, which names them."""
     target.mkdir(parents=True)
     for names in re.findall(" is linked into it: (.*)", file.read_text(encoding="utf-8")):
         for name in names.split(", "):
@@ -131,7 +162,7 @@ def copy_licenses(file, target):
 
 
 def write_descriptions(folder, name, fmi, content):
-    """What stands beside the libraries; folder holds what lagc wrote."""
+    """Move the files that lagc wrote into `folder` to their places in the FMU: descriptions, documentation, icons, licenses, and C sources."""
     files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
     if fmi == 3:
         files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
@@ -163,15 +194,42 @@ def build(
     arrays: bool = False,
 ) -> Path:
     """
-    Builds the FMU of a system's file, or of a folder with a system.xml in it, and returns its path: NAME.fmu in the folder
-    `output`. Platforms are one or several of PLATFORM_NAMES, this machine's where none are given; `solver` is a method in place of the system's own;
-    `fmi` is the version of FMI, 2 or 3. With `arrays`, what <for> makes are arrays in FMI 3.0, not scalars.
+    Build the FMU of a system.
+
+    Parameters
+    ----------
+    system : path
+        A system in XML, a robot in URDF, or a folder that contains a system.xml.
+    platforms : str or sequence of str, optional
+        Platforms of the libraries, such as "linux64", "win64", "darwin64"; by default this machine's.
+    solver : str, optional
+        Method in place of the system's own.
+    output : path
+        Folder of the FMU.
+    fmi : {2, 3}
+        Version of FMI.
+    arrays : bool
+        True to declare the variables that <for> repeats as arrays, in FMI 3.0.
+
+    Returns
+    -------
+    Path
+        The path of NAME.fmu.
+
+    Raises
+    ------
+    Problem
+        If the system has mistakes, a platform is unknown, or the compilation fails.
+
+    Examples
+    --------
+    >>> path = lagrange_fmu.build("pendulum.xml", platforms=["linux64", "win64"])
     """
     return build_with(("--arrays",) if arrays else (), system, platforms, solver, output, fmi)
 
 
 def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
-    """The same, with further words for lagc."""
+    """Build as build() does, with `words` as further arguments of lagc."""
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORM_NAMES:
@@ -191,7 +249,30 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
 
 
 def new(name: str, template: str = "pendulum") -> Path:
-    """Writes NAME.xml, a system to begin with, which is one of TEMPLATES, and returns its path."""
+    """
+    Write NAME.xml, a system with comments, as a starting point.
+
+    Parameters
+    ----------
+    name : str
+        Name of the system: letters, digits and _.
+    template : {"pendulum", "cart", "robot", "bounce", "linkage"}
+        The system to copy.
+
+    Returns
+    -------
+    Path
+        The path of the file.
+
+    Raises
+    ------
+    Problem
+        If the name is invalid, the template is unknown, or the file exists.
+
+    Examples
+    --------
+    >>> path = lagrange_fmu.new("MySystem", "cart")
+    """
     if template not in TEMPLATES:
         raise Problem(f"the template '{template}' is not known; {instead(template, TEMPLATES, 'expected one of these')}")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):

@@ -1,6 +1,8 @@
 """
-What stays on this machine: the C libraries of platforms, which zig compiles once, and the libraries of FMUs that were built already.
-They are in the folder that LAGRANGE_FMU_CACHE names, else in lagrange-fmu/ of the user's folder for caches, and can be deleted.
+Cache compiled files: the C libraries of platforms, which zig compiles once, and the libraries of FMUs.
+
+The cache is the folder in the environment variable LAGRANGE_FMU_CACHE, by default lagrange-fmu/ in the user's folder for caches. It can be
+deleted at any time.
 """
 
 import hashlib
@@ -12,11 +14,11 @@ import time
 from contextlib import contextmanager
 from pathlib import Path
 
-KEPT = 200  # libraries of FMUs; those that were not used for longest go
+KEPT = 200  # libraries of FMUs at most; the least recently used ones are deleted
 
 
 def user_folder():
-    """Where the user's programs keep what can be had again; of the system's own conventions."""
+    """Return the path of the cache by the conventions of the operating system; it may not exist."""
     if "LAGRANGE_FMU_CACHE" in os.environ:
         return Path(os.environ["LAGRANGE_FMU_CACHE"])
     if os.name == "nt":
@@ -29,13 +31,13 @@ def user_folder():
 
 
 def folder():
-    """Likewise, and it is there; one among the temporary files where the user may not write."""
+    """Create the cache and return its path; a temporary folder if the user may not write to user_folder()."""
     try:
         path = user_folder()
         path.mkdir(parents=True, exist_ok=True)
         if os.access(path, os.W_OK):
             return path
-    except (OSError, RuntimeError):  # no home
+    except (OSError, RuntimeError):  # RuntimeError: the user has no home
         pass
     user = os.getuid() if hasattr(os, "getuid") else os.environ.get("USERNAME", "user")
     path = Path(tempfile.gettempdir()) / f"lagrange-fmu-{user}"
@@ -44,12 +46,12 @@ def folder():
 
 
 def keep_what_zig_compiles():
-    """Of the platforms' C libraries in this folder too, where zig needs no home of the user."""
+    """Let zig keep its cache, with the platforms' C libraries, in this cache, too."""
     os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder() / "zig"))
 
 
 def _locked(file):
-    """Takes the lock if it is free, and says whether it was; the end of the process frees it."""
+    """Try to lock a file; return True on success. The end of the process releases the lock."""
     try:
         if os.name == "nt":
             import msvcrt
@@ -67,8 +69,9 @@ def _locked(file):
 @contextmanager
 def first_build(platform, tell):
     """
-    While a platform's C library is compiled, which takes a minute, other builds for it wait, and say so by tell(text). Once that is done
-    builds go side by side.
+    Serialize the first builds for a platform, of which one compiles the platform's C library, for up to a minute.
+
+    Waiting builds report it by tell(text). Later builds run concurrently.
     """
     ready = folder() / f"ready-{platform}"
     if ready.exists():
@@ -86,7 +89,7 @@ def first_build(platform, tell):
 
 
 def key_of(*contents):
-    """Of what is built, by all that it is built from."""
+    """Return the key of a build: a hash of all contents that it depends on."""
     sums = hashlib.sha256()
     for content in contents:
         content = content if isinstance(content, bytes) else str(content).encode()
@@ -95,7 +98,7 @@ def key_of(*contents):
 
 
 def take(key, target):
-    """Copies what was kept under the key into the folder target; says whether there was anything."""
+    """Copy the files of this key into the folder `target`; return True if the cache has them."""
     kept = folder() / "built" / key
     if not kept.is_dir():
         return False
@@ -105,14 +108,14 @@ def take(key, target):
 
 
 def keep(key, source):
-    """Keeps a copy of the folder source under the key."""
+    """Store a copy of the folder `source` under the key, and delete the oldest entries."""
     built = folder() / "built"
     built.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory(dir=built, prefix=".") as scratch:
         shutil.copytree(source, Path(scratch) / key)
         try:
             (Path(scratch) / key).rename(built / key)
-        except OSError:  # another process was first
+        except OSError:  # another process has stored it already
             return
     oldest_first = sorted((path for path in built.iterdir() if not path.name.startswith(".")), key=lambda path: path.stat().st_mtime)
     for path in oldest_first[:-KEPT]:

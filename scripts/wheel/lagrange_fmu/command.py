@@ -1,4 +1,4 @@
-"""The command lagrange-fmu."""
+"""Parse and run the command lagrange-fmu."""
 
 import argparse
 import re
@@ -14,12 +14,12 @@ from .problem import Problem
 from .variables import instead, near_file, nearest
 
 
-FILES = ("system", "input")  # the words of commands that name files
+FILES = ("system", "input")  # arguments that are completed as file names
 MODULES = {name: import_module(f".commands.{name}", __package__) for name in COMMANDS}
 
 
 class Words(argparse.ArgumentParser):
-    """Whose errors name the word that was meant, where one is like what was written."""
+    """An argument parser whose errors suggest the nearest known word."""
 
     def error(self, message):
         choice = re.fullmatch(r"(.*invalid choice: '?(.*?)'?) \(choose from (.*)\)", message)
@@ -29,7 +29,7 @@ class Words(argparse.ArgumentParser):
         super().error(message)
 
     def options(self):
-        """Of all commands."""
+        """Yield the options of all commands."""
         for action in self._actions:
             yield from action.option_strings
             if isinstance(action, argparse._SubParsersAction):
@@ -45,7 +45,7 @@ class Words(argparse.ArgumentParser):
 
 
 def parser():
-    """The command's words, those of each of COMMANDS among them."""
+    """Return the parser of the command and of all its subcommands."""
     words = Words(
         prog="lagrange-fmu",
         description="Energies and forces of a mechanical system become an FMU.",
@@ -76,7 +76,7 @@ def main(words=None):
     except KeyboardInterrupt:
         print("lagrange-fmu: stopped; nothing more was written", file=sys.stderr)
         sys.exit(130)
-    except BrokenPipeError:  # who read has seen enough, as head does
+    except BrokenPipeError:  # the reader of the output, such as head, has ended
         sys.stdout = None
         sys.exit(141)
     except OSError as problem:

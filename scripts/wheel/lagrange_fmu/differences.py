@@ -1,15 +1,24 @@
-"""Derivatives by differences of fourth order, which stay within what a value may be."""
+"""
+Differentiate by finite differences of fourth order within bounds.
+
+A rule is a tuple of pairs (k, w): f'(x) h = sum of w f(x + k h), with an error of O(h^5). Central, forward and backward rules are used; one
+that stays between the bounds is chosen (B. Fornberg: Generation of finite difference formulas on arbitrarily spaced grids, 1988).
+"""
 
 from .problem import Problem
 
 CENTRAL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 FORWARD = ((0, -25 / 12), (1, 4), (2, -3), (3, 4 / 3), (4, -1 / 4))
 BACKWARD = tuple((-steps, -weight) for steps, weight in FORWARD)
-SECOND_ORDER = {CENTRAL: {-1: -1 / 2, 1: 1 / 2}, FORWARD: {0: -3 / 2, 1: 2, 2: -1 / 2}, BACKWARD: {0: 3 / 2, -1: -2, -2: 1 / 2}}  # of what the rule looks at
+SECOND_ORDER = {CENTRAL: {-1: -1 / 2, 1: 1 / 2}, FORWARD: {0: -3 / 2, 1: 2, 2: -1 / 2}, BACKWARD: {0: 3 / 2, -1: -2, -2: 1 / 2}}  # on points of the rule, for the error
 
 
 def rules_within(value, step, limits):
-    """So many steps, and by what what is found there counts: the sum is the change over a step, to first order. The best is the first; one at least."""
+    """
+    Return the rules whose points value + k*step lie within the limits, the central rule first.
+
+    Raise Problem if there is none.
+    """
     low, high = ((limit - value) / step for limit in limits)
     rules = [rule for rule in (CENTRAL, FORWARD, BACKWARD) if all(low <= steps <= high for steps, _ in rule)]
     if not rules:
@@ -18,14 +27,18 @@ def rules_within(value, step, limits):
 
 
 def difference(function, rule):
-    """The change over a step, and how far that of second order is from it; function(steps): an array."""
+    """Return h f'(x) by the rule, and its absolute difference from the rule of second order; function(k) returns the array f(x + k h)."""
     found = {steps: function(steps) for steps, _ in rule}
     change = sum(weight * found[steps] for steps, weight in rule)
     return change, abs(sum(weight * found[steps] for steps, weight in SECOND_ORDER[rule].items()) - change)
 
 
 def relevant(changes, names):
-    """Those of the names by which something changes; changes(names): whether it does by all of these together. Few questions where few do."""
+    """
+    Return the names that have an effect, by bisection: k of n names take O(k log n) calls.
+
+    changes(names) is True if changing all these names together has an effect.
+    """
     if not names or not changes(names):
         return []
     if len(names) == 1:

@@ -1,8 +1,11 @@
 """
-How well data determine values. Residuals r(x) in units of the noise have the slopes J = dr/dx at the least squares; to first order the covariance of x is
-v (J^T J)^-1, where v is the variance of what remains. Columns of J are scaled to length 1 first, so that units decide nothing (A. van der Sluis: Condition
-numbers and equilibration of matrices, 1969). A direction whose singular value is not above the error of J is undetermined: whatever has a share in it has no
-finite deviation. Robust losses have the covariance of M-estimates (P. Huber: Robust regression, 1973).
+Estimate covariances and confidence intervals of fitted values.
+
+Let r(x) be the residuals in units of the noise, and J = dr/dx at the minimum. To first order the covariance of x is v (J^T J)^-1, where v is
+the variance of the residuals. The columns of J are scaled to length 1 first, so that the result does not depend on units (A. van der Sluis:
+Condition numbers and equilibration of matrices, 1969). A singular value decomposition of the scaled J finds the null space: right singular
+vectors whose singular values are within the error of J. These directions are undetermined; a value with a component in one of them has an
+infinite deviation. Robust losses have the covariance of M-estimates (P. Huber: Robust regression, 1973). The cost is one QR factorization of J.
 """
 
 from dataclasses import dataclass
@@ -14,12 +17,12 @@ from scipy.stats import t as student
 
 from .problem import Problem
 
-PROBABILITY = 0.95
-FAR, SIGNIFICANT = 2.0, 1e-3  # times the stated noise; and the probability of as much by chance
-CORRELATED, ENOUGH = 0.5, 20  # from row to row; of so many rows
-AT_LIMIT = 1e-2  # of the deviation, within which a value is at its limit
-NEAR = 1e-6  # relative, likewise for values without a finite deviation
-SHARE = 10.0  # errors of an undetermined direction, below which a share is none
+PROBABILITY = 0.95  # of the confidence intervals
+FAR, SIGNIFICANT = 2.0, 1e-3  # a misfit: root mean square above FAR times the stated noise, with a probability below SIGNIFICANT
+CORRELATED, ENOUGH = 0.5, 20  # autocorrelation of residuals that is worth a remark; pairs of rows that are enough to estimate it
+AT_LIMIT = 1e-2  # distance to a limit, in standard deviations, within which a value is at the limit
+NEAR = 1e-6  # distance likewise, relative to the limit; it decides where the deviation is infinite
+SHARE = 10.0  # components of a null-space vector below this multiple of their error count as 0
 
 
 def _linear(z):
@@ -40,10 +43,11 @@ def _cauchy(z):
     return np.stack([np.log1p(z), 1 / (1 + z), -1 / (1 + z) ** 2])
 
 
-LOSSES = {"linear": _linear, "soft_l1": _soft_l1, "huber": _huber, "cauchy": _cauchy}  # rho, rho', rho'' of squares of residuals
+LOSSES = {"linear": _linear, "soft_l1": _soft_l1, "huber": _huber, "cauchy": _cauchy}  # functions of z = r^2 that return rho, rho', rho''
 
 
 def loss_of(name):
+    """Return the loss function of this name; raise Problem if there is none."""
     if name not in LOSSES:
         raise Problem(f"the loss is '{name}'; expected one of {', '.join(LOSSES)}")
     return LOSSES[name]
@@ -51,21 +55,23 @@ def loss_of(name):
 
 @dataclass(frozen=True)
 class Estimate:
-    """In the order of the values; infinite where the data determine nothing."""
+    """Estimates of n values, all in the same order. Deviations of undetermined values are infinite."""
 
-    values: np.ndarray  # at its limit where they are close
-    deviations: np.ndarray
-    intervals: np.ndarray  # n x 2
-    correlation: np.ndarray
-    undetermined: np.ndarray  # k x n, directions along which residuals stay; their largest component is 1
-    at_limit: np.ndarray  # True where a value is at its limit
-    freedom: int
+    values: np.ndarray  # a value close to a limit is set to the limit
+    deviations: np.ndarray  # standard deviations
+    intervals: np.ndarray  # n x 2, low and high
+    correlation: np.ndarray  # n x n
+    undetermined: np.ndarray  # k x n, a basis of the directions that do not change residuals; the largest component of each is 1
+    at_limit: np.ndarray  # True for a value at a limit
+    freedom: int  # number of residuals minus number of determined directions
 
 
 def _directions(slopes, accuracy):
     """
-    Lengths of the columns of J; of J with columns of length 1 the inverse singular values times right singular vectors, k x n, and the null space, (n - k) x n,
-    in which components below its error are 0.
+    Decompose J, the slopes, whose relative error is `accuracy`.
+
+    Return the lengths of its columns; the right singular vectors of the scaled J, divided by their singular values, k x n; and a basis of its
+    null space, (n - k) x n, in which components below their error are 0.
     """
     sizes = np.linalg.norm(slopes, axis=0)
     sizes[sizes == 0] = 1.0
@@ -81,24 +87,24 @@ def _directions(slopes, accuracy):
 
 
 def without_undetermined(slopes, accuracy):
-    """The slopes, of which steps of least squares leave undetermined directions as they are."""
+    """Return the slopes without their components in undetermined directions, so that steps of least squares do not move along these."""
     sizes, _, null = _directions(slopes, accuracy)
     return slopes - (slopes / sizes @ np.linalg.pinv(null)) @ null * sizes if len(null) else slopes
 
 
 def _sparse(null, sizes):
-    """A basis of these directions, in units of the values, each with as few values as Gaussian elimination leaves."""
+    """Return a sparse basis of the null space, in units of the values, by Gaussian elimination with pivots from a QR factorization."""
     if not len(null):
         return null
     pivots = qr(null, mode="r", pivoting=True)[1][: len(null)]
     basis = np.linalg.solve(null[:, pivots], null)
-    basis[abs(basis) < 1e-4] = 0.0  # rounding of the elimination, in units of equal effect
+    basis[abs(basis) < 1e-4] = 0.0  # errors of the elimination, in scaled units
     basis = basis / sizes
     return basis / np.take_along_axis(basis, np.argmax(abs(basis), axis=1)[:, None], axis=1)
 
 
 def _variance(residuals, freedom, noise_is_known, loss):
-    """Of the residuals that remain; of stated noise 1, unless they are far above it."""
+    """Return the variance of the residuals: 1 if the noise is known and there is no misfit, Huber's formula for robust losses."""
     if loss is not _linear:
         _, first, second = loss(residuals**2)
         slope = np.mean(first + 2 * second * residuals**2)
@@ -110,12 +116,16 @@ def _variance(residuals, freedom, noise_is_known, loss):
 
 
 def is_misfit(square, freedom):
-    """True if residuals, whose squares have this sum, are far above the stated noise."""
+    """Return True if the sum of squared residuals is far above that of the stated noise."""
     return freedom > 0 and square > FAR**2 * freedom and chi2.sf(square, freedom) < SIGNIFICANT
 
 
 def estimate(values, limits, slopes, residuals, accuracy, noise_is_known, loss):
-    """limits: 2 x n; slopes, N x n, and residuals are in units of the noise; accuracy: relative, of the slopes."""
+    """
+    Return the Estimate of n values from N residuals at the minimum.
+
+    `limits` is 2 x n. `slopes`, N x n, and `residuals` are in units of the noise. `accuracy` is the relative error of the slopes.
+    """
     sizes, inner, null = _directions(slopes, accuracy)
     freedom = max(0, len(residuals) - len(inner))
     variance = _variance(residuals, freedom, noise_is_known, loss)
@@ -134,7 +144,11 @@ def estimate(values, limits, slopes, residuals, accuracy, noise_is_known, loss):
 
 
 def _interval(value, step, deviation, limits, is_near, law):
-    """Of 95 %, within the limits; of a value at one of these, of the normal law that the limit cuts, whose mean is where the value would go to."""
+    """
+    Return the interval (low, high) of probability PROBABILITY within the limits.
+
+    For a value at a limit it is that of the distribution `law` truncated at the limit, with its mean at the unconstrained minimum, value + step.
+    """
     low, high = limits
     if not np.isfinite(deviation):
         return low, high
@@ -150,7 +164,7 @@ def _interval(value, step, deviation, limits, is_near, law):
 
 
 def correlation_of_rows(parts):
-    """Of residuals, an array of each experiment, with those of the row before; 0 of few."""
+    """Return the autocorrelation of residuals at lag 1; `parts` has an array for each experiment. Return 0 for fewer than ENOUGH pairs."""
     pairs = np.concatenate([np.stack([part[:-1], part[1:]]) for part in parts], axis=1)
     total = sum(part @ part for part in parts)
     return float(np.sum(pairs[0] * pairs[1]) / total) if pairs.shape[1] >= ENOUGH and total > 0 else 0.0

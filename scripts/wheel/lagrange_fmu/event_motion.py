@@ -1,4 +1,9 @@
-"""Motions through events with their derivatives: in the series of the FMU between events, which it locates; over these by differences."""
+"""
+Compute motions with events and their derivatives.
+
+Between events an FMU in co-simulation integrates the motion with its variational equations, and locates the events. At an event the same
+system in model exchange gives the saltation matrix by finite differences, see saltation.py.
+"""
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
@@ -8,17 +13,17 @@ from .problem import Problem
 from .saltation import PAST, Saltation
 from .sensitivity import Motion, as_arrays
 
-CHECKED = 1e-6  # relative, to which the two FMUs agree behind an event
-NEGLIGIBLE = 1e-9  # of the flight before an event
-FURTHEST = 1e-4  # s, by which an event is passed when it is seen at the latest, in units of the time where that is more than 1 s
+CHECKED = 1e-6  # relative tolerance to which both FMUs agree after an event
+NEGLIGIBLE = 1e-9  # delay, relative to the flight before the event, that needs no extrapolation
+FURTHEST = 1e-4  # largest delay at which model exchange detects the event, in s; relative to the time after 1 s
 
 
 class Lost(Exception):
-    """What the series does not follow."""
+    """The co-simulation cannot follow the motion: SciPy takes over."""
 
 
 class Series:
-    """An FMU in co-simulation that stops at events, with the derivatives of its states by values among its states."""
+    """An FMU in co-simulation that stops at events, with the sensitivities of its states among its states."""
 
     def __init__(self, point, of, by, tolerance):
         self.point, self.model, self.by = point, point.model, by
@@ -27,20 +32,25 @@ class Series:
         self.state_references, self.rate_references = (self.references(names, by) for names in (point.states, point.derivatives))
 
     def references(self, names, by):
-        """Of these, and then of their derivatives by the first value, the second and so on."""
+        """Return the references of these variables, then those of their derivatives by the first name of `by`, the second, and so on."""
         return [self.point.references[name] for name in [*names, *(along(name, value) for value in by for name in names)]]
 
     def rows(self, references):
-        """Values in the first row, below it their derivatives by each value."""
+        """Return the values in the first row, and below it their derivatives, a row for each name of `by`."""
         return np.array(self.model.getReal(references)).reshape(len(self.by) + 1, -1)
 
     def start(self, time, values, slopes):
+        """Initialize at `values` by name, with these sensitivities of the states."""
         self.model.start_time = time
         starts = dict(zip((along(name, value) for value in self.by for name in self.point.states), slopes))
         self.point.start(values=values | starts)
 
     def step(self, begin, end):
-        """To the end, or the next event. Returns the time; and where it is an event, a time well before it and the states there, else None."""
+        """
+        Step to `end`, or to the next event.
+
+        Return the time; and at an event (time, states) in the middle before it, else None.
+        """
         saved = self.model.getFMUState()
         time, is_at_event = self._go(begin, end)
         early = None
@@ -59,11 +69,12 @@ class Series:
         return (reached if is_at_event else end), is_at_event
 
     def row(self):
+        """Return the values of the variables `of`, and their derivatives, (len(of), len(by))."""
         values, *derivatives = self.rows(self.read_references)
         return values, np.array(derivatives).T
 
     def pass_over(self, slopes):
-        """Goes through the event, behind which the derivatives are these."""
+        """Handle the event; set the sensitivities after it to `slopes`."""
         self.model.enterEventMode()
         self.model.newDiscreteStates()
         self.model.setReal(self.state_references[len(self.point.states) :], slopes.ravel())
@@ -71,7 +82,7 @@ class Series:
 
 
 class EventMotion(Motion):
-    """Follows the motion as its base class does from where the series cannot."""
+    """A Motion in co-simulation as far as possible; its base class takes over from the time at which co-simulation fails."""
 
     def __init__(self, point, of, by, tolerance):
         super().__init__(point, of, by, tolerance)
@@ -81,11 +92,12 @@ class EventMotion(Motion):
         if inputs is None:
             try:
                 return self.in_series(times, values or {})
-            except Problem:  # where bounces come to rest, one is easily met at which neighbours rest already
+            except Problem:  # for example a small bounce that neighbours do not have; the base class may succeed
                 self.point.messages.clear()
         return super().over(times, values, inputs, kinks)
 
     def in_series(self, times, values):
+        """Return the arrays of over() by co-simulation; `known` is the last time, vector `both` and FMU state from which SciPy can continue."""
         both = self.start(values)
         rows, known = [self.read(times[0], both, None)], (times[0], both, self.model.getFMUState())
         try:
@@ -108,8 +120,9 @@ class EventMotion(Motion):
 
     def check(self, time, both):
         """
-        Whether the series goes on so from there. Its forces are wrong where constraints follow from others; and in model exchange what bounces
-        comes to rest a little sooner.
+        Raise Lost if co-simulation and model exchange disagree at this time and vector `both`.
+
+        The variational equations of co-simulation are wrong for redundant constraints. In model exchange bounces come to rest slightly earlier.
         """
         count = len(self.state_references)
         slopes = both[count:].reshape(-1, count)
@@ -122,7 +135,11 @@ class EventMotion(Motion):
             raise Lost
 
     def jump(self, time, early, known):
-        """Over the event that the series came to; early: a time well before it, and the states there. Returns what is known behind it in place of what was."""
+        """
+        Handle the event at which co-simulation stopped; `early` is a time and the states before it.
+
+        Return the tuple (time, vector `both`, FMU state) after it, which replaces `known`.
+        """
         values, rates = self.series.rows(self.series.state_references), self.series.rows(self.series.rate_references)
         delay, indicator = self.event_at(time, values[0], rates[0])
         at_event = self.at_event(time, (values, rates), delay, early, indicator, is_extrapolated=delay > NEGLIGIBLE * (time - known[0]))
@@ -132,7 +149,12 @@ class EventMotion(Motion):
         return time + delay, self.moved(at_event, delay).ravel(), self.model.getFMUState()
 
     def at_event(self, time, both, delay, early, indicator, is_extrapolated):
-        """The states and their derivatives behind it; of a short flight extrapolated from twice the delay, of which much happens within it."""
+        """
+        Return the states and their derivatives after the event, at its time.
+
+        The event is handled late by `delay`, with an error of first order. After a short flight the derivatives are extrapolated linearly
+        from delays of one and two times `delay`.
+        """
         saved, later = self.model.getFMUState(), None
         try:
             if is_extrapolated:
@@ -146,24 +168,24 @@ class EventMotion(Motion):
         return found
 
     def handled(self, time, both, delay, early, indicator):
-        """Likewise, where the event is handled so much later."""
+        """Return the states and their derivatives after the event, moved back to its time, where it is handled `delay` later."""
         values, rates = both
         later = values + delay * self.rates_between(time, values, rates, delay)
         states, slopes = Saltation(self, time + delay, later[0], early, indicator, None).pass_over(later[1:], self.acting)
         return self.moved(np.vstack([states, slopes]), -delay)
 
     def moved(self, both, delay):
-        """By the rates that it has where the FMU is."""
+        """Return states and derivatives after a further time `delay`, by the present rates of the FMU."""
         return both + delay * np.vstack([self.model.getReal(self.rate_references), self.along(self.rate_references, both[1:])])
 
     def rates_between(self, time, values, rates, delay):
-        """Of states and their derivatives, in the middle of the delay."""
+        """Return the rates of states and derivatives in the middle of the delay, as the midpoint rule needs them."""
         middle = values + delay / 2 * rates
         self.place(time + delay / 2, middle[0], None)
         return np.vstack([self.model.getReal(self.rate_references), self.along(self.rate_references, middle[1:])])
 
     def event_at(self, time, state, rates):
-        """By how much later model exchange sees it, and its indicator."""
+        """Return the smallest delay at which model exchange detects the event, and the index of its indicator; raise Lost if there is none."""
         unit = max(1.0, abs(time))
         delay = PAST * unit
         while delay < FURTHEST * unit:

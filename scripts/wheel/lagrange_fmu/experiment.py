@@ -1,4 +1,4 @@
-"""A motion that was measured."""
+"""Read and check the measurements of an experiment."""
 
 import os
 
@@ -28,8 +28,20 @@ def _check_times(times):
 
 
 class Experiment:
+    """
+    Measurements of one motion.
+
+    `measured` and `inputs` are the names of the columns, `values` (n x measured) the measurements, with angles unwrapped, and `is_measured`
+    is False where a measurement is missing.
+    """
+
     def __init__(self, data, point, noise):
-        """data: a CSV, or a structured array, in which NaN is what was not measured; noise: standard deviations by measured name."""
+        """
+        Check the data against the Point of an FMU; raise Problem if they do not fit it.
+
+        `data` is a CSV or a structured array, in which NaN is a missing measurement. `noise` has standard deviations by measured name; the
+        default is 1.
+        """
         self.data = _table_of(data, point)
         names = self.data.dtype.names[1:]
         self.inputs = [name for name in names if name in point.inputs]
@@ -41,13 +53,17 @@ class Experiment:
             raise Problem(f"the noise is {', '.join(f'{name}={noise[name]:g}' for name in self.measured if name in noise)}; expected positive numbers")
         self.values = np.stack([self.data[name] for name in self.measured], axis=1)
         self.is_measured = np.isfinite(self.values)
-        self.wraps = {}  # of measured angles that do, the time of the first jump
+        self.wraps = {}  # time of the first jump, in s, by name of a measured angle that is wrapped to one turn
         for i, name in enumerate(self.measured):
             if point.units.get(name) == "rad":
                 self._unwrap(i, name)
 
     def _unwrap(self, i, name):
-        """Removes the jumps of an angle that lies within a turn, unless they are as frequent as steps: that is a motion of few rows."""
+        """
+        Unwrap an angle that jumps and lies within one turn.
+
+        If half of the steps or more are jumps, the rows are too sparse to tell jumps from motion, and the angle stays as it is.
+        """
         rows = self.is_measured[:, i]
         values, times = self.values[rows, i], self.data["time"][rows]
         jumps = np.flatnonzero(abs(np.diff(values)) > np.pi)
@@ -55,7 +71,7 @@ class Experiment:
             self.values[rows, i], self.wraps[name] = np.unwrap(values), float(times[jumps[0] + 1])
 
     def unwrapped(self):
-        """The data, of which angles do not wrap."""
+        """Return a copy of the data with unwrapped angles."""
         data = np.array(self.data)
         for name in self.wraps:
             data[name] = self.values[:, self.measured.index(name)]
@@ -76,7 +92,11 @@ class Experiment:
                 raise Problem(f"the input '{name}' of the data has rows without a value; expected one in each, since the motion needs it")
 
     def off(self, found):
-        """By how much a motion, n x measured, misses the data, in units of the noise; 0 of what was not measured. Angles that wrap are known but for whole turns."""
+        """
+        Return the residuals of a motion `found`, n x measured, in units of the noise; 0 for missing measurements.
+
+        An angle that was unwrapped is known up to full turns only; those that bring its first residual closest to 0 are subtracted.
+        """
         off = found - self.values
         for name in self.wraps:
             i = self.measured.index(name)
@@ -85,13 +105,13 @@ class Experiment:
 
     @property
     def signals(self):
-        """Names and values of the inputs at a time; None without any."""
+        """A function of time that returns names and values of the inputs, interpolated linearly; None without inputs."""
         if not self.inputs:
             return None
         return lambda time: (self.inputs, [float(np.interp(time, self.data["time"], self.data[name])) for name in self.inputs])
 
     def kinks(self):
-        """The inner times where an input, which is linear between the rows, changes its slope."""
+        """Return the inner times at which the slope of an input changes."""
         time = self.data["time"]
         bends = np.zeros(len(time) - 2)
         for name in self.inputs:
@@ -100,6 +120,7 @@ class Experiment:
 
 
 def check_noise(noise, experiments):
+    """Raise Problem if `noise` has a name that no experiment measured."""
     measured = {name for experiment in experiments for name in experiment.measured}
     for name in noise:
         if name not in measured:

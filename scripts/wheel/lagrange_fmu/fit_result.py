@@ -1,4 +1,4 @@
-"""What a fit found, in print and as a page."""
+"""Hold the result of a fit, and write it as text, as a page, and as a system."""
 
 import base64
 import html
@@ -14,22 +14,29 @@ from .whole_files import write_whole
 
 @dataclass(frozen=True, repr=False)
 class Fit:
-    """Values by name in SI units, and how well the data determine them."""
+    """
+    Fitted values with their uncertainties, in SI units; print() shows them.
 
-    values: dict
-    deviations: dict  # standard deviations; infinite for what the data do not determine
-    intervals: dict  # of 95 %, (low, high), within the limits
+    Examples
+    --------
+    >>> fit.values["l"], fit.deviations["l"]
+    >>> fit.write_page("fit.html")
+    """
+
+    values: dict  # fitted values by name
+    deviations: dict  # standard deviations; infinite for a value that the data do not determine
+    intervals: dict  # confidence intervals of 95 %, (low, high), within the limits
     correlation: np.ndarray  # in the order of the values
-    untold: list  # undetermined directions, as changes by name: values may change so together, and the motion stays
-    data: list  # of each experiment the structured array
-    motions: list  # likewise: measured names and the fitted motion at these times
-    rms: dict  # of the residuals, by measured name
-    name: str
-    system: object  # its file; None of an FMU
-    shared: list  # the names of the values that all experiments have
+    untold: list  # undetermined directions, each a dict of changes by name: changes together that do not change the measured motion
+    data: list  # the structured array of each experiment
+    motions: list  # for each experiment the measured names, and the fitted motion at the times of the data
+    rms: dict  # root mean square of the residuals, by measured name
+    name: str  # of the system
+    system: object  # path of the system; None for an FMU
+    shared: list  # names of the values that all experiments have in common
     at_limit: tuple = ()  # names of values at their limits
-    remarks: tuple = ()  # what to know before the values are used, a sentence each
-    is_finished: bool = True  # False where the search was stopped
+    remarks: tuple = ()  # warnings about the result, a sentence each
+    is_finished: bool = True  # False if the search ended before convergence
 
     def __str__(self):
         width = max(map(len, self.values))
@@ -47,7 +54,24 @@ class Fit:
         return f"{value:.9g} at its limit, {end}" if name in self.at_limit else f"{value:.9g} +- {deviation:.3g}"
 
     def write_system(self, path):
-        """The system with the fitted values as its start values, but for those that each experiment has of its own."""
+        """
+        Write the system with the fitted values that all experiments share as its start values.
+
+        Parameters
+        ----------
+        path : path
+            The file to write.
+
+        Returns
+        -------
+        Path
+            The path of the file.
+
+        Raises
+        ------
+        Problem
+            If an FMU was fitted, or the file does not name a value outside of <for> and <include>.
+        """
         if self.system is None:
             raise Problem("an FMU does not hold its system; fit the system itself to have it written")
         tree = ElementTree.parse(self.system, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
@@ -61,7 +85,19 @@ class Fit:
         return write_whole(path, text.getvalue())
 
     def write_page(self, path):
-        """Data, fit and residuals, and the table of values."""
+        """
+        Write a page with plots of data, fit and residuals, and the table of values; needs matplotlib.
+
+        Parameters
+        ----------
+        path : path
+            The page to write.
+
+        Returns
+        -------
+        Path
+            The path of the page.
+        """
         rows = "".join(
             f"<tr><td>{html.escape(name)}</td><td>{self._in_words(name)}</td><td>{low:.6g} ... {high:.6g}</td></tr>" for name, (low, high) in self.intervals.items()
         )
@@ -74,7 +110,7 @@ class Fit:
 
 
 def in_words(direction):
-    """A sentence on an undetermined direction."""
+    """Return a sentence about an undetermined direction."""
     if len(direction) == 1:
         return f"not determined by the data: {next(iter(direction))}, which does not change what was measured"
     changes = ", ".join(f"{name} by {change:.4g}" for name, change in direction.items())
@@ -82,7 +118,7 @@ def in_words(direction):
 
 
 def _start_of(tree, name):
-    """The element that gives a start value, and its attribute."""
+    """Return the element that gives a start value, and the name of its attribute; (None, None) if there is none."""
     for element in tree.getroot():
         if element.tag in ("parameter", "input", "coordinate") and element.get("name") == name:
             return element, "start"

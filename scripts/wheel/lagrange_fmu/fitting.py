@@ -1,4 +1,12 @@
-"""Parameters and start values from measurements, by least squares with the derivatives of the motion."""
+"""
+Fit parameters and start values to measurements.
+
+The problem is min_x sum rho(r_i(x)^2) within bounds, where r are the residuals in units of the noise and rho is the loss. SciPy's trust-region
+reflective method solves it (M. Branch, T. Coleman, Y. Li: A subspace, interior, and conjugate gradient method for large-scale
+bound-constrained minimization problems, 1999). dr/dx comes from the variational equations, or from finite differences where a motion has no
+exact derivatives. The search ends at a relative change of 1e-12 in cost, values or gradient. Each iteration costs a motion with its
+derivatives for each experiment.
+"""
 
 import warnings
 from contextlib import ExitStack
@@ -11,30 +19,30 @@ from .experiment import Experiment, check_noise
 from .fit_result import Fit
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import check_names, check_once  # first, since it tells where SciPy is missing
+from .sensitivity import check_names, check_once  # first, since it raises Problem if SciPy is missing
 from .variational import DifferencedMotion, followed, motion, stepped
 
 from scipy.optimize import least_squares  # isort: skip
 
 from .estimates import CORRELATED, correlation_of_rows, estimate, is_misfit, loss_of, without_undetermined  # isort: skip
 
-TOLERANCE = 1e-9
-EXACT, DIFFERENCED = 1e-6, 1e-4  # relative errors of slopes: by the variational equations, and by differences
+TOLERANCE = 1e-9  # relative, of the motions
+EXACT, DIFFERENCED = 1e-6, 1e-4  # relative errors of slopes: by the variational equations, and by finite differences
 FAILURES = (Problem, FMICallException, np.linalg.LinAlgError)
 
 
 class _Fitted(Experiment):
-    """With the motion that is to meet it, and the indices of what this is differentiated by among all values that are sought."""
+    """An experiment with its simulated motion. `places[k]` is the index of the parameter `by[k]` among all fitted values."""
 
     def __init__(self, data, point, by, places, noise, stepper):
-        """stepper(): the Point in co-simulation, for motions without derivatives."""
+        """Prepare the motion of the Point; stepper() returns a Point in co-simulation, for motions without derivatives."""
         super().__init__(data, point, noise)
         check_names(point, self.measured, by)
         self.point, self.by, self.places, self.stepper = point, by, places, stepper
-        self.motion, self.why = motion(point, self.measured, by, TOLERANCE), None  # why derivatives are by differences
+        self.motion, self.why = motion(point, self.measured, by, TOLERANCE), None  # why: the reason for finite differences
 
     def run(self, values):
-        """Follows the motion; where that has no derivatives, without them from now on."""
+        """Simulate the motion and its derivatives. If these fail, simulate without derivatives in this call and all later ones."""
         arguments = self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks()
         if self.why is None:
             try:
@@ -49,11 +57,11 @@ class _Fitted(Experiment):
         self.motion, self.why = plain, why
 
     def residuals(self):
-        """In units of the noise."""
+        """Return the residuals of the last run, in units of the noise, without missing measurements."""
         return self.off(self.found)[self.is_measured]
 
     def slopes_of(self, values):
-        """The derivatives of the residuals by all values, where it was run last."""
+        """Return the derivatives of the residuals by all fitted values; `values` are those of the last run."""
         if self.slopes is None:
             self.slopes = self.motion.slopes(self.data["time"], dict(zip(self.by, values[self.places])), self.signals, self.kinks(), self.found)
         everywhere = np.zeros((np.count_nonzero(self.is_measured), len(values)))
@@ -61,7 +69,7 @@ class _Fitted(Experiment):
         return everywhere
 
     def first(self, name):
-        """What was measured first; None of what was not measured."""
+        """Return the first measurement of a variable; None if it was not measured."""
         return next(value for value in self.data[name] if np.isfinite(value)) if name in self.measured else None
 
 
@@ -72,11 +80,15 @@ def _finite(*arrays):
 
 
 class _Search:
-    """All experiments at values, which the search asks for residuals, and where these are less for derivatives; a motion that cannot be computed has no residuals."""
+    """
+    The least-squares problem of all experiments.
+
+    `best` is None, or the values, slopes and motions of the last accepted step. `at` is None, or the values of the last run, if it succeeded.
+    """
 
     def __init__(self, point, sets, vary, each, noise, stepper):
         self.names = [*vary, *(f"{name} of experiment {number}" for number in range(1, len(sets) + 1) for name in each)]
-        self.kinds = [*vary, *(name for _ in sets for name in each)]  # as the FMU names them
+        self.kinds = [*vary, *(name for _ in sets for name in each)]  # the variable of the FMU for each of `names`
         self.experiments, self.at, self.best, self.failed, self.count = [], None, None, 0, 0
         for number, data in enumerate(sets):
             own = len(vary) + number * len(each)
@@ -89,7 +101,7 @@ class _Search:
         self.size = sum(np.count_nonzero(experiment.is_measured) for experiment in self.experiments)
 
     def bounds(self, point, given):
-        """Low ones and high ones; where it begins is within them."""
+        """Return the bounds, 2 x n; raise Problem if an initial guess is not within them."""
         limits = [given.get(kind, point.limits[kind]) for kind in self.kinds]
         for (name, value), (low, high) in zip(self.begin.items(), limits):
             if not low <= value <= high or not low < high:
@@ -97,7 +109,7 @@ class _Search:
         return np.array(limits, dtype=float).T
 
     def residuals_at(self, values):
-        """NaN, by which the search takes a shorter step, where the motion cannot be computed."""
+        """Return the residuals of all experiments; NaN, which makes the search take a shorter step, if a motion cannot be computed."""
         self.count, self.at = self.count + 1, None
         try:
             for experiment in self.experiments:
@@ -111,7 +123,7 @@ class _Search:
         return np.concatenate([experiment.residuals() for experiment in self.experiments])
 
     def slopes_at(self, values):
-        """Keeps what it finds: the search asks for it where residuals are the least so far."""
+        """Return the slopes of all experiments, and store them in `best`: the search asks for slopes at accepted steps only."""
         if self.at is None or (self.at != values).any():
             self.residuals_at(values)
         slopes = np.concatenate([experiment.slopes_of(values) for experiment in self.experiments])
@@ -120,11 +132,11 @@ class _Search:
 
     @property
     def accuracy(self):
-        """Of the slopes, relative."""
+        """Relative error of the slopes."""
         return DIFFERENCED if any(experiment.why for experiment in self.experiments) else EXACT
 
     def minimize(self, limits, loss):
-        """To the least squares. Returns why it ended before; None where it did not."""
+        """Minimize the loss. Return None after convergence, else a sentence with the reason of the early end."""
         begin = [*self.begin.values()]
         try:
             found = least_squares(self.residuals_at, begin, self.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12, loss=loss)
@@ -140,6 +152,7 @@ class _Search:
 
 
 def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
+    """See lagrange_fmu.fit."""
     sets = list(data) if isinstance(data, (list, tuple)) else [data]
     vary, each = list(vary), list(each)
     if not vary and not each:
@@ -174,7 +187,7 @@ def _result(search, limits, shared, system, name, noise_is_known, rho, why):
     off = [experiment.off(found) for experiment, found in zip(experiments, motions)]
     residuals = np.concatenate([part[experiment.is_measured] for part, experiment in zip(off, experiments)])
     found = estimate(values, limits, slopes, residuals, search.accuracy, noise_is_known, rho)
-    columns = {}  # of each measured name the residuals of each experiment, in units of the noise, and the noise
+    columns = {}  # by measured name: the noise, and the residuals of each experiment in units of the noise
     for experiment, part in zip(experiments, off):
         for i, measured in enumerate(experiment.measured):
             columns.setdefault(measured, (experiment.noise[i], []))[1].append(part[experiment.is_measured[:, i], i])

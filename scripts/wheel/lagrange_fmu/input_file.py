@@ -1,4 +1,4 @@
-"""Signals and measurements from a CSV."""
+"""Read inputs and measurements from a CSV."""
 
 import csv
 import re
@@ -7,11 +7,11 @@ import numpy as np
 
 from .problem import Problem
 
-NOTHING = ("", "NA", "nan")  # for a value that is missing
+NOTHING = ("", "NA", "nan")  # cells of missing values
 
 
 def _rows_of(path):
-    """The number of each line that is not empty, and its words; and by what they are separated."""
+    """Return the rows that are not empty, as (number of the line, cells), and the separator of the file."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             first = file.readline()
@@ -24,7 +24,7 @@ def _rows_of(path):
 
 
 def _name_in(word, units, path):
-    """Of "theta [rad]" theta, whose unit is to be this."""
+    """Return the name in the head of a column, such as theta in "theta [rad]"; raise Problem if the unit is not the variable's."""
     name, unit = re.fullmatch(r"(.*?)(?:\s+[\[(](.*)[\])])?", word).groups()
     expected = "s" if name == "time" else units.get(name) or "1"
     if unit is not None and (name == "time" or name in units) and unit.strip() != expected:
@@ -43,8 +43,10 @@ def _number(word, separator, place):
 
 def read_table(path, units):
     """
-    A structured array of time, in s, and what else has a name in the first line, perhaps with its unit, which is to be that of `units`: "theta [rad]".
-    Commas, semicolons or tabs are between columns; beside the latter two, decimals may have commas. NaN where nothing stands.
+    Return the table of a CSV as a structured array, whose first field is "time", in s; missing values are NaN.
+
+    The first line has the names of the columns, optionally with units, as in "theta [rad]"; these must be equal to `units[name]`. Commas,
+    semicolons or tabs separate columns. With the latter two, decimal commas are allowed. Raise Problem with file and line for malformed input.
     """
     rows, separator = _rows_of(path)
     names = [_name_in(word, units, path) for word in rows[0][1]] if rows else []
@@ -62,7 +64,7 @@ def read_table(path, units):
 
 
 def read_input(path, units):
-    """Likewise of inputs; all values are there, and times do not decrease."""
+    """Return a table of inputs as read_table() does; raise Problem if a value is missing or times decrease."""
     data = read_table(path, units)
     if len(data) < 1 or not all(np.isfinite(data[name]).all() for name in data.dtype.names) or (np.diff(data["time"]) < 0).any():
         raise Problem(f"{path}: expected lines of finite numbers, whose times do not decrease")

@@ -1,4 +1,4 @@
-"""The words of the language of systems, as lagc tells them."""
+"""List the words of the XML language, as `lagc --words` prints them."""
 
 import functools
 import os
@@ -10,7 +10,7 @@ LAGC = Path(__file__).resolve().parent / "bin" / ("lagc.exe" if os.name == "nt" 
 
 @functools.cache
 def words():
-    """The names of each kind: the functions and other names, which nothing else can have, and the elements."""
+    """Return the reserved words by kind: "function" and "name", which no variable may have, and "element"."""
     found = {"function": [], "name": [], "element": []}
     for line in subprocess.run([LAGC, "--words"], capture_output=True, text=True, check=True).stdout.splitlines():
         kind, name = line.split()

@@ -1,4 +1,11 @@
-"""A system to first order at a point, by the directional derivatives of its FMU."""
+"""
+Linearize a system at a point, by the directional derivatives of its FMU.
+
+With constraints the states x lie on a manifold. Initialization and event mode project states onto it; the derivative P of this projection at a
+point of the manifold is itself a projection (P^2 = P) onto the tangent space. Finite differences of fourth order give P, a singular value
+decomposition its range T, orthonormal columns. The first rows that are far from dependent choose independent states, x_i = T_i z, and then
+A = (df/dx)_i T T_i^-1. The cost is four projections for each state.
+"""
 
 import warnings
 from typing import NamedTuple
@@ -9,30 +16,36 @@ from fmpy.fmi1 import FMICallException
 from .model_exchange import opened
 from .problem import Problem
 
-STEP = 1e-3  # of differences of fourth order, in which what is cut off and roundings are both about 1e-12
-HALVINGS = 8  # of the step, behind which roundings are 3e-10
-UNEVEN = 1e-6  # by which the square of a projection may differ from it
+STEP = 1e-3  # of the differences, relative: errors of truncation and rounding are both about 1e-12
+HALVINGS = 8  # of the step at most; rounding errors are then 3e-10
+UNEVEN = 1e-6  # relative difference of P^2 and P above which a mode has switched
 
 
 class Linearization(NamedTuple):
     """
-    der(x - x0) = A (x - x0) + B (u - u0) + der(x0),  y - y0 = C (x - x0) + D (u - u0), all in SI units: n states, m inputs, p outputs. Where
-    there are constraints, the states are as many of the system's as are independent; the others follow.
+    A linearized system: der(x - x0) = A (x - x0) + B (u - u0) + der(x0),  y - y0 = C (x - x0) + D (u - u0), in SI units.
+
+    It has n states, m inputs and p outputs. In a system with constraints the states are a set of independent states.
+
+    Examples
+    --------
+    >>> A, B, C, D = lagrange_fmu.linearize("cart.xml")[:4]
+    >>> numpy.linalg.eigvals(A)
     """
 
     A: np.ndarray  # n x n
     B: np.ndarray  # n x m
     C: np.ndarray  # p x n
     D: np.ndarray  # p x m
-    states: list[str]
-    inputs: list[str]
-    outputs: list[str]
-    point: dict[str, float]  # x0, as initialization moved it, and u0, by name
-    constraints: list[str]  # the contacts that are closed and the frictions that stick at x0, by name: they stay so
+    states: list[str]  # names, in the order of x
+    inputs: list[str]  # names, in the order of u
+    outputs: list[str]  # names, in the order of y
+    point: dict[str, float]  # x0, after projection onto the constraints, and u0, by name
+    constraints: list[str]  # names of the contacts that are closed and the friction that sticks at x0, which count as constraints
 
 
 def _column(point, at, i, share):
-    """What moving the state i by a share of it does to the states that fulfil the constraints, to first order; or None, and why there is no such column."""
+    """Return the column i of the projection's derivative, by steps of `share` times the state, and None; or None and the reason of failure."""
     step = np.eye(len(at))[i] * share * max(1.0, abs(at[i]))
     moved, logged = {}, len(point.messages)
     for k in (1, -1, 2, -2):
@@ -46,7 +59,11 @@ def _column(point, at, i, share):
 
 
 def _projection(point, at, share):
-    """What moving each state does, by columns; or None, and why there is no such matrix. Where nothing switches on the way its square is the same."""
+    """
+    Return the derivative P of the projection onto the constraints and None; or None and the reason of failure.
+
+    P^2 differs from P if a mode switches between the points of the differences.
+    """
     columns = []
     for i in range(len(at)):
         column, problem = _column(point, at, i, share)
@@ -61,9 +78,10 @@ def _projection(point, at, share):
 
 def _tangents(point, at):
     """
-    The directions in which the states can move, as orthonormal columns. States are projected onto those that fulfil the constraints, among
-    them closed contacts and sticking frictions; what that does to first order is a projection onto these directions, whose singular values are 0, or 1
-    and more. The steps are the largest ones at which what is closed stays closed, and what is open open.
+    Return an orthonormal basis of the tangent space of the constraints, among them closed contacts and sticking friction, as columns.
+
+    The singular values of a projection are 0, or 1 and more. The step is the largest of STEP / 2^k at which no mode switches. Raise Problem if
+    there is none.
     """
     for halving in range(HALVINGS + 1):
         projection, problem = _projection(point, at, STEP / 2**halving)
@@ -74,7 +92,7 @@ def _tangents(point, at):
 
 
 def independent(tangents):
-    """As many rows as there are columns: the first ones that are far from what those before them span."""
+    """Return the indices of as many independent rows as there are columns: the first rows that are far from the span of those before."""
     rows, chosen = tangents.copy(), []
     for _ in range(tangents.shape[1]):
         lengths = np.linalg.norm(rows, axis=1)
@@ -85,6 +103,7 @@ def independent(tangents):
 
 
 def linearize(system, at=None, method=None):
+    """See lagrange_fmu.linearize; `method` is a solver in place of the system's own."""
     with opened(system, dict(at or {}), method) as point:
         return _linearization(point)
 

@@ -1,4 +1,4 @@
-"""An FMU in model exchange: started at values, with its derivatives and their directional derivatives."""
+"""Start an FMU at given values, and evaluate its derivatives and their directional derivatives."""
 
 import shutil
 from contextlib import contextmanager
@@ -13,28 +13,32 @@ from .running import fmu_of, is_fmu
 from .simulation import check_start, described, units_of
 from .variables import settable
 
-ADJOINT = ("--adjoint",)  # words for lagc
-RESTS = {".closed": 1, ".sliding": 0}  # ends of names of modes, with the value of one that constrains the motion
-COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # what is discrete beside modes
+ADJOINT = ("--adjoint",)  # argument of lagc
+RESTS = {".closed": 1, ".sliding": 0}  # suffixes of mode variables, and the value at which the mode constrains the motion
+COUNTERS = {"solverSteps", "derivativeEvaluations", "jacobianEvaluations", "solverHandovers", "events"}  # discrete variables that are not modes
 
 
 def along(of, by):
-    """The variable that is the derivative of a state, its derivative or an output by a value, where lagc derived these."""
+    """Return the name of the variable d(of)/d(by) in an FMU of `lagc --along`; `of` is a state, der(STATE) or an output."""
     return f"der({of[4:-1]}.by.{by})" if of.startswith("der(") else f"{of}.by.{by}"
 
 
 def words_for(by):
-    """For lagc, which derives them so."""
+    """Return the arguments of lagc that add the variational equations for these names."""
     return [word for name in by for word in ("--along", name)]
 
 
 class Point:
-    """An FMU that is started again and again at a point; by: names, the derivatives by which are variables of their own, which are not listed."""
+    """
+    An FMU that is restarted repeatedly at a point.
+
+    The lists `states`, `derivatives`, `settable` and `outputs` leave out the sensitivities NAME.by.PARAMETER, where `by` lists the parameters.
+    """
 
     def __init__(self, model, description, values, by=(), messages=()):
-        """messages: what the model logs."""
+        """`values` by name are set at each start; `messages` is the list to which the model logs."""
         self.model, self.values, self.messages = model, values, messages
-        self.in_series = None  # the same in co-simulation, where the derivatives are in its series and it stops at events
+        self.in_series = None  # the Point of the same system in co-simulation with sensitivities as states, which stops at events
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         self.names = {reference: name for name, reference in self.references.items()}
         outputs = [v.name for v in description.modelVariables if v.causality == "output"]
@@ -56,20 +60,29 @@ class Point:
         return np.array(self.model.getReal([self.references[name] for name in names])) if names else np.empty(0)
 
     def given(self, names, states, values=None):
-        """What these started at, a list, where values by name were set and made these states; a state: before constraints moved it."""
+        """
+        Return the start values of the variables `names`, a list, after a start with `values` that gave `states`.
+
+        For a state this is the value before initialization moved it onto the constraints.
+        """
         known = self.values | (values or {})
         read = dict(zip(names, self.read(names)))
         return [known[name] if name in known else self._unmoved(name, read[name], known, states) if name in self.states else read[name] for name in names]
 
     def _unmoved(self, name, moved, values, states):
-        """What has to be set for the same start: what modelDescription.xml tells, or, where that follows parameters, what was found."""
+        """
+        Return the value of a state that leads to the same start.
+
+        The candidates are the start value of modelDescription.xml, and `moved`, the value after initialization, for a start value that depends
+        on parameters. Raise Problem if neither reproduces `states`.
+        """
         for value in (self.starts[name], moved):
             if np.allclose(self.start(values=values | {name: value}), states, rtol=1e-9, atol=1e-12):
                 return value
         raise Problem(f"the start value of '{name}' follows parameters, and constraints move it; expected a value for it by start_values")
 
     def start(self, states=None, values=None):
-        """The states that initialization makes of those, and of values by name."""
+        """Initialize the FMU at `states` and `values` by name; return the states after initialization."""
         values = self.values | (values or {}) | (dict(zip(self.states, states)) if states is not None else {})
         self.model.start_over()
         if values:
@@ -79,15 +92,17 @@ class Point:
         return self._go_on()
 
     def _go_on(self):
-        """From event mode; the states."""
+        """Leave event mode for continuous-time mode; return the states."""
         self.model.newDiscreteStates()
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
 
     def held(self, at, states):
         """
-        The nearest states to these that fulfil the constraints, among them the contacts that are closed and the frictions that stick in the states `at`; None
-        where one of these does not stay so. Initialization keeps fixed coordinates, event mode moves them too, but what else can switch may do so there.
+        Project `states` onto the constraints, among them the contacts that are closed and the friction that sticks at the states `at`.
+
+        Return None if a closed contact opens or sticking friction slides. Event mode does the projection, since it moves fixed coordinates, too.
+        In a system with event indicators and without such constraints initialization does it, since event mode may change other modes.
         """
         self.start(at)
         constraining = self.constraining()
@@ -99,28 +114,29 @@ class Point:
         return moved if self.constraining() == constraining else None
 
     def constraining(self):
-        """The contacts that are closed and the frictions that stick, by name."""
+        """Return the names of the closed contacts and of the sticking friction."""
         modes = dict(zip([*self.numbers, *self.switches], self.modes()))
         return [name.removesuffix(end) for name, mode in modes.items() for end, rest in RESTS.items() if name.endswith(end) and mode == rest]
 
     def modes(self):
-        """Of what switches; the same list where that does the same."""
+        """Return the values of all mode variables, in the order of `numbers` and `switches`."""
         numbers, switches = ([self.references[name] for name in names] for names in (self.numbers, self.switches))
         return [*(self.model.getReal(numbers) if numbers else ()), *(self.model.whole_numbers(switches) if switches else ())]
 
     def differing(self, modes, others):
-        """The names of those that are not the same."""
+        """Return the names of the mode variables whose values differ."""
         return [name for name, mode, other in zip([*self.numbers, *self.switches], modes, others) if mode != other]
 
     def set_states(self, states):
-        """In the order of `states`."""
+        """Set the continuous states, in the order of `self.states`."""
         self.model.set_states(np.ascontiguousarray(states, dtype=float))
 
     def indicators(self):
-        """What changes its sign at events."""
+        """Return the event indicators."""
         return self.model.indicators(self.indicator_count) if self.indicator_count else np.empty(0)
 
     def jacobian(self, unknowns, knowns):
+        """Return the matrix d(unknowns)/d(knowns), by a directional derivative for each known."""
         references = [self.references[name] for name in unknowns]
         columns = [self.model.getDirectionalDerivative(references, [self.references[name]], [1.0]) for name in knowns] if unknowns else []
         return np.array(columns).T.reshape(len(unknowns), len(knowns))
@@ -128,7 +144,7 @@ class Point:
 
 @contextmanager
 def _opened(fmu, description, in_series, messages):
-    """The FMU as a model, which appends what it logs to the messages."""
+    """Extract and instantiate the FMU; yield a model that appends its log messages to the list `messages`."""
     folder = extract(str(fmu))
     kind = {("2.0", False): Model2, ("2.0", True): Slave2, ("3.0", False): Model3, ("3.0", True): Slave3}[description.fmiVersion, in_series]
     try:
@@ -154,9 +170,12 @@ def _check_abilities(fmu, description, adjoint):
 @contextmanager
 def opened(system, values, method=None, what="be linearized there", adjoint=False, by=(), stops_at_events=False, messages=None, in_steps=False):
     """
-    The Point of an FMU, or of a system that is built for it, with values by name; what it cannot do is a Problem. It has directional derivatives,
-    as FMI 2.0 has them, or adjoint ones, of FMI 3.0; or it is in co-simulation, with the derivatives by these names as variables, of FMI 3.0 where
-    it is to stop at events; or in co-simulation without derivatives, in_steps. messages: those of another one, to which what it logs is appended.
+    Yield the Point of an FMU, or of a system, which is built first, with `values` by name.
+
+    By default it is in model exchange with the directional derivatives of FMI 2.0, or, if `adjoint`, with the adjoint derivatives of FMI 3.0.
+    With `by` it is in co-simulation and has the sensitivities to these names as variables; if `stops_at_events`, it is of FMI 3.0.
+    If `in_steps`, it is in co-simulation without derivatives. The list `messages` receives its log messages.
+    Raise Problem if the FMU lacks these abilities or fails; the text of a failure contains "cannot" and `what`.
     """
     messages = [] if messages is None else messages
     words = ADJOINT if adjoint else words_for(by)

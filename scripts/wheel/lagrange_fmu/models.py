@@ -1,4 +1,4 @@
-"""FMUs in model exchange, of FMI 2.0 and 3.0, and in co-simulation, with the same calls."""
+"""Wrap FMUs of FMI 2.0 and 3.0, in model exchange and in co-simulation, so that all have the same calls."""
 
 from ctypes import POINTER, c_double
 
@@ -14,16 +14,20 @@ from fmpy.fmi2 import (
 )
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
-DISCARD = 2  # fmi3Discard; what is less is no problem
+DISCARD = 2  # fmi3Discard; lower values of fmi3Status are OK and Warning
 
 
 def numbers_of(values):
-    """The argument of a function of C."""
+    """Return a pointer to the values of a contiguous array of float64, as an argument of a C function."""
     return values.ctypes.data_as(POINTER(c_double))
 
 
 class Model:
-    """Has the calls of FMPy's model too, which cannot be inherited from: FMPy tells by the module of the class which C functions it has."""
+    """
+    Wrap a model of FMPy and delegate all other calls to it.
+
+    Inheritance does not work: FMPy chooses the C functions by the module in which the class of the model is defined.
+    """
 
     def __init__(self, **options):
         self.fmu = self.kind(**options)
@@ -34,7 +38,7 @@ class Model:
 
 class _Model2(Model):
     def begin(self, messages):
-        """Instantiates it; what it logs is appended to the list."""
+        """Instantiate the FMU; append its log messages to the list `messages`."""
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: messages.append(words[4].decode()))
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
@@ -62,7 +66,7 @@ class Model2(_Model2):
 
 
 class Slave2(_Model2):
-    """In co-simulation, which knows no modes of model exchange."""
+    """An FMU of FMI 2.0 in co-simulation, which has no event mode and no continuous-time mode: these calls do nothing."""
 
     kind = FMU2Slave
     start_time, tolerance = 0.0, None
@@ -79,10 +83,10 @@ class Slave2(_Model2):
 
 
 class _Model3(Model):
-    options = {}  # of an instance
+    options = {}  # further arguments of instantiate()
 
     def begin(self, messages):
-        """Instantiates it; the problems that it logs are appended to the list."""
+        """Instantiate the FMU; append its log messages of status Discard and worse to the list `messages`."""
 
         def log(environment, status, category, message):
             if status >= DISCARD:
@@ -118,12 +122,12 @@ class Model3(_Model3):
         return values
 
     def adjoint(self, unknowns, knowns, seed):
-        """seed^T d unknowns / d knowns, as an array."""
+        """Return the adjoint derivative seed^T d(unknowns)/d(knowns), an array with an element for each known."""
         return np.array(self.getAdjointDerivative(unknowns, knowns, seed, len(knowns)))
 
 
 class Slave3(_Model3):
-    """In co-simulation, which ends its steps at events."""
+    """An FMU of FMI 3.0 in co-simulation with event mode and early return: it ends its steps at events."""
 
     kind = FMU3Slave
     options = {"eventModeUsed": True, "earlyReturnAllowed": True}

@@ -1,4 +1,4 @@
-"""Pages in which the FMU of a system runs."""
+"""Write pages in which the FMU of a system runs."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ LABORATORY = Path(__file__).parent / "live_page" / "laboratory.wasm"
 
 
 def editor(system, output=None):
-    """Writes the page in which the system can be changed; returns its path."""
+    """Write the page in which the system can be changed; return its path."""
     if is_fmu(system):
         raise Problem(f"{system} is an FMU; to edit it expected the system.xml that it was made of")
     file = system_file(system)
@@ -22,6 +22,7 @@ def editor(system, output=None):
 
 
 def live(system, output=None, edit=False):
+    """See lagrange_fmu.live."""
     if edit:
         return editor(system, output)
     keep_what_zig_compiles()

@@ -1,4 +1,4 @@
-"""The reference of the language, and what it says about a word."""
+"""Search the reference of the language for a word."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,11 @@ REFERENCE = Path(__file__).resolve().parent / "reference.md"
 
 
 def about(word, text):
-    """The headings, each with its paragraphs and tables' rows that have the word; an example follows what it is one of."""
+    """
+    Return the paragraphs and rows of tables that contain the word, each group under its heading.
+
+    A code block directly after such a paragraph is its example and is returned, too.
+    """
     found, heading, shown, follows = [], None, None, False
     for block in re.split(r"\n{2,}(?![^`]*\n```(?:\n|$))", text):
         if block.startswith("#"):
@@ -28,6 +32,7 @@ def about(word, text):
 
 
 def words(word=None):
+    """See lagrange_fmu.words."""
     text = REFERENCE.read_text(encoding="utf-8")
     if word is None:
         return text

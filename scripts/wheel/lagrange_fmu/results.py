@@ -1,4 +1,4 @@
-"""What a simulation returns."""
+"""Hold the result of a simulation, with its plot, animation and table."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ if TYPE_CHECKING:
 
 
 class Animation:
-    """A page that plays a motion in any browser, and in Jupyter; `page` is its text."""
+    """A page that plays a motion in any browser and in Jupyter; `page` is its HTML."""
 
     def __init__(self, page: str):
         self.page = page
 
     def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page and return its path."""
         return write_whole(path, self.page)
 
     def _repr_html_(self) -> str:
@@ -29,13 +30,18 @@ class Animation:
 
 
 class Result(np.ndarray):
-    """A structured array: result["time"], in s, and result[NAME], in the units of `description`; a picture of itself in Jupyter."""
+    """
+    A structured array with the fields "time", in s, and the recorded variables, in the units of `description`.
 
-    description: Any  # FMPy's ModelDescription; None where it is no whole motion
-    motion: Any  # all that was simulated, likewise
+    result[NAME] is a plain NumPy array. Jupyter shows the result as a plot.
+    """
+
+    description: Any  # ModelDescription of FMPy; None if the array is not made of a motion
+    motion: Any  # the simulation.Motion; likewise None
 
     @classmethod
     def of(cls, motion: Any) -> Result:
+        """Return the Result of a simulation.Motion."""
         result = motion.outputs.view(cls)
         result.description, result.motion = motion.description, motion
         return result
@@ -56,7 +62,23 @@ class Result(np.ndarray):
         return found.view(np.ndarray) if isinstance(key, str) else found
 
     def plot(self) -> Figure:
-        """A figure of matplotlib with an axis for each unit, which Jupyter shows; needs pip install lagrange-fmu[plot]."""
+        """
+        Plot all variables over time, with a panel for each unit and size.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Jupyter shows it.
+
+        Raises
+        ------
+        Problem
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> motion.plot().savefig("motion.png")
+        """
         from .problem import Problem
         from .simulation import event_times, figure_of
 
@@ -67,7 +89,23 @@ class Result(np.ndarray):
             raise Problem("matplotlib is not installed; it comes with pip install matplotlib") from None
 
     def animate(self) -> Animation:
-        """The whole motion as a page, which Jupyter shows; save(PATH) writes it for any browser."""
+        """
+        Return a page that plays the whole motion.
+
+        Returns
+        -------
+        Animation
+            Jupyter shows it; save(PATH) writes it for any browser.
+
+        Raises
+        ------
+        Problem
+            If the system has no particles, bodies, frames or points.
+
+        Examples
+        --------
+        >>> motion.animate().save("motion.html")
+        """
         from .live_page.description import scene_of
         from .live_page.page import page_of_motion
         from .problem import Problem
@@ -77,7 +115,23 @@ class Result(np.ndarray):
         return Animation(page_of_motion(self.motion.tree, self.motion.values, self.motion.start))
 
     def to_pandas(self) -> Any:
-        """A DataFrame with time, in s, as its index; needs pip install pandas."""
+        """
+        Return a DataFrame with the time, in s, as its index.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A column for each variable.
+
+        Raises
+        ------
+        Problem
+            If pandas is not installed.
+
+        Examples
+        --------
+        >>> motion.to_pandas()["theta"].max()
+        """
         from .problem import Problem
 
         try:

@@ -1,4 +1,4 @@
-"""Simulating systems that need not be built yet."""
+"""Simulate systems, which are built first, and FMUs."""
 
 import os
 import tempfile
@@ -18,7 +18,11 @@ def is_fmu(path):
 
 @contextmanager
 def fmu_of(system, folder=None, method=None, fmi=None, words=()):
-    """The FMU of a system, built into the folder, or for a while where there is none, with these words for lagc; an FMU as it is."""
+    """
+    Yield the path of the FMU of a system; an FMU is yielded as it is.
+
+    The system is built into `folder`, or into a temporary folder that exists until the context ends. `words` are further arguments of lagc.
+    """
     if is_fmu(system):
         if method is not None or fmi is not None:
             raise Problem(f"{system} is built already, with its solver and version of FMI; expected a system to choose them for")
@@ -29,7 +33,7 @@ def fmu_of(system, folder=None, method=None, fmi=None, words=()):
 
 
 def motion_of(system, start_values=None, folder=None, /, input=None, solver=None, fmi=None, step=None, tolerance=None, **options):
-    """The Motion of a system or FMU; `input` may be the path of a CSV; options are those of simulate()."""
+    """Return the Motion of a system or FMU; `input` may be the path of a CSV. The options are those of simulation.simulate."""
     options |= {name: value for name, value in (("output_interval", step), ("relative_tolerance", tolerance)) if value is not None}
     with fmu_of(system, folder, solver, fmi) as fmu:
         signals = read_input(input, units_of(described(fmu))) if isinstance(input, (str, os.PathLike)) else input
@@ -37,4 +41,5 @@ def motion_of(system, start_values=None, folder=None, /, input=None, solver=None
 
 
 def run(system, start_values=None, folder=".", /, **words):
+    """See lagrange_fmu.run."""
     return write_motion(lambda: motion_of(system, start_values, folder, **words), Path(folder))

@@ -1,7 +1,11 @@
 """
-Derivatives through events. Of a neighbouring motion, which meets the event a little earlier or later and elsewhere, what follows is compared at the
-same time (M. A. Aizerman, F. R. Gantmacher: Determination of stability by linear approximation of a periodic solution of a system of differential
-equations with discontinuous right-hand sides, 1958). What the event makes of neighbours is seen by differences of fourth order, in the FMU itself.
+Compute the saltation matrix, by which derivatives of a motion jump at an event.
+
+A neighbouring motion x + s d meets the event later by the delay t(s), at another state, and leaves it at x+(s). Compared at the same time, the
+derivative after the event is s+ = dx+/ds - f+ dt/ds, where f+ are the rates after the event (M. A. Aizerman, F. R. Gantmacher: Determination of
+stability by linear approximation of a periodic solution of a system of differential equations with discontinuous right-hand sides, 1958).
+The FMU itself handles the events of neighbours; finite differences of fourth order give dx+/ds and dt/ds. The secant method finds the delay.
+The step shrinks until rules of second and fourth order agree. Each direction costs four events for each step that is tried.
 """
 
 import itertools
@@ -13,22 +17,26 @@ from scipy.optimize import brentq
 from .differences import CENTRAL, difference, relevant, rules_within
 from .problem import Problem
 
-STEP = 1e-3  # of differences at first, as a share of the states and parameters
-SHRINKING = 0.1  # of that, where it turns out too long
-SHORTEST_OF_STATES, SHORTEST_OF_PARAMETERS = 1e-11, 1e-2  # of that
-ROUGH, UNKNOWN = 1e-5, 1e-2  # relative, what second order may be off in a step that is short enough; and where there is no derivative
-ROUNDING = 1e-16  # relative, of states and times
-TINY = 1e-300  # more than 0
-PAST = 1e-12  # s, by which an event is passed when it is handled, in units of the time where that is more than 1 s
-AT_ONCE = 1e-9  # s, likewise, within which events are not told apart
-ROUNDS = 100  # of an event
-AWAY = 1e-6  # of the states, by which constraints are left
-EARLY = 1e-2  # of the flight before an event
-TRIALS, NEAR, CONVERGED = 30, 1e-16, 1e-13  # for the time of a neighbour's event; s, likewise; relative
+STEP = 1e-3  # first step of differences, relative to states and parameters
+SHRINKING = 0.1  # factor of the next step after one that is too long
+SHORTEST_OF_STATES, SHORTEST_OF_PARAMETERS = 1e-11, 1e-2  # shortest step, relative to the first one
+ROUGH, UNKNOWN = 1e-5, 1e-2  # relative difference of second and fourth order: below ROUGH a step is short enough; above UNKNOWN there is no derivative
+ROUNDING = 1e-16  # relative rounding error of states and times
+TINY = 1e-300  # avoids divisions by 0
+PAST = 1e-12  # delay after a crossing at which the event is handled, in s; relative to the time after 1 s
+AT_ONCE = 1e-9  # events closer together than this count as simultaneous, in s; relative to the time after 1 s
+ROUNDS = 100  # iterations of event mode at most
+AWAY = 1e-6  # relative and absolute perturbation of the states that violates constraints
+EARLY = 1e-2  # share of the flight before an event by which constraints are applied earlier
+TRIALS, NEAR, CONVERGED = 30, 1e-16, 1e-13  # iterations of the secant method; its tolerances: in s, relative to the time after 1 s, and relative to the delay
 
 
 def crossing_of(indicators, begin, end):
-    """The first time at which one of these changes its sign, and which; None where none does. indicators(time): an array."""
+    """
+    Locate the first change of sign of an event indicator between two times by Brent's method; indicators(time) returns an array.
+
+    Return the time just after it and the index of the indicator, or None. Raise Problem if several events are simultaneous.
+    """
     first, last = indicators(begin), indicators(end)
     crossing = np.flatnonzero(np.sign(first) * np.sign(last) < 0)
     if len(crossing) == 0:
@@ -42,14 +50,19 @@ def crossing_of(indicators, begin, end):
 
 
 class OtherModes(Problem):
-    """What neighbours of a motion do behind an event."""
+    """Neighbouring motions enter other modes at an event, so that the motion has no derivative."""
 
 
 class Saltation:
-    """An event of a motion, at a time just past it, in an FMU that is placed there and has not handled it yet."""
+    """
+    An event of a motion.
+
+    `time` is just after the crossing of the event indicator `indicator`, and `state` the state there before the event is handled. `saved` is an
+    FMU state before the event, `rates` are the rates before it, and `level` is the indicator's value at `time`.
+    """
 
     def __init__(self, motion, time, state, before, indicator, inputs):
-        """before: a time and state at which the event was not due yet."""
+        """Handle the event once to find the modes after it; `before` is a time and a state at which the event is not due yet."""
         self.motion, self.model, self.point, self.inputs = motion, motion.model, motion.point, inputs
         self.time, self.state, self.before, self.indicator = time, state, before, indicator
         motion.place(*before, inputs)
@@ -68,7 +81,7 @@ class Saltation:
             self.own = self.by_constraints(state)
 
     def moves_onto_constraints(self):
-        """Whether states that are a little off are moved, before the event."""
+        """Return True if event mode before the event moves perturbed states, that is, if the system has constraints there."""
         time, state = self.before
         off = state * (1 + AWAY) + AWAY
         self.motion.place(time, off, self.inputs)
@@ -79,7 +92,7 @@ class Saltation:
             return True
 
     def along(self, delay, state, span):
-        """The state so much later, by a step of the classical Runge-Kutta method."""
+        """Return the state after a further time `span` from `state` at self.time + delay, by one step of the classical Runge-Kutta method."""
 
         def rates(share, state):
             self.motion.place(self.time + delay + share * span, state, self.inputs)
@@ -92,8 +105,9 @@ class Saltation:
 
     def by_constraints(self, state):
         """
-        By what they move a neighbour, on its way to the event: there they would undo the event, or bring it about. What fulfils them is not moved, whose
-        way there is its way back.
+        Return the displacement at the event by which the constraints move a neighbouring state.
+
+        A projection at the event could undo or trigger it. The neighbour therefore goes back in time by `self.back`, is projected there, and returns.
         """
         delay = self.delay_of(state)
         early = self.along(delay, state + delay * self.rates, -self.back)
@@ -101,7 +115,7 @@ class Saltation:
         return self.along(delay - self.back, self.update(), self.back) - (state + delay * self.rates)
 
     def update(self):
-        """What the event makes of the present state."""
+        """Iterate event mode at the present state until no further iteration is needed; return the states after it."""
         self.model.enterEventMode()
         for _ in range(ROUNDS):
             is_needed, ends, *_ = self.model.newDiscreteStates()
@@ -113,11 +127,12 @@ class Saltation:
         return self.point.read(self.point.states)
 
     def value_at(self, state, delay):
+        """Return the event indicator at a state that has moved for a time `delay`."""
         self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
         return self.point.indicators()[self.indicator]
 
     def delay_of(self, state):
-        """By how much later the event comes from a neighbouring state."""
+        """Return the delay of a neighbour's event in s, by the secant method. Raise Problem at a grazing event, which some neighbours miss."""
         unit = max(1.0, abs(self.time))
         known, value, delay = 0.0, self.value_at(state, 0.0), 1e-6 * unit
         for _ in range(TRIALS):
@@ -130,7 +145,11 @@ class Saltation:
         return delay
 
     def neighbour(self, shift, changes):
-        """The state behind the event, and the delay, of a neighbour whose state is shifted, with parameters changed: by reference, by how much."""
+        """
+        Return the state after the event followed by the delay, of a neighbour whose state is shifted.
+
+        `changes` has the changes of parameters by reference. Raise Problem if the event fails, or leads to other modes.
+        """
         self.model.setFMUState(self.saved)
         if changes:
             values = np.array(self.model.getReal([*changes])) + [*changes.values()]
@@ -155,34 +174,39 @@ class Saltation:
         return np.append(after, delay)
 
     def what_differs(self, names, by):
+        """Return the message for a neighbour whose modes with these names differ after the event."""
         quoted = ", ".join(f"'{name}'" for name in names)
         if {*names} <= {*self.point.numbers}:
             return f"the event at {self.time:g} s gives {quoted} another number {by}for neighbours, however near: derivatives by what modes hold are not known, even where nothing depends on it; expected a system without that mode, or a stop time before the event"
         return f"the event at {self.time:g} s leads some neighbours into other modes than this motion, of {quoted}, so that there is no derivative {by}through it; expected other values, or a stop time before it"
 
     def sizes_of(self, acting):
+        """Return the magnitudes of parameters by reference, 1 for zeros."""
         return {reference: abs(value) or 1.0 for reference, value in zip(acting, self.model.getReal(acting) if acting else ())}
 
     def rule_of(self, reference, step):
+        """Return the difference rule whose points lie within the limits of a parameter."""
         self.model.setFMUState(self.saved)
         (value,) = self.model.getReal([reference])
         return rules_within(value, step, self.point.limits[self.point.names[reference]])[0]
 
     def change_along(self, direction):
-        """By how much the state behind the event, and the delay, change along the direction."""
+        """Return the directional derivative of the state after the event and of the delay."""
         step = STEP * min(np.maximum(abs(self.state), 0.1) / np.maximum(abs(direction), TINY))
         return self.change(lambda length: self.neighbour(length * direction, {}), lambda step: CENTRAL, step, SHORTEST_OF_STATES)
 
     def change_by(self, reference):
-        """Likewise by a parameter."""
+        """Return the derivative of the state after the event and of the delay by a parameter."""
         self.model.setFMUState(self.saved)
         still, step = np.zeros_like(self.state), STEP * self.sizes_of([reference])[reference]
         return self.change(lambda length: self.neighbour(still, {reference: length}), lambda step: self.rule_of(reference, step), step, SHORTEST_OF_PARAMETERS)
 
     def change(self, function, rule_of, step, shortest):
         """
-        The derivative of function(length) in steps that are as short as the motion asks for: what bounces by micrometres has no other neighbours. Those
-        are short enough in which second order says the same.
+        Return the derivative of function(length) at 0.
+
+        The step shrinks from `step` to `shortest` times it, until differences of second and fourth order agree to ROUGH. Bounces of micrometres
+        need such short steps. Raise Problem if they do not agree to UNKNOWN.
         """
         best, problem, shortest = None, None, shortest * step
         while step > 0.5 * shortest:
@@ -207,7 +231,7 @@ class Saltation:
         return best[1]
 
     def change_anything(self, acting):
-        """Whether the event is another one with these parameters changed."""
+        """Return True if changing all these parameters together changes the event."""
         self.model.setFMUState(self.saved)
         steps = {reference: STEP * size for reference, size in self.sizes_of(acting).items()}
         ends = {reference: self.rule_of(reference, step)[-1][0] * step for reference, step in steps.items()}
@@ -218,7 +242,11 @@ class Saltation:
             return True
 
     def pass_over(self, slopes, acting):
-        """Leaves the FMU behind the event. Returns its state there, and the slopes of that; acting: of each slope, the parameters that change with it."""
+        """
+        Handle the event in the FMU; return the state after it and its derivatives.
+
+        `slopes` are the derivatives before the event, a row each; `acting` has for each row the references of the parameters that vary with it.
+        """
         try:
             return self._pass_over(slopes, acting)
         finally:

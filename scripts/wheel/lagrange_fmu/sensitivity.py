@@ -1,4 +1,11 @@
-"""Motions with their derivatives by start values, parameters and inputs, by the variational equations, for which the FMU gives directional derivatives."""
+"""
+Integrate a motion and its derivatives by start values, parameters and inputs, with SciPy.
+
+For x' = f(t, x, p) the sensitivities s = dx/dp satisfy the variational equations s' = (df/dx) s + df/dp. The FMU evaluates the right-hand side as
+an exact directional derivative. Finite differences through initialization give s at the start. At an event s jumps by the saltation matrix, see
+saltation.py. Each evaluation costs one directional derivative for each parameter (E. Hairer, S. Norsett, G. Wanner: Solving ordinary
+differential equations I, section I.14).
+"""
 
 import numpy as np
 
@@ -14,13 +21,13 @@ from fmpy.fmi1 import FMICallException
 from .differences import relevant, rules_within
 from .saltation import Saltation, crossing_of
 
-LOOKS = 8  # at what events look at, in a step
+LOOKS = 8  # intervals of a step in which the event indicators are compared; a double crossing within one is missed
 STEP = 1e-3  # relative, of differences through initialization
-AWAY = 1e-3  # of the states, by which constraints are left
+AWAY = 1e-3  # relative and absolute perturbation of the states that violates constraints
 
 
 class Start:
-    """Initialization at values by name, and at those around them."""
+    """Initialization at values by name and at neighbouring values, for the derivatives of the start by the names `by`."""
 
     def __init__(self, point, by, values):
         self.point, self.values = point, values
@@ -30,12 +37,12 @@ class Start:
         self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
 
     def found(self, values):
-        """The states; the modes; and on which side of each event it begins."""
+        """Return the states, the modes, and the signs of the event indicators after initialization at these values."""
         states = self.point.start(values=values)
         return states, self.point.modes(), np.sign(self.point.indicators())
 
     def changed(self, steps):
-        """What is found with so many steps by name; None where it cannot start so."""
+        """Return what found() does, with the values changed by steps[name] steps; None if the FMU cannot start there."""
         try:
             return self.found(self.values | {name: self.at[name] + count * self.step[name] for name, count in steps.items()})
         except FMICallException:
@@ -43,12 +50,12 @@ class Start:
             return None
 
     def changes(self, names):
-        """Whether anything does, with all of these."""
+        """Return True if changing all these values together changes the start."""
         found = self.changed({name: self.rules[name][0][-1][0] for name in names})
         return found is None or (found[0] != self.states).any() or found[1] != self.modes or (found[2] != self.sides).any()
 
     def slope_by(self, name):
-        """On both sides, or on one where it cannot start on the other."""
+        """Return the derivative of the states by a value, by a central difference, or a one-sided one where only one side can start."""
         why = "from no value beside it the motion starts"
         for rule in self.rules[name]:
             found = [self.changed({name: count}) for count, _ in rule]
@@ -67,7 +74,7 @@ class Start:
 
 
 def start_slopes(point, by, values):
-    """The states that initialization makes of values by name, and their derivatives by each of these names, a row each."""
+    """Initialize at `values`; return the n states and their derivatives, with a row for each name of `by`: (len(by), n)."""
     start = Start(point, by, values)
     moving = {*relevant(start.changes, [name for name in by if name not in point.states])}
     slopes = [start.slope_by(name) if name in moving or name in point.states else np.zeros_like(start.states) for name in by]
@@ -75,12 +82,16 @@ def start_slopes(point, by, values):
 
 
 def acting_of(point, by):
-    """Of each of these names what acts along the motion: a start value acts through the start alone."""
+    """Return, for each name, the list of references that act along the motion: empty for a state, which acts through the start alone."""
     return [[] if name in point.states else [point.references[name]] for name in by]
 
 
 class Motion:
-    """A motion from values by name, of an opened FMU, with its derivatives by some of these."""
+    """
+    A motion of the variables `of` of an FMU, with its derivatives by the names `by`.
+
+    The integrated vector `both` holds the n states, followed by their derivatives by each name of `by`: n (1 + len(by)) numbers.
+    """
 
     def __init__(self, point, of, by, tolerance):
         self.point, self.model, self.of, self.by, self.tolerance = point, point.model, list(of), list(by), tolerance
@@ -89,9 +100,10 @@ class Motion:
         self.rate_references = [reference[name] for name in point.derivatives]
         self.read_references = [reference[name] for name in self.of]
         self.acting = acting_of(point, self.by)
-        self.hidden = {reference[name]: place for place, name in enumerate(point.states) if name not in point.outputs}  # states that are no unknowns of FMI
+        self.hidden = {reference[name]: place for place, name in enumerate(point.states) if name not in point.outputs}  # index of states that FMI does not count as unknowns
 
     def place(self, time, state, inputs):
+        """Set time, states and inputs of the FMU."""
         self.model.setTime(time)
         self.point.set_states(state)
         if inputs is not None:
@@ -99,11 +111,12 @@ class Motion:
             self.model.setReal([self.point.references[name] for name in names], values)
 
     def along(self, unknowns, slopes):
-        """The derivatives of unknowns by each of what this motion is differentiated by; slopes: those of the states, one row each."""
+        """Return the derivatives of the unknowns, a row for each name of `by`; `slopes` has those of the states, likewise."""
         columns = [self.model.getDirectionalDerivative(unknowns, [*self.state_references, *acting], [*slope, *[1.0] * len(acting)]) for acting, slope in zip(self.acting, slopes)]
         return np.array(columns)
 
     def rates(self, time, both, inputs):
+        """Return the right-hand side of the motion and of its variational equations."""
         count = len(self.state_references)
         self.place(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
@@ -111,17 +124,21 @@ class Motion:
         return np.concatenate([values, self.along(self.rate_references, slopes).ravel()]) if self.by else np.array(values)
 
     def jacobian(self, time, both, inputs):
-        """Of the rates; without that of the slopes by the states, which are alone then: corrections converge in a few rounds more."""
+        """
+        Return the block-diagonal approximation of the derivative of rates(), with df/dx in each block.
+
+        It leaves out the derivatives of the sensitivities' rates by the states. Newton's iteration takes a few more iterations for it.
+        """
         count = len(self.state_references)
         self.place(time, both[:count], inputs)
         return np.kron(np.eye(len(both) // count), self.point.jacobian(self.point.derivatives, self.point.states))
 
     def start(self, values):
-        """The states that initialization makes of these values, and their derivatives."""
+        """Return the vector `both` after initialization at these values."""
         return np.concatenate([part.ravel() for part in start_slopes(self.point, self.by, values)])
 
     def read(self, time, both, inputs):
-        """Values and derivatives of what is asked for."""
+        """Return the values of the variables `of`, and their derivatives, (len(of), len(by))."""
         count = len(self.state_references)
         self.place(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
@@ -133,12 +150,16 @@ class Motion:
         return values, np.array([derivatives[reference] for reference in self.read_references if self.by]).reshape(len(values), len(self.by))
 
     def over(self, times, values=None, inputs=None, kinks=()):
-        """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, smooth between the kinks."""
+        """
+        Return the values at n times, n x of, and the derivatives, n x of x by. The motion starts at the first time.
+
+        inputs(time) returns names and values, which are smooth between the times `kinks`.
+        """
         both = self.start(values or {})
         return as_arrays([self.read(times[0], both, inputs), *self.go_on(times[0], both, times[1:], inputs, kinks)])
 
     def go_on(self, begin, both, times, inputs=None, kinks=()):
-        """From there to these times: of each the values and derivatives."""
+        """Continue from the state `both` at the time `begin`; return a row of values and derivatives for each of the times."""
         due, rows = [*times], []
         for end in [*kinks, *times[-1:]]:
             while begin < end:
@@ -146,7 +167,11 @@ class Motion:
         return rows
 
     def follow(self, begin, both, end, inputs, due, rows):
-        """To the end, or through the next event. Returns the time and the state behind it; adds rows for the times that were due."""
+        """
+        Integrate to the end, or through the next event; return the time and the state after it.
+
+        Append rows for the reached times of `due`, and remove these from it.
+        """
         steps = Steps(lambda time, both: self.rates(time, both, inputs), lambda time, both: self.jacobian(time, both, inputs), (begin, end), both, self.tolerance, "the motion cannot be followed", obstacle=lambda time, both: self.obstacle(time, both, inputs))
         self.begin_phase(begin)
         while steps.take():
@@ -162,7 +187,11 @@ class Motion:
         return end, steps.solver.y
 
     def obstacle(self, time, both, inputs):
-        """What makes steps of systems with constraints come to nearly nothing, whose states would be wrong behind it; None of others."""
+        """
+        Return the cause of stagnation as a text: a singular configuration of the constraints, behind which states would be wrong.
+
+        Return None for a system without constraints, or with event indicators.
+        """
         state = both[: len(self.state_references)]
         self.place(time, state * (1 + AWAY) + AWAY, inputs)
         is_held, _ = self.model.completedIntegratorStep()
@@ -176,13 +205,13 @@ class Motion:
         )
 
     def begin_phase(self, time):
-        """Of smooth motion, of which each step is added next: those may note it who go back."""
+        """Note the begin of a phase of smooth motion, whose steps follow by add_step(); for subclasses that follow the motion back."""
 
     def add_step(self, end, dense):
-        """dense: the states within it."""
+        """Note a step that ends at `end`; dense(time) interpolates the states in it."""
 
     def event_in(self, dense, solver, inputs):
-        """Its time and the number of its indicator; None for none."""
+        """Return the time of the first event in the solver's last step and the index of its indicator; None if there is no event."""
         if self.point.indicator_count == 0:
             return None
         count = len(self.state_references)
@@ -195,12 +224,14 @@ class Motion:
         return next((event for event in (crossing_of(indicators, *part) for part in zip(looks, looks[1:])) if event), None)
 
     def saltation(self, event, dense, before, inputs):
+        """Return the Saltation of an event, (time, index), in a step that begins at the time `before`."""
         count = len(self.state_references)
         time, indicator = event
         early = (before + time) / 2
         return Saltation(self, time, dense(time)[:count], (early, dense(early)[:count]), indicator, inputs)
 
     def pass_over(self, event, dense, before, inputs):
+        """Handle an event; return the vector `both` after it."""
         count = len(self.state_references)
         slopes = dense(event[0])[count:].reshape(len(self.by), count)
         state, slopes = self.saltation(event, dense, before, inputs).pass_over(slopes, self.acting)
@@ -208,7 +239,7 @@ class Motion:
 
 
 def as_arrays(rows):
-    """Of values and derivatives at each time: n x of, and n x of x by."""
+    """Return arrays, n x of and n x of x by, of n pairs of values and derivatives."""
     values, derivatives = zip(*rows)
     return np.array(values), np.array(derivatives)
 

@@ -1,22 +1,28 @@
-"""Steps of SciPy's solvers along what may be stiff."""
+"""Integrate with SciPy, and change to an implicit method where the equations turn out stiff."""
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
 from .problem import Problem
 
-LOOK = 200  # steps, after which is asked what limits them
-TINY, CREEPING = 1e-6, 20  # of the time: steps that come to nearly nothing; so many in a row
-STABLE = 3.0  # a step over which an explicit method damps; 6 is the limit of DOP853
+LOOK = 200  # steps between two tests for stiffness, whose eigenvalues cost more than a step
+TINY, CREEPING = 1e-6, 20  # a step is tiny below this share of the time (of 1 s before 1 s); so many tiny steps in a row are stagnation
+STABLE = 3.0  # -Re(h lambda) above which the system counts as stiff; the stability limit of DOP853 is about 6
 
 
 class Steps:
-    """Of DOP853, which is fast where accuracy limits them, and of Radau's method from where stability does."""
+    """
+    Steps of DOP853 while accuracy limits them, and of Radau IIA from the time at which stability does.
+
+    The test for stiffness looks at the eigenvalues of the Jacobian over the current step.
+    """
 
     def __init__(self, rates, jacobian, span, state, tolerance, what, first_step=None, obstacle=lambda time, state: None):
         """
-        rates(time, state); jacobian(time, state): of these by the state, or near that; what: cannot be done where it fails; obstacle(time, state): what
-        makes steps come to nearly nothing there, or None.
+        Begin at span[0] with `state`.
+
+        rates(time, state) is the right-hand side, and jacobian(time, state) its derivative by the state, which may be approximate.
+        Messages of failure begin with `what`. obstacle(time, state) returns the cause of stagnation there as a text, or None.
         """
         self.rates, self.jacobian, self.end, self.what, self.count, self.tiny = rates, jacobian, span[1], what, 0, 0
         self.obstacle = obstacle
@@ -24,7 +30,7 @@ class Steps:
         self.solver = DOP853(rates, span[0], state, span[1], first_step=first_step, **self.words)
 
     def take(self):
-        """A step; False where the end is reached already."""
+        """Take a step; return False if the end was reached before. Raise Problem if the solver fails, or stagnates at an obstacle."""
         solver = self.solver
         if solver.status != "running":
             return False
@@ -38,6 +44,7 @@ class Steps:
         return True
 
     def look_for_obstacle(self):
+        """Count tiny steps in a row; raise Problem if they are a stagnation that has a known cause."""
         solver = self.solver
         is_tiny = solver.step_size < TINY * max(1.0, abs(solver.t)) and solver.status == "running"
         self.tiny = self.tiny + 1 if is_tiny else 0
@@ -46,6 +53,6 @@ class Steps:
             raise Problem(f"{self.what} beyond {solver.t:g} s: {obstacle}; expected an earlier end")
 
     def is_stiff(self):
-        """Whether it damps something within the present step."""
+        """Return True if a mode decays by more than exp(-STABLE) within the current step."""
         solver = self.solver
         return np.min((np.linalg.eigvals(self.jacobian(solver.t, solver.y)) * (solver.t - solver.t_old)).real) < -STABLE

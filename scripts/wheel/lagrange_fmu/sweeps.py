@@ -1,4 +1,4 @@
-"""Sweeps of systems that need not be built yet, and the libraries that zig compiles for them."""
+"""Sweep systems, which are built first, and FMUs, with libraries that zig compiles for this purpose."""
 
 import math
 import os
@@ -15,11 +15,15 @@ from .runtime.scripts.cross import zig
 
 PACKAGE = Path(__file__).parent
 RUNTIME = PACKAGE / "runtime"
-HOW = (PACKAGE / "ensembles.py", Path(__file__))  # the files that say how the libraries are compiled
+HOW = (PACKAGE / "ensembles.py", Path(__file__))  # files that define how the libraries are compiled; a part of their key in the cache
 
 
 def compiled(place, name, key, what, words_for):
-    """The library that zig makes by words_for(library), in a folder of its own in the place; compiled when it is needed first."""
+    """
+    Return the path of a library, in the folder place/name, which zig compiles with the arguments words_for(library).
+
+    A library whose key is in the cache is copied from it. Raise Problem, whose text begins with `what`, if the compilation fails.
+    """
     library = place / name / name
 
     def compile_library():
@@ -31,13 +35,13 @@ def compiled(place, name, key, what, words_for):
 
 
 def runner(place):
-    """What calls the FMU."""
+    """Return the path of the library that performs the runs of one FMU, one after another."""
     words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", RUNTIME / "include", RUNTIME / "scripts" / "sweep_runs.c"]
     return compiled(place, "sweep_runs", ["sweep"], "the library that runs sweeps cannot be compiled", lambda library: [*words, "-o", library])
 
 
 def ensemble_runtime(place):
-    """What runs in lanes have of the runtime of FMUs, as an object: all in one piece, once for all systems."""
+    """Return the path of the object file with the FMU runtime for runs in lanes; it is the same for all systems."""
     from .ensembles import includes, runtime_sources
 
     source, runtime = place / "ensemble_runtime.c", RUNTIME / "src" / "runtime"
@@ -48,7 +52,11 @@ def ensemble_runtime(place):
 
 
 def compile_ensemble(place, source, lanes):
-    """What runs many at once; not on Windows, where nobody has tried it."""
+    """
+    Return the path of the library that computes many runs of a system at once, in SIMD lanes; `source` is its system.c.
+
+    Return None on Windows, where this is untested.
+    """
     from .ensembles import words
 
     if os.name == "nt":
@@ -59,7 +67,7 @@ def compile_ensemble(place, source, lanes):
 
 
 def sweeping():
-    """The module, which needs pyarrow."""
+    """Import and return the module `sweeping`; raise Problem if pyarrow is missing."""
     try:
         from . import sweeping
     except ModuleNotFoundError as missing:
@@ -68,7 +76,7 @@ def sweeping():
 
 
 def sweep_by_words(system, words):
-    """By the words of sweep_words.py; returns the path of the Parquet file."""
+    """Sweep by the arguments that sweep_words.py declares; return the path of the Parquet file."""
     sweep = sweeping().sweep
     with fmu_of(system) as fmu, tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -76,7 +84,7 @@ def sweep_by_words(system, words):
 
 
 def variation(name, values, random):
-    """As sweep_words.py has it: a range as a tuple FROM, TO, COUNT, whose COUNT may be None; or a list of values."""
+    """Check a range or values; return (name, values) as sweep_words.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
     try:
         numbers = [] if isinstance(values, str) else [float(value) for value in values]
     except (TypeError, ValueError):
@@ -93,6 +101,7 @@ def variation(name, values, random):
 
 
 def sweep(system, vary, **words):
+    """See lagrange_fmu.sweep."""
     if not isinstance(vary, Mapping) or not vary:
         raise Problem(f"vary is {vary!r}; expected a dict of ranges or values by name, such as {{'l': (0.5, 2, 50), 'm': [1, 2]}}")
     return sweep_by_words(system, SimpleNamespace(vary=[variation(name, values, words["random"]) for name, values in vary.items()], **words))

@@ -1,4 +1,4 @@
-"""Expressions of SymPy in the language of system.xml."""
+"""Print expressions of SymPy in the language of system.xml."""
 
 import re
 import unicodedata
@@ -13,7 +13,7 @@ from .problem import Problem
 # Functions of the language by their names in SymPy.
 FUNCTIONS = {name: name for name in words()["function"] if isinstance(getattr(sympy, name, None), type)}
 FUNCTIONS |= {"Abs": "abs", "Min": "min", "Max": "max", "ceiling": "ceil"}
-# What follows from those.
+# Functions that the language lacks, in terms of those that it has.
 REWRITTEN = {
     sympy.sec: lambda x: 1 / sympy.cos(x),
     sympy.csc: lambda x: 1 / sympy.sin(x),
@@ -28,13 +28,13 @@ CONDITIONS = (sympy.Gt, sympy.Ge, sympy.Lt, sympy.Le, sympy.And, sympy.Or, sympy
 
 
 class Names:
-    """Valid names, each once."""
+    """Valid names of a system, each used once."""
 
     def __init__(self):
         self.taken = {*words()["function"], *words()["name"]}
 
     def add(self, text):
-        """What is nearest to it of letters, digits and _, and not taken yet: theta_1 for \\theta_{1}."""
+        """Return a free name of letters, digits and _ that resembles the text, and reserve it: theta_1 for \\theta_{1}."""
         text = "".join(map(_ascii, str(text).replace("'", "_prime")))
         text = re.sub(r"[^A-Za-z0-9_]", "_", re.sub(r"[\\{}$^]", "", text))[:150]
         name = text if re.match("[A-Za-z_]", text) else f"_{text}"
@@ -45,7 +45,7 @@ class Names:
 
 
 def _ascii(letter):
-    """A Greek letter by its name, an accented one without the accent."""
+    """Return the name of a Greek letter, another letter without its accent, or "_"."""
     if letter.isascii():
         return letter
     words = unicodedata.name(letter, "").split()
@@ -55,7 +55,7 @@ def _ascii(letter):
 
 
 class _Printer(StrPrinter):
-    """Differs from Python in the names of functions and, see text_of, in the sign of powers."""
+    """Print expressions as Python does, but with the names of the language's functions; text_of() replaces ** by ^."""
 
     def _print_Float(self, number):
         return repr(float(number))
@@ -65,14 +65,14 @@ class _Printer(StrPrinter):
         return f"{FUNCTIONS[function.func.__name__]}({', '.join([first, *others])})"
 
     def _print_extremum(self, function):
-        """Of any number of arguments in SymPy, of two in the language."""
+        """Nest Min and Max, which take any number of arguments in SymPy and two in the language."""
         *others, text = (self._print(argument) for argument in function.args)
         for argument in reversed(others):
             text = f"{FUNCTIONS[function.func.__name__]}({argument}, {text})"
         return text
 
     def _print_Piecewise(self, function):
-        """if(condition, value, if(...)), whose last value has no condition: see text_of."""
+        """Print if(condition, value, if(...)); text_of() ensures that the last condition is True."""
         *others, (value, _) = function.args
         text = self._print(value)
         for value, condition in reversed(others):
@@ -94,7 +94,7 @@ class _Printer(StrPrinter):
 
 
 def prepared(expression):
-    """With derivatives carried out, and without functions that follow from others."""
+    """Carry out derivatives, rewrite functions that the language lacks, and replace numbers such as E by floats, except pi."""
     expression = sympy.sympify(expression).doit()
     for function, rewrite in REWRITTEN.items():
         expression = expression.replace(function, rewrite)
@@ -102,7 +102,11 @@ def prepared(expression):
 
 
 def text_of(expression, where):
-    """Of a prepared expression, all of whose symbols have valid names. `where` begins the message about what cannot be expressed."""
+    """
+    Return the text of a prepared expression, all of whose symbols have valid names.
+
+    Raise Problem, whose text begins with `where`, if the language has no counterpart.
+    """
     for node in sympy.preorder_traversal(expression):
         if isinstance(node, sympy.Piecewise) and node.args[-1].cond is not sympy.true:
             raise Problem(f"{where}: {node} has no value where none of its conditions holds; expected (VALUE, True) as the last of its pairs")

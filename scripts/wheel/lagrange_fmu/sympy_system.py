@@ -1,4 +1,4 @@
-"""A LagrangesMethod of sympy.physics.mechanics as a system in XML."""
+"""Write a LagrangesMethod of sympy.physics.mechanics as a system in XML."""
 
 import inspect
 import re
@@ -17,7 +17,7 @@ from .whole_files import write_whole
 
 
 def _generalized_forces(method):
-    """One for each coordinate: of each load, its vector times the derivative of its velocity by that of the coordinate."""
+    """Return the generalized forces Q_i = sum of F . d(v)/d(q_i'), where v is the velocity at the point of a force, or its frame's angular velocity."""
     frame, forces = method.inertial, [sympy.S.Zero] * len(method.q)
     for location, vector in method.forcelist or []:
         if frame is None:
@@ -29,7 +29,7 @@ def _generalized_forces(method):
 
 
 class _Content:
-    """What a LagrangesMethod says, with plain symbols of valid names in place of its quantities."""
+    """The expressions of a LagrangesMethod, with plain symbols of valid names in place of its quantities."""
 
     def __init__(self, method, speeds, watched):
         self.time = dynamicsymbols._t
@@ -60,14 +60,14 @@ class _Content:
         return [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
 
     def _derivatives_of_inputs(self, in_motion, others):
-        """The inputs are the functions of time that are no coordinates; with each, how many of its derivatives must be known."""
+        """Return the order of the highest derivative that is needed of each input; inputs are functions of time that are not coordinates."""
         counts = {}
         for expression in in_motion + others:
             for function in expression.atoms(AppliedUndef):
                 if function.args != (self.time,):
                     raise Problem(f"{function} is a function that is not known; expected coordinates and inputs, which are functions of t alone")
                 if function not in self.coordinates:
-                    # What moves the system does so with its velocity and acceleration.
+                    # A prescribed motion needs the velocity and the acceleration of its input.
                     counts[function] = max(counts.get(function, 0), 2 if expression in in_motion else 0)
             for derivative in expression.atoms(sympy.Derivative):
                 function, count = derivative.expr, derivative.derivative_count
@@ -80,7 +80,7 @@ class _Content:
         return dict(sorted(counts.items(), key=str))
 
     def _named(self, speeds):
-        """The name of each quantity; der(F) is one, too."""
+        """Return the name of each quantity, and of the inputs' derivatives, such as der(F)."""
         self.all_names = Names()
         functions = [*self.coordinates, *self.inputs]
         names = {quantity: self.all_names.add(quantity.func.__name__) for quantity in functions}
@@ -93,7 +93,7 @@ class _Content:
         return names | {self.time: "time"}
 
     def energies(self):
-        """The kinetic energy, which is all terms with velocities, and the potential energy of the others."""
+        """Return the kinetic energy, the sum of all terms with velocities, and the potential energy, minus the sum of the others."""
         velocities = {sympy.Symbol(self.names[v]) for v in self.velocities}
         terms = sympy.Add.make_args(self.lagrangian)
         kinetic = [term for term in terms if term.free_symbols & velocities]
@@ -101,7 +101,11 @@ class _Content:
 
 
 def _by_quantity(given, quantities, kind):
-    """Keys count as they are written, since equal symbols may differ in what is assumed of them; those of time by their names alone too."""
+    """
+    Return the dict with quantities as keys; raise Problem for an unknown key.
+
+    Keys are compared as text, since symbols of one name may differ in their assumptions. Functions of time match without "(t)", too.
+    """
     if not isinstance(given, Mapping):
         raise Problem(f"the values of each {kind} are a {type(given).__name__}; expected a dict of values by symbol or name")
     known = {str(quantity): quantity for quantity in quantities}
@@ -114,7 +118,7 @@ def _by_quantity(given, quantities, kind):
 
 
 def _values(given, quantities, kind):
-    """Numbers by quantity."""
+    """Return the numbers as text, by quantity; raise Problem if one is not a number."""
     values = {}
     for key, value in _by_quantity(given, quantities, kind).items():
         try:
@@ -125,7 +129,7 @@ def _values(given, quantities, kind):
 
 
 def _units(content, units, outputs):
-    """Those of outputs, which have names alone, and those of all other quantities, each as the attributes of its element."""
+    """Return the attributes with units of parameters, inputs and coordinates by quantity, and of outputs by name."""
     units = {key: {"unit": str(unit)} for key, unit in units.items()}
     of_outputs = {key: unit for key, unit in units.items() if key in outputs}
     of_quantities = {key: unit for key, unit in units.items() if key not in outputs}
@@ -134,7 +138,7 @@ def _units(content, units, outputs):
 
 
 def _variables(content, parameters, start, units):
-    """The elements of all that has a start value."""
+    """Yield the elements of parameters, inputs and coordinates, as (tag, attributes, text)."""
     values = _values(parameters, content.parameters, "parameter")
     missing = [str(symbol) for symbol in content.parameters if symbol not in values]
     if missing:
@@ -153,7 +157,7 @@ def _variables(content, parameters, start, units):
 
 
 def _equations(content, constraint_names):
-    """The elements of energies, forces and constraints."""
+    """Yield the elements of energies, forces and constraints."""
     kinetic, potential = content.energies()
     yield "kinetic", {}, text_of(kinetic, "the kinetic energy")
     if potential != 0:
@@ -170,7 +174,7 @@ def _equations(content, constraint_names):
 
 
 def _watched(content, points, units):
-    """The elements of what is drawn and of outputs."""
+    """Yield the elements of points, which are drawn, and of outputs."""
     for name, expressions in content.watched.items():
         if name in points:
             places = [text_of(expression, f"the point {name}") for expression in expressions]
@@ -181,7 +185,7 @@ def _watched(content, points, units):
 
 
 def _places(points, frame):
-    """The coordinates of each point, two or three."""
+    """Return the two or three coordinates of each point; vectors are expressed in the frame."""
     places = {}
     for name, place in points.items():
         if isinstance(place, Vector):
@@ -205,13 +209,48 @@ def from_sympy(
     method, path, parameters, start=None, speeds=None, description="", stop_time=10.0, outputs=None, units=None, constraints=None, points=None
 ):
     """
-    Writes a LagrangesMethod as NAME.xml, and returns the path. `parameters` are the start values of the symbols in it, `start`
-    those of coordinates, of their derivatives and of inputs where they are not 0; `speeds` are dynamicsymbols, or names, that stand for,
-    and name, the derivatives of the coordinates, as x_dot where there are none. All other dynamicsymbols are inputs. Names may stand for symbols in all dicts.
+    Write a LagrangesMethod as NAME.xml.
 
-    `outputs` has expressions by name, to be read beside the coordinates and speeds; `units` those of parameters, inputs, coordinates and outputs,
-    such as "kg"; `constraints` is a list of names, holonomic constraints first; `points` has what the animation shows by name: vectors from the origin,
-    such as P.pos_from(O), or tuples of two or three coordinates.
+    All dynamicsymbols that are neither coordinates nor speeds become inputs. Symbols may be given by their names in all dicts.
+
+    Parameters
+    ----------
+    method : LagrangesMethod
+        Lagrangian, forces, holonomic and nonholonomic constraints.
+    path : path
+        The file to write, NAME.xml; NAME is the name of the system.
+    parameters : dict of float
+        Values of all other symbols of the method.
+    start : dict of float, optional
+        Start values of coordinates, velocities and inputs; 0 by default.
+    speeds : sequence, optional
+        A dynamicsymbol or name for the derivative of each coordinate; by default the velocity of x is x_dot.
+    description : str
+        Description of the system.
+    stop_time : float
+        End of the experiment, in s.
+    outputs : dict, optional
+        Expressions by name, which become outputs.
+    units : dict of str, optional
+        Units of parameters, inputs, coordinates and outputs, such as "kg".
+    constraints : sequence of str, optional
+        Names of the constraints, holonomic ones first.
+    points : dict, optional
+        Points that the animation shows, by name: vectors from the origin, such as P.pos_from(O), or tuples of two or three coordinates.
+
+    Returns
+    -------
+    Path
+        The path of the file.
+
+    Raises
+    ------
+    Problem
+        If a value is missing, a key is unknown, or an expression has no counterpart in the language.
+
+    Examples
+    --------
+    >>> from_sympy(method, "Pendulum.xml", {m: 1, l: 0.5, g: 9.81}, start={theta: 1}, outputs={"height": l*cos(theta)})
     """
     path = Path(path)
     if not isinstance(method, LagrangesMethod):

@@ -1,5 +1,8 @@
 """
-Motions with their derivatives by the FMU's own solver: of systems that lagc derives so that the variational equations are a part of the motion.
+Compute a motion and its derivatives by the FMU's own solver.
+
+`lagc --along NAME` appends the variational equations (see sensitivity.py) to the system. Where lagc cannot do this, or its equations are wrong
+at the start (redundant constraints), the motion is integrated by SciPy instead.
 """
 
 import tempfile
@@ -19,15 +22,19 @@ from .problem import Problem
 from .running import is_fmu
 from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 
-CHECKED = 1e-6  # relative, to which rates are right at the start
-DIFFERENCE = 1e-4  # of a value, at first
-LEAST_CHANGE, LARGEST_CHANGE = 1e-5, 1e-2  # of a motion, by which differences change it
-FURTHEST, TRIALS = 10.0, 8  # values, by which differences go away from a value at most; steps that are tried
-LARGEST = 500_000  # bytes of a system in C that is compiled in seconds
+CHECKED = 1e-6  # relative tolerance of the comparison with directional derivatives at the start
+DIFFERENCE = 1e-4  # first step of differences, relative to the value
+LEAST_CHANGE, LARGEST_CHANGE = 1e-5, 1e-2  # change of a motion, relative to its size, that differences aim at: above rounding, below curvature
+FURTHEST, TRIALS = 10.0, 8  # largest step of differences, relative to the value; number of steps that are tried
+LARGEST = 500_000  # bytes of a system.c that compiles in seconds; larger systems use SciPy
 
 
 def _indicators_of(system, by):
-    """How many events may come from, where lagc derives it so; None where not: what is wrong is told where it is built without derivatives."""
+    """
+    Return the number of event indicators of the system with its variational equations.
+
+    Return None if lagc cannot derive them or system.c is too large. Errors of the system itself are reported when it is built without them.
+    """
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
@@ -39,16 +46,27 @@ def _indicators_of(system, by):
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """At n times: `values[of]`, and `derivatives[of, by]` of them, all in SI units."""
+    """
+    Values of variables at n times and their derivatives, in SI units.
 
-    time: np.ndarray
-    values: dict
-    derivatives: dict
+    Examples
+    --------
+    >>> found.values["theta"], found.derivatives["theta", "l"]
+    """
+
+    time: np.ndarray  # n times, in s
+    values: dict  # arrays of n values by name
+    derivatives: dict  # arrays of n derivatives by (of, by)
 
 
 @contextmanager
 def followed(system, values, by):
-    """The Point of a system or an FMU, of which motion() makes motions with derivatives by these names."""
+    """
+    Yield the Point of a system or an FMU, from which motion() makes motions with derivatives by these names.
+
+    It is in co-simulation for a system without events whose variational equations are right. A system with events gets a Point in model
+    exchange, whose `in_series` is one in co-simulation.
+    """
     indicators = None if is_fmu(system) or not by else _indicators_of(system, by)
     if indicators == 0:
         with opened(system, values, what="be followed", by=by) as point:
@@ -64,12 +82,13 @@ def followed(system, values, by):
 
 
 def motion(point, of, by, tolerance):
+    """Return the motion with derivatives that suits the Point: a SeriesMotion, an EventMotion or a Motion."""
     kind = SeriesMotion if isinstance(point.model, Slave2) else EventMotion if point.in_series is not None else Motion
     return kind(point, of, by, tolerance)
 
 
 class SeriesMotion:
-    """As Motion, in communication steps from one time to the next."""
+    """A motion with derivatives, as Motion, in communication steps of co-simulation from one time to the next."""
 
     def __init__(self, point, of, by, tolerance):
         self.point, self.model, self.of, self.by = point, point.model, list(of), list(by)
@@ -77,14 +96,18 @@ class SeriesMotion:
         self.references = [point.references[name] for name in self.of] + [point.references[along(name, value)] for name in self.of for value in self.by]
 
     def start(self, values):
-        """The derivatives of the states, a row for each value."""
+        """Start at these values; return the derivatives of the states, a row for each name of `by`."""
         _, slopes = start_slopes(self.point, self.by, values)
         starts = {along(name, by): slope for by, row in zip(self.by, slopes) for name, slope in zip(self.point.states, row)}
         self.point.start(values=values | starts)
         return slopes
 
     def begins_right(self):
-        """Whether the rates are what the FMU's directional derivatives give, which go without constraints that follow from others; those in the series do not."""
+        """
+        Return True if the rates of the sensitivities at the start are equal to the FMU's directional derivatives.
+
+        They differ for redundant constraints, which the directional derivatives leave out and the variational equations of lagc do not.
+        """
         reference, rates = self.point.references, self.point.derivatives
         try:
             slopes = self.start({})
@@ -99,7 +122,11 @@ class SeriesMotion:
         return bool(np.allclose(found, expected, rtol=CHECKED, atol=CHECKED * np.max(np.abs(expected), initial=0.0)))
 
     def over(self, times, values=None, inputs=None, kinks=()):
-        """At these times, the first of which is where it starts: n x of, and n x of x by. inputs(time): names and values, linear between times and kinks."""
+        """
+        Return the values at n times, n x of, and the derivatives, n x of x by. The motion starts at the first time.
+
+        inputs(time) returns names and values, which are linear between the times and `kinks`.
+        """
         self.model.start_time = times[0]
         self.start(values or {})
         rows, stops = [], np.union1d(times, kinks)
@@ -113,6 +140,7 @@ class SeriesMotion:
         return found[:, : len(self.of)], found[:, len(self.of) :].reshape(len(rows), len(self.of), len(self.by))
 
     def step(self, begin, end):
+        """Take a communication step; raise Problem if it fails."""
         try:
             self.model.doStep(begin, end - begin)
         except FMICallException:
@@ -121,6 +149,7 @@ class SeriesMotion:
             raise Problem(f"the motion cannot be followed with its derivatives: {why}; expected an earlier end") from None
 
     def set_inputs(self, begin, end, inputs):
+        """Set the inputs and their slopes until the time `end`; no slopes if it is None."""
         if inputs is None:
             return
         names, values = inputs(begin)
@@ -132,6 +161,7 @@ class SeriesMotion:
 
 
 def sensitivities(system, of, by, times, start_values, tolerance):
+    """See lagrange_fmu.sensitivities."""
     try:
         times = np.atleast_1d(np.asarray(times, dtype=float))
     except (TypeError, ValueError):
@@ -149,13 +179,13 @@ def sensitivities(system, of, by, times, start_values, tolerance):
 
 @contextmanager
 def stepped(system, values):
-    """The Point of a system or an FMU in co-simulation, without derivatives."""
+    """Yield the Point of a system or an FMU in co-simulation, without derivatives."""
     with opened(system, values, what="be followed", in_steps=True) as point:
         yield point
 
 
 class SteppedMotion(SeriesMotion):
-    """Likewise, without derivatives."""
+    """A SeriesMotion without derivatives."""
 
     def __init__(self, point, of, tolerance):
         super().__init__(point, of, [], tolerance)
@@ -165,7 +195,11 @@ class SteppedMotion(SeriesMotion):
 
 
 class DifferencedMotion:
-    """Motions in the FMU's own solver through whatever happens, and their derivatives by differences of second order, or first at a limit."""
+    """
+    A motion in the FMU's own solver, through all events, with derivatives by finite differences.
+
+    The differences are central, of second order, or one-sided, of first order, at a limit. `steps` remembers the step for each name.
+    """
 
     def __init__(self, point, of, by, tolerance):
         self.point, self.by = point, by
@@ -173,7 +207,7 @@ class DifferencedMotion:
         self.steps = {}
 
     def values(self, times, values, inputs=None, kinks=()):
-        """At these times: n x of."""
+        """Return the values at n times, n x of; raise Problem if the motion fails."""
         try:
             return self.series.over(times, values, inputs, kinks)[0]
         except FMICallException as problem:
@@ -182,7 +216,7 @@ class DifferencedMotion:
             raise Problem(f"the motion cannot be computed: {why}") from None
 
     def slopes(self, times, values, inputs, kinks, found):
-        """n x of x by; found: the motion at the values."""
+        """Return the derivatives at n times, n x of x by; `found` is the motion at `values`."""
         size = np.max(np.abs(found - found[0]), axis=0)
         size = np.where(size > 0, size, np.maximum(np.max(np.abs(found), axis=0), 1e-300))
 
@@ -197,7 +231,11 @@ class DifferencedMotion:
         return np.stack([self._slope(lambda step: beside(name, step), name, values[name], found, size) for name in self.by], axis=-1)
 
     def _slope(self, beside, name, value, found, size):
-        """In a step that changes the motion by well more than the tolerance, and by well less than its size."""
+        """
+        Return the derivative by one value; beside(step) returns the motion at value + step, or None.
+
+        The step is adapted until it changes the motion by LEAST_CHANGE to LARGEST_CHANGE of its size.
+        """
         step = self.steps.get(name, DIFFERENCE * (abs(value) or 1.0))
         for _ in range(TRIALS):
             ends = {end: motion for end in (step, -step) if (motion := beside(end)) is not None}

@@ -1,6 +1,7 @@
 """
-The commands of lagrange-fmu, one a module with the command's name, in the order of --help: a docstring, which is its help; arguments(parser),
-which declares its words; run(arguments).
+List the commands of lagrange-fmu, in the order of --help.
+
+Each is a module of the command's name. Its docstring is its help; arguments(parser) declares its arguments; run(arguments) carries it out.
 """
 
 COMMANDS = ("new", "check", "build", "run", "live", "linearize", "fit", "sweep", "words")

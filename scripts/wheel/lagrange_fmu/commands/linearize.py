@@ -11,7 +11,7 @@ def arguments(parser):
 
 
 def table(name, matrix, rows, columns):
-    """With names at its rows and columns, as wide as they need."""
+    """Return a matrix as text, with names of its rows and columns."""
     cells = [[name, *columns], *([row, *(f"{value:.9g}" for value in line)] for row, line in zip(rows, matrix))]
     widths = [max(map(len, column)) for column in zip(*cells)]
     return "\n".join("  ".join([line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]) for line in cells)

@@ -1,4 +1,4 @@
-"""What several commands ask for."""
+"""Declare the arguments that several commands share."""
 
 SYSTEM = {"metavar": "SYSTEM", "help": "SYSTEM.xml, a robot's .urdf, or a folder with a system.xml in it"}
 SYSTEM_OR_FMU = SYSTEM | {"help": SYSTEM["help"] + "; or an FMU"}
