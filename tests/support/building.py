@@ -1,6 +1,6 @@
 """
-Systems that tests write themselves become FMUs without CMake, which would take as long as the C compiler for each of them: lagc, one
-call of a compiler with the flags of scripts/fmu.cmake, and pack.cmake, by what the build has made.
+Build FMUs of systems that tests write themselves, without CMake: lagc, one call of a compiler with the flags of scripts/fmu.cmake, and
+pack.cmake, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
 """
 
 import fcntl
@@ -23,14 +23,14 @@ WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-p
 COMPILED = "-std=gnu11 -ffp-contract=off -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables".split()
 LINKED = "-shared -s -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--no-undefined".split()
 LINKED += [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]
-SPEED = ["-O1"]  # half the time of the compiler; the systems of fmu/ are built as users get them
+SPEED = ["-O1"]  # halves the compile time; the systems of fmu/ are built with the release flags
 
-built_by_tests = {}  # name of a system: its archive
+built_by_tests = {}  # archive by name of the system
 
 
 @contextmanager
 def alone(lock):
-    """Other processes wait."""
+    """Hold an exclusive lock on a file; other processes wait."""
     with open(lock, "w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
@@ -38,7 +38,7 @@ def alone(lock):
 
 @functools.cache
 def bring_up_to_date(build):
-    """What systems take from another build; its lock is that of scripts/build."""
+    """Update the tools and libraries that systems take from another build, under the lock of scripts/build."""
     with alone(build / "build.lock"):
         tools = ["lagc", "core", "fmi2", "fmi3", "solvers", "list_global_names"]
         subprocess.run(["cmake", "--build", build, "--target", *tools], check=True, capture_output=True)
@@ -46,11 +46,11 @@ def bring_up_to_date(build):
 
 @functools.cache
 def runtime(version):
-    """Object files and libraries that every FMU is linked with."""
+    """Return the object files and libraries that every FMU is linked with."""
     cache = (BUILD / "CMakeCache.txt").read_text()
     sundials = re.search(r"^sundials_in_use:INTERNAL=(.+)$", cache, re.MULTILINE)
     folders = [BUILD / "CMakeFiles" / f"{layer}.dir" for layer in ("core", f"fmi{version}")]
-    # Objects of sources that are gone stay in a build folder.
+    # A build folder keeps objects of deleted sources.
     objects = sorted(
         path for folder in folders for path in folder.rglob("*.o")
         if (ROOT / path.relative_to(folder)).with_suffix("").exists()
@@ -61,7 +61,7 @@ def runtime(version):
 
 @functools.cache
 def runtime_digest():
-    """Another one where the runtime is another."""
+    """Return a hash that changes with the runtime."""
     files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
     files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts").glob("*.cmake"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
@@ -72,7 +72,7 @@ def library_in(folder, name, version):
 
 
 def library_words(source, library, version, compiler="gcc", speed=SPEED):
-    """What compiles a system.c and links the library of its FMU."""
+    """Return the command that compiles a system.c and links the library of its FMU."""
     return [compiler, *speed, *WARNINGS, *COMPILED, f"-I{ROOT}/include", f"-I{ROOT}/src/runtime", source, *runtime(version), *LINKED,
             f"-Wl,-Map={source.parent}/link.map", f"-Wl,--version-script={ROOT}/src/runtime/fmi{version}/exports.map", "-o", library]  # fmt: skip
 
@@ -93,7 +93,7 @@ def archive_of(build, name, version=2):
 
 
 def build_system(build, name, versions, words):
-    """Derives always, and goes on where the result, or the runtime, is another than that of the FMU that is there."""
+    """Derive the system; compile and pack only if the derived files or the runtime differ from those of the existing FMU."""
     folder = build / "systems" / name
     run([LAGC, folder / "system.xml", "-o", folder, *words])
     written = [folder / "system.c", folder / "modelDescription.xml", folder / "documentation" / "index.html", *sorted((folder / "fmi3").glob("*"))]
@@ -111,7 +111,7 @@ def build_system(build, name, versions, words):
 
 
 def write_systems(folder, texts, files={}):
-    """Files system.xml and what they name, which keep their times where nothing has changed, and no other systems."""
+    """Write system.xml and the files that it names, leave unchanged files untouched, and remove other systems from the folder."""
     for path, text in ({f"{name}/system.xml": text for name, text in texts.items()} | files).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         if not (folder / path).exists() or (folder / path).read_text() != text:
@@ -123,8 +123,8 @@ def write_systems(folder, texts, files={}):
 
 def build_systems(folder, texts, *words, versions=(2,), files={}):
     """
-    Builds FMUs of systems that a test writes itself, by name, in a folder of the build, with the tools of the build around it, of these
-    versions of FMI; other processes wait. Words are for lagc; files are what systems name, as NAME/FILE.
+    Build FMUs of systems given as text by name, in a folder of the build, for the given versions of FMI. Other processes wait. `words` are
+    further arguments of lagc; `files` are those that systems name, as NAME/FILE.
     """
     build = BUILD / folder
     bring_up_to_date(BUILD)
@@ -137,7 +137,7 @@ def build_systems(folder, texts, *words, versions=(2,), files={}):
 
 
 def build_by_cmake(folder, texts, *words, tools=ROOT / "build"):
-    """The same as users do it, in any folder, whose FMUs no other test finds by name; returns the folder of the archives."""
+    """Build FMUs by CMake as users do, in any folder; no other test finds them by name. Return the folder of the archives."""
     bring_up_to_date(tools)
     write_systems(folder / "systems", texts)
     subprocess.run([ROOT / "scripts" / "build", folder, f"-DSYSTEMS={folder / 'systems'}", f"-DTOOLS={tools}", *words], check=True)

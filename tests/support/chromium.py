@@ -1,4 +1,4 @@
-"""Pages in headless Chromium, laid out as a browser does: what does not fit, scrolls by itself, or is not there."""
+"""Pages laid out by headless Chromium: content that overflows, scrolls on its own, or is missing."""
 
 import html
 import json
@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 
-# What is wrong with a document, as sentences. Half a pixel is rounding.
+# JavaScript: the layout errors of a document, as sentences. Half a pixel allows for rounding.
 COMPLAINTS = """
 function complaints(view) {
   const page = view.document, found = [], width = page.documentElement.clientWidth;
@@ -27,7 +27,7 @@ function complaints(view) {
 
 
 def run(page, folder):
-    """The text of the element with the id "result", when the scripts of a page have run."""
+    """Run a page's scripts and return the parsed JSON of the element with the id "result"."""
     file = folder / "page-under-test.html"
     file.write_text(page, encoding="utf-8")
     words = [shutil.which("chromium") or "chromium", "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files",
@@ -39,7 +39,9 @@ def run(page, folder):
 
 
 def look_at(files, folder, widths=(1200, 360), script="view => complaints(view)"):
-    """What the script, a function of a window, says of each file at each width in pixels, by (width, place among the files)."""
+    """
+    Apply the script, a function of a window, to each file at each width in pixels. Return the results by (width, index of the file).
+    """
     frames = [f'<iframe style="width:{width}px;height:900px" src="{file.as_uri()}"></iframe>' for width in widths for file in files]
     answers = run(f"""<!DOCTYPE html><body>{"".join(frames)}<pre id="result"></pre><script>{COMPLAINTS}
 addEventListener("load", () => {{

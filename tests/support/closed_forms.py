@@ -1,4 +1,4 @@
-"""Motions in closed form, to 30 digits and rounded to doubles."""
+"""Motions in closed form, computed with 30 digits and rounded to doubles."""
 
 import functools
 
@@ -7,7 +7,7 @@ import numpy as np
 
 
 def precisely(function):
-    """With 30 digits inside, and doubles as the result."""
+    """Evaluate a function with 30 digits and round its result to doubles."""
 
     @functools.wraps(function)
     def rounded(*arguments):
@@ -20,7 +20,7 @@ def precisely(function):
 
 @precisely
 def pendulum_angle(theta0, rate, t):
-    """Released at rest at theta0, rate = sqrt(g/l): sin(theta/2) = k cd(rate t, k)."""
+    """Angle of a pendulum released at rest at theta0, with rate = sqrt(g/l): sin(theta/2) = k cd(rate t, k)."""
     k = mpmath.sin(theta0 / 2)
     return 2 * mpmath.asin(k * mpmath.ellipfun("cd", rate * t, m=k * k))
 
@@ -32,7 +32,9 @@ def pendulum_half_period(theta0, rate):
 
 @precisely
 def turning_pendulum_angle(omega0, rate, t):
-    """Over the top from the bottom at omega0 > 2 rate: theta = 2 am(omega0 t / 2, 2 rate / omega0)."""
+    """
+    Angle of a pendulum that starts at the bottom with omega0 > 2 rate and goes over the top: theta = 2 am(omega0 t / 2, 2 rate / omega0).
+    """
     m = (2 * rate / omega0) ** 2
     u, quarter = omega0 * t / 2, mpmath.ellipk(m)
     turns = mpmath.floor(u / (2 * quarter) + 0.5)
@@ -41,7 +43,7 @@ def turning_pendulum_angle(omega0, rate, t):
 
 @precisely
 def kepler(mu, r, omega, t):
-    """Position on the ellipse that starts at its pericentre (r, 0) with the angular velocity omega."""
+    """Position on the ellipse that starts at its pericentre (r, 0) with angular velocity omega, by Kepler's equation."""
     a = 1 / (2 / r - (r * omega) ** 2 / mu)
     e = 1 - r / a
     mean = mpmath.sqrt(mu / a**3) * t
@@ -58,12 +60,12 @@ def kepler_period(mu, r, omega):
 
 
 def pericentre_velocity(mu, a, e):
-    """The angular velocity at r = a (1 - e)."""
+    """Angular velocity at the pericentre r = a (1 - e)."""
     return np.sqrt(mu * a * (1 - e * e)) / (a - a * e) ** 2
 
 
 def top_cubic(A, C, weight, theta, vphi, vtheta, vpsi):
-    """The roots, from below, of the cubic that is (du/dt)^2 for u = cos(theta) of a heavy top, and its leading coefficient."""
+    """Cubic (du/dt)^2 of a heavy symmetric top with u = cos(theta): its roots in ascending order, and its leading coefficient."""
     spin = C * (vpsi + vphi * mpmath.cos(theta)) / A
     upright = mpmath.sin(theta) ** 2 * vphi + spin * mpmath.cos(theta)
     beta = 2 * weight / A
@@ -75,8 +77,8 @@ def top_cubic(A, C, weight, theta, vphi, vtheta, vpsi):
 @precisely
 def top_nutation(*top):
     """
-    Least and largest cos(theta), and the period, of a top of inertia A about its tip and C about its axis, whose weight times its
-    lever is given, from a start theta, vphi, vtheta, vpsi.
+    Least and largest cos(theta) and the period of nutation of a heavy top. A, C: moments of inertia about its tip and its axis; weight: m g
+    times the distance of the centre of mass; start: theta, vphi, vtheta, vpsi.
     """
     (low, high, far), beta = top_cubic(*top)
     return [low, high, 4 * mpmath.ellipk((high - low) / (far - low)) / mpmath.sqrt(beta * (far - low))]
@@ -84,7 +86,7 @@ def top_nutation(*top):
 
 @precisely
 def top_cosine(A, C, weight, theta, vphi, vtheta, vpsi, t):
-    """cos(theta) = low + (high - low) sn^2."""
+    """Nutation of a heavy top: cos(theta) = low + (high - low) sn^2."""
     (low, high, far), beta = top_cubic(A, C, weight, theta, vphi, vtheta, vpsi)
     m, rate = (high - low) / (far - low), mpmath.sqrt(beta * (far - low)) / 2
     share = min(max((mpmath.cos(theta) - low) / (high - low), 0), 1)
@@ -97,7 +99,7 @@ def free_body_velocity(I1, I2, I3, w1, w2, w3, t):
     """Angular velocity of a free rigid body along its principal axes, I1 < I2 < I3, by Jacobi's elliptic functions."""
     twice = I1 * w1**2 + I2 * w2**2 + I3 * w3**2
     square = (I1 * w1) ** 2 + (I2 * w2) ** 2 + (I3 * w3) ** 2
-    exchanged = square < twice * I2  # then the same formula serves with the first and the last axis exchanged
+    exchanged = square < twice * I2  # the same formula applies with the first and the last axis exchanged
     if exchanged:
         (I1, w1), (I3, w3) = (I3, w3), (I1, w1)
     low, high = twice * I3 - square, square - twice * I1

@@ -1,4 +1,4 @@
-"""Live pages in headless Chromium, which a test drives."""
+"""Live pages in headless Chromium, controlled by a test."""
 
 import contextlib
 
@@ -6,7 +6,7 @@ from playwright.sync_api import sync_playwright
 
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
-# How many different colours are in the picture.
+# JavaScript: the number of different colours in the picture.
 COLORS_SEEN = """() => {
   const canvas = document.querySelector("#scene canvas"), copy = document.createElement("canvas");
   [copy.width, copy.height] = [canvas.width, canvas.height];
@@ -26,7 +26,7 @@ def chromium():
 
 @contextlib.contextmanager
 def opened(browser, file, settings=""):
-    """The page when it is ready; at its end it must not have complained."""
+    """Yield the page once it is ready; check at the end that it logged no error."""
     page, complaints = browser.new_page(viewport={"width": 1200, "height": 700}), []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") and "GL Driver" not in message.text else None)

@@ -1,4 +1,4 @@
-"""Many runs at once (src/ensemble), for tests."""
+"""Comparisons of many runs at once (src/ensemble) with single runs of the FMU."""
 
 import fmpy
 import numpy as np
@@ -8,8 +8,8 @@ from fmu import ROOT, archive
 from scripts.ensembles import Ensemble, lanes_here, source_of
 from scripts.sweep import compile_ensemble
 
-HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")  # the lanes of this processor
-NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # that it can do
+HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")  # lanes of this processor
+NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # numbers of lanes that it supports
 
 
 def ensemble(name, varied, asked, times, lanes=HERE, tolerance=1e-10):
@@ -28,13 +28,13 @@ def starts(ranges, count, seed=1):
 
 
 def alone(name, start_values, asked, stop, steps=1, tolerance=1e-10):
-    """What is asked behind each communication step, by the FMU."""
+    """Values of the variables `asked` after each communication step, by the FMU."""
     result = fmpy.simulate_fmu(str(archive(name)), start_values=start_values, stop_time=stop, output_interval=stop / steps, output=asked, relative_tolerance=tolerance)
     return [list(row)[1:] for row in result]
 
 
 def assert_as_alone(name, ranges, stop, count, tolerance):
-    """Of so many runs, the states and the energies at three times are those of the FMU, in ten communication steps."""
+    """Check the states and energies of `count` runs at three times against those of the FMU in ten communication steps."""
     asked = [*states(name), "kineticEnergy", "totalEnergy"]
     rows = starts(ranges, count)
     values, is_left = ensemble(name, ranges, asked, [0, 0.3 * stop, stop]).run(rows)
@@ -46,7 +46,7 @@ def assert_as_alone(name, ranges, stop, count, tolerance):
 
 
 def assert_same_bits(name, ranges, stop):
-    """Of a run among any others: whatever its lane, how many lanes there are, and where the others begin and end."""
+    """Check that a run has the same bits whatever its lane, the number of lanes, and the other runs beside it."""
     rows, asked = starts(ranges, 50), [*states(name), "totalEnergy"]
     values, _ = ensemble(name, ranges, asked, [0, stop]).run(rows)
     for lanes in NUMBERS:

@@ -1,6 +1,6 @@
 """
-Stiff and extreme cases, each with the right result and where it comes from. They run as tests, and the report shows
-them as a table. Nothing is right by grinding: each case has a bound on the evaluations of the equations of motion.
+Stiff and extreme cases, each with its correct result and the source of that result. They run as tests, and the report shows them as a
+table. Each case bounds the evaluations of the equations of motion, so that no case passes by sheer work.
 """
 
 import re
@@ -26,7 +26,7 @@ from references import Motion
 from systems_in_sympy import system
 
 PI = np.pi
-SLOW = 1.0  # amplitude of the slow swing upon a fast pivot
+SLOW = 1.0  # amplitude of the slow oscillation superposed on a fast pivot
 
 
 @dataclass
@@ -37,21 +37,21 @@ class Case:
     end: float
     step: float
     right: str
-    measure: Callable = None  # the error, of a Run
+    measure: Callable = None  # error of a Run
     bound: float = 0.0
     evaluations: int = 0
     tolerance: float = 1e-10
     start_time: float = 0.0
-    refused: str = None  # what the message says, where refusing is right
-    exchange: float = None  # bound on the error by FMPy's CVode in model exchange; 0 where that is refused too
-    actions: Callable = None  # steps the instance itself and returns its rows
-    pieces: list = None  # (duration, values of inputs and parameters), in turn
+    refused: str = None  # pattern of the message, if failing is correct
+    exchange: float = None  # bound on the error with FMPy's CVode in model exchange; 0 if that fails too
+    actions: Callable = None  # steps the instance and returns its rows
+    pieces: list = None  # consecutive (duration, values of inputs and parameters)
     handovers: int = None  # bound on the changes of method by `auto`
 
 
 @dataclass
 class Run:
-    """What a simulation recorded; run["theta"] are the values at run.time."""
+    """Recorded simulation; run["theta"] are the values at run.time."""
 
     case: Case
     time: np.ndarray
@@ -61,7 +61,7 @@ class Run:
         return self.columns[name]
 
     def drift(self, name):
-        """The largest change, relative to the largest value."""
+        """Largest change of a variable, relative to its largest value."""
         values = self[name]
         return np.max(np.abs(values - values[0])) / np.max(np.abs(values))
 
@@ -81,7 +81,7 @@ def recorded_names(name):
 
 
 def count(instance, name):
-    """One of the FMU's statistics; 0 where its solver has none."""
+    """One of the FMU's statistics; 0 if its solver has none."""
     return instance.fmu.getInteger(instance.vr(name))[0] if name in instance.references else 0
 
 
@@ -104,7 +104,7 @@ def judge_refusal(case, messages):
 
 
 def co_simulate(case):
-    """Steps the FMU; its statistics and messages decide with the error."""
+    """Step the FMU in co-simulation; its statistics, messages and error give the verdict."""
     instance = fmu.Instance(case.system)
     try:
         names = recorded_names(case.system)
@@ -132,7 +132,7 @@ def co_simulate(case):
 
 
 def exchange_model(case):
-    """The same by FMPy's CVode, where the FMU computes derivatives alone."""
+    """Integrate the case by FMPy's CVode, where the FMU computes derivatives alone."""
     names, messages = recorded_names(case.system), []
     log = lambda environment, name, status, category, text: status > 1 and messages.append(text.decode())
     try:
@@ -153,7 +153,7 @@ def worst(values):
 
 
 def pendulum_error(run):
-    """Against the elliptic function, in units of the amplitude or of 1 rad."""
+    """Error against the elliptic function, in units of the amplitude or of 1 rad."""
     theta0 = run["theta"][0]
     rate = np.sqrt(run.case.values["g"] / run.case.values["l"])
     exact = [pendulum_angle(theta0, rate, t) for t in run.time - run.time[0]]
@@ -172,7 +172,7 @@ def kepler_error(run):
 
 
 def throw_error(run):
-    """x, y, z of the particle against the parabola that its first values begin."""
+    """Error of x, y, z of the particle against the parabola from its initial values."""
     v, t = run.case.values, run.time
     r, theta, phi = v["r"], v["theta"], v["phi"]
     sines = np.array([np.cos(theta) * np.sin(phi), np.sin(theta) * np.sin(phi), np.cos(phi)])
@@ -184,7 +184,7 @@ def throw_error(run):
 
 
 def reference_error(run):
-    """Against 20 digits of SymPy's equations, in units of the larger of 1 and the state."""
+    """Error against SymPy's equations at 20 digits, in units of the larger of 1 and the state."""
     definition = system(run.case.system)
     values = {s.name: 0.0 for s in definition.arguments} | start_values(run.case)
     states = [s.name for s in [*definition.q, *definition.v]]
@@ -194,7 +194,7 @@ def reference_error(run):
 
 
 def go_through(case, instance, names):
-    """Steps through the pieces; a row at the end of each."""
+    """Step through the pieces; return a row at the end of each."""
     rows = [[0.0, *instance.fmu.getReal(instance.vr(*names))]]
     for duration, values in case.pieces:
         instance.set(values)
@@ -203,7 +203,7 @@ def go_through(case, instance, names):
 
 
 def pieces_error(run):
-    """Against collocation of high order in extended precision, in units of the larger of 1 and the state."""
+    """Error against high-order collocation in extended precision, in units of the larger of 1 and the state."""
     definition, values = system(run.case.system), start_values(run.case)
     states = [s.name for s in [*definition.q, *definition.v]]
     motion = Collocation(extended_right_side(definition, values), [values[state] for state in states], 12)
@@ -221,7 +221,7 @@ def start_values(case):
 
 
 def cart_invariants(run):
-    """Energy, and the momentum along x that the force has given."""
+    """Error of the energy, and of the momentum along x against the impulse of the force."""
     v = start_values(run.case)
     momentum = (v["M"] + v["m"]) * run["v"] + v["m"] * v["l"] * run["omega"] * np.cos(run["theta"])
     given = momentum - momentum[0] - v["F"] * run.time
@@ -230,31 +230,31 @@ def cart_invariants(run):
 
 
 def rigid_error(run):
-    """A spring so stiff is a rod, but for its stretch of order m g / k."""
+    """Error against a rigid rod, which a very stiff spring approaches up to a stretch of order m g / k."""
     v = start_values(run.case)
     return worst(run["theta"] - [pendulum_angle(v["theta"], np.sqrt(v["g"] / v["l0"]), t) for t in run.time])
 
 
 def bounce_error(run):
-    """Undamped: the energy, in units of the bounce's own, (m g)^2 / 2k."""
+    """Energy error of the undamped bounce, in units of the energy of the bounce, (m g)^2 / 2k."""
     v = start_values(run.case)
     return worst(run["totalEnergy"] - run["totalEnergy"][0]) / ((v["m"] * v["g"]) ** 2 / (2 * v["k"]))
 
 
 def fast_part(ratio, phase):
-    """What theta'' = -(r/l) w^2 sin(theta + w t) makes of a slow theta, to second order in r/l."""
+    """Fast part of theta'' = -(r/l) w^2 sin(theta + w t) for a slow theta, to second order in r/l."""
     return ratio * np.sin(phase) + ratio**2 * np.sin(2 * phase) / 8
 
 
 def averaged_error(run):
-    """Fast pivot: theta = Theta + fast_part(Theta + w t), and Theta swings as if the pivot stood still."""
+    """Error for a fast pivot by averaging: theta = Theta + fast_part(Theta + w t), where Theta swings as if the pivot were fixed."""
     v = run.case.values
     slow = np.array([pendulum_angle(SLOW, np.sqrt(v["g"] / v["l"]), t) for t in run.time])
     return worst(run["theta"] - slow - fast_part(v["r"] / v["l"], slow + v["w"] * run.time))
 
 
 def modes_error(run):
-    """Small angles: M q'' = -K q with M_ij = m l^2 (n - max(i, j)), K_ii = m g l (n - i), i from 0."""
+    """Error against the modes of small angles: M q'' = -K q with M_ij = m l^2 (n - max(i, j)), K_ii = m g l (n - i), i from 0."""
     v, n = start_values(run.case), 32
     M = np.array([[v["m"] * v["l"] ** 2 * (n - max(i, j)) for j in range(n)] for i in range(n)])
     K = np.diag([v["m"] * v["g"] * v["l"] * (n - i) for i in range(n)])
@@ -266,14 +266,14 @@ def modes_error(run):
 
 
 def viscous_error(run):
-    """Creep: b theta' = -m g l sin(theta), so that tan(theta/2) = tan(theta0/2) exp(-m g l t / b)."""
+    """Error against overdamped creep: b theta' = -m g l sin(theta), so that tan(theta/2) = tan(theta0/2) exp(-m g l t / b)."""
     v = start_values(run.case)
     exact = 2 * np.arctan(np.tan(v["theta"] / 2) * np.exp(-v["m"] * v["g"] * v["l"] / v["b"] * run.time))
     return worst(run["theta"] - exact)
 
 
 def spin_up_error(run):
-    """omega = tau / b (1 - exp(-b t / J)), gravity being small beside it."""
+    """Error against omega = tau / b (1 - exp(-b t / J)); gravity is negligible beside the torque."""
     v = start_values(run.case)
     inertia = v["m"] * v["l"] ** 2
     exact = v["tau"] / v["b"] * -np.expm1(-v["b"] * run.time / inertia)
@@ -285,12 +285,12 @@ def energy_error(run):
 
 
 def random_walk(run):
-    """The energy's drift in units of what rounding makes of n steps: 2^-52 sqrt(n)."""
+    """Energy drift in units of the random walk of rounding errors over n steps, 2^-52 sqrt(n)."""
     return run.drift("totalEnergy") / (2.0**-52 * np.sqrt(1e6 * 10))
 
 
 def balanced(instance, names):
-    """The linear controller of a teacher's first lesson, in another FMU, exchanged every millisecond."""
+    """Balance the cart by a linear controller in another FMU, with values exchanged every millisecond."""
     controller = fmu.Instance("StateFeedback")
     gains = dict(kx=-1, ktheta=-25, kv=-2, komega=-5, umax=50)
     controller.initialize(gains)
@@ -307,7 +307,7 @@ def balanced(instance, names):
 
 
 def jump(instance, names):
-    """A force of 1e12 that comes after one quiet step and goes after another."""
+    """Apply a force of 1e12 N during the second of three steps."""
     rows = [[0.0, *instance.fmu.getReal(instance.vr(*names))]]
     for force in (0.0, 1e12, 0.0):
         instance.set(F=force)
@@ -317,14 +317,14 @@ def jump(instance, names):
 
 
 def jump_error(run):
-    """The momentum along x is the impulse."""
+    """Error of the momentum along x against the impulse."""
     v = start_values(run.case)
     momentum = (v["M"] + v["m"]) * run["v"] + v["m"] * v["l"] * run["omega"] * np.cos(run["theta"])
     return worst(momentum - [0, 0, 1e9, 1e9]) / 1e9
 
 
 def pole(distance):
-    """A throw that passes the axis at this distance, at the height of its start."""
+    """Initial values of a throw that passes the polar axis at this distance, at the height of its start."""
     y, speed = distance, 2.0
     x, z = -1.0, 1.0
     r, rho = np.sqrt(x * x + y * y + z * z), np.hypot(x, y)
@@ -343,16 +343,16 @@ def revolutions(e, count):
 
 
 def spinning(w):
-    """The start of a slow swing of 1 rad upon a fast pivot."""
+    """Initial values of a slow oscillation of 1 rad superposed on a fast pivot."""
     r, l = 1e-3, 1.0
     theta = SLOW + fast_part(r / l, SLOW)
-    # Its rate, to second order too: what is missing there would be a slow velocity.
+    # The initial rate is also of second order: an error of it would act as a slow velocity.
     omega = r * w / l * (np.cos(SLOW) + r / l * np.cos(2 * SLOW) / 4)
     return dict(m=1.0, l=l, g=9.81, r=r, w=w, gamma=0.0, theta=theta, omega=omega)
 
 
 def switching(name, system_name, values, pieces, right, bound, evaluations, handovers, step=None):
-    """A case for `auto`: inputs and parameters change between the pieces."""
+    """Case for `auto`: inputs and parameters change between the pieces."""
     end = sum(duration for duration, _ in pieces)
     return Case(name, system_name, values, end, step or end, "collocation in extended precision; " + right, pieces_error, bound,
                 evaluations, 1e-9, pieces=pieces, handovers=handovers)  # fmt: skip
@@ -362,7 +362,7 @@ UNIT = dict(l=1.0, g=1.0)
 ELLIPTIC = "Jacobi's elliptic function"
 
 CASES = [
-    # --- The pendulum near its unstable top.
+    # --- The pendulum near its unstable equilibrium.
     Case("at the top, theta = pi", "SimplePendulum", UNIT | dict(theta=PI), 20, 1,
          f"falls, since the double is 1.2e-16 below pi: {ELLIPTIC}", pendulum_error, 1e-6, 50, 1e-15),
     Case("1e-12 below the top", "SimplePendulum", UNIT | dict(theta=PI - 1e-12), pendulum_half_period(PI - 1e-12, 1), 5,
@@ -386,14 +386,14 @@ CASES = [
     Case("tolerance 0.5", "SimplePendulum", UNIT | dict(theta=2.0), 20, 1, ELLIPTIC, pendulum_error, 0.5, 200, 0.5),
     *(Case(f"tolerance {value}", "SimplePendulum", UNIT, 1, 1, "refused", tolerance=value,
            refused="tolerance is .*expected one between 0 and 1") for value in (0.0, -1.0, 1.0, np.nan, np.inf)),
-    # --- Stiff damping, jumps.
+    # --- Stiff damping and discontinuous forces.
     Case("damping 1e8 N m s", "DampedPendulum", dict(b=1e8, theta=1.0), 1.0, 0.1,
          "creep with the rate of the weight over the damping", viscous_error, 1e-9, 400, exchange=1e-6),
     Case("torque that jumps to 1e12 N m", "DampedPendulum", dict(b=0.5, m=1.0, l=1.0, theta=0.0, tau=1e12), 1e-3, 1e-4,
          "omega = tau/b (1 - exp(-b t/J))", spin_up_error, 1e-7, 60000),
     Case("force that jumps to 1e12 N", "InvertedPendulumCart", dict(theta=0.2), 3e-3, 1e-3,
          "momentum along x = impulse", jump_error, 1e-6, 40000, actions=jump),
-    # --- Stiff for a while. Values stay until they are changed, so that each piece names the same ones.
+    # --- Stiff for part of the time. Values persist until they change, so that each piece names the same ones.
     *(switching(f"damping that comes and goes, {text}", "DampedPendulum", dict(b=0.2), [(5.0, dict(b=b)) for b in (0.2, 1e6, 0.2, 1e8, 0.2)],
                 "swings, stands, swings", 1e-7, 2000, 8, step) for text, step in (("one step", None), ("steps of 0.01 s", 0.01))),
     switching("spring that becomes a rod, and a spring again", "ElasticPendulum", dict(k=1e2, c=0.1),
@@ -448,7 +448,7 @@ CASES = [
     # --- Fast pivot.
     *(Case(f"pivot at {w:g} rad/s", "RotatingPivotPendulum", spinning(w), 2.0, 0.01,
            "averaged motion: the pivot's own circle upon a free swing", averaged_error, 2e-5, 30000, 1e-12) for w in (1e3, 1e4)),
-    # --- Many rods, much energy.
+    # --- Long chains, high energy.
     Case("32 rods, small angles", "LongChain", {f"theta[{i}]": 1e-6 * np.sin(i) for i in range(1, 33)}, 2.0, 0.2,
          "modes of the linear system", modes_error, 1e-6, 500, 1e-14),
     Case("32 rods, horizontal", "LongChain", {f"theta[{i}]": PI / 2 for i in range(1, 33)}, 2.0, 0.2,

@@ -1,4 +1,4 @@
-"""Instances of the FMUs of FMI 3.0 through FMPy, by variable names instead of value references."""
+"""FMI 3.0 instances through FMPy, with variable names instead of value references."""
 
 from ctypes import c_double, c_uint32
 
@@ -27,8 +27,8 @@ def library(name):
 
 class Instance:
     """
-    One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where their
-    status is worse than a warning.
+    Instance of an FMU. messages collects its log as (status, category, text). Calls raise FMICallException if their status is worse than a
+    warning.
     """
 
     def __init__(self, name, kind=FMU3Slave, logging=True, token=None, instance_name="instance", **options):
@@ -68,13 +68,13 @@ class Instance:
         return self
 
     def step(self, size):
-        """The out-arguments of fmi3DoStep: eventHandlingNeeded, terminateSimulation, earlyReturn, lastSuccessfulTime."""
+        """Return the output arguments of fmi3DoStep: eventHandlingNeeded, terminateSimulation, earlyReturn, lastSuccessfulTime."""
         result = self.fmu.doStep(self.time, size)
         self.time = result[3]
         return result
 
     def partial(self, what, unknowns, knowns, seed):
-        """fmi3GetDirectionalDerivative or fmi3GetAdjointDerivative."""
+        """Call fmi3GetDirectionalDerivative or fmi3GetAdjointDerivative."""
         of_seed, of_result = (knowns, unknowns) if what == "Directional" else (unknowns, knowns)
         values = (c_double * self.size(*of_seed))(*seed)
         result = (c_double * self.size(*of_result))()
@@ -91,7 +91,7 @@ class Instance:
 
 
 class Importer:
-    """Reads variables within steps, and may ask for an early return."""
+    """Callback for intermediate update: reads variables within steps, and may request an early return."""
 
     def __init__(self, end_at=None):
         self.calls, self.end_at, self.instance, self.names, self.problem = [], end_at, None, [], None

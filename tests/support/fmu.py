@@ -1,4 +1,4 @@
-"""Instances of the built FMUs through FMPy, by variable names instead of value references."""
+"""FMI 2.0 instances through FMPy, with variable names instead of value references."""
 
 import functools
 import re
@@ -32,16 +32,16 @@ temporary_folders = []  # removed at the end of the process
 
 
 def small_names():
-    """Without those of hundreds of states, which take minutes where every access to memory is watched, or every pair of variables tried."""
+    """Names without those of hundreds of states, which take minutes under sanitizers or where every pair of variables is tried."""
     return [name for name in all_names() if name not in ("Rope", "NFourBar")]
 
 
-# Each kind of runtime once: taylor, auto, exact and nothing to solve; tables; constraints, contacts, frictions.
+# One system for each kind of runtime: taylor, auto, exact, no solver; tables; constraints, contacts, frictions.
 OF_EACH_KIND = (ROOT / "tests" / "of_each_kind.txt").read_text().split()
 
 
 def one_of_each_kind(names):
-    """For tests under sanitizers: the others are for a release."""
+    """Parameters for tests under sanitizers: one system of each kind, and the others before a release only."""
     return [pytest.param(name, marks=() if name in OF_EACH_KIND else pytest.mark.release) for name in names]
 
 
@@ -53,7 +53,7 @@ def unpacked_archive(path):
 
 
 def unpacked(name):
-    """The folder of an unpacked FMU: a system of fmu/, of tests/systems/, or of build_systems(), of which two may have one name."""
+    """Folder of an unpacked FMU of fmu/, of tests/systems/, or of build_systems(). Two systems of these may have one name."""
     return unpacked_archive(archive(name))
 
 
@@ -76,12 +76,12 @@ def library(name):
 
 
 def further_names():
-    """The systems of tests/systems, which exercise what those of fmu/ do not."""
+    """Names of the systems of tests/systems, which cover features that those of fmu/ do not use."""
     return sorted(path.parent.name for path in (ROOT / "tests" / "systems").glob("*/system.xml"))
 
 
 def moving_names():
-    """The systems with coordinates."""
+    """Names of the systems with coordinates."""
     return [name for name in all_names() if description(name).numberOfContinuousStates > 0]
 
 
@@ -103,12 +103,12 @@ def start_values(name):
 
 
 def states_of(name):
-    """Names of the states: coordinates, then velocities (then the work where it is asked for)."""
+    """Names of the states: coordinates, then velocities, then the work if the system computes it."""
     return [unknown.variable.derivative.name for unknown in description(name).derivatives]
 
 
 def callbacks_of(logger, allocate=fmpy.calloc, release=fmpy.free, environment=None):
-    """What an importer hands to fmi2Instantiate; None for NULL."""
+    """Callbacks for fmi2Instantiate; None stands for NULL."""
     callbacks = fmi2CallbackFunctions()
     if logger is not None:
         callbacks.logger = fmi2CallbackLoggerTYPE(logger)
@@ -120,7 +120,7 @@ def callbacks_of(logger, allocate=fmpy.calloc, release=fmpy.free, environment=No
 
 
 class Memory:
-    """The caller's functions, which count."""
+    """Allocation callbacks that count their calls."""
 
     def __init__(self):
         self.alive, self.count = set(), 0
@@ -139,8 +139,8 @@ class Memory:
 
 class Instance:
     """
-    One instance. messages collects what it logs as (status, category, text). Calls raise FMICallException where
-    their status is worse than a warning; fails() turns that around.
+    Instance of an FMU. messages collects its log as (status, category, text). Calls raise FMICallException if their status is worse than a
+    warning; fails() expects that.
     """
 
     def __init__(self, name, kind=FMU2Slave, logging=True, guid=None, callbacks=None, instance_name="instance"):
@@ -182,7 +182,7 @@ class Instance:
         return self
 
     def put(self, values, time=0.0):
-        """Model exchange in continuous-time mode at these values, whose states need not fulfil the constraints."""
+        """Enter continuous-time mode of model exchange at these values, whose states need not satisfy the constraints."""
         values, states = dict(values), [unknown.variable.derivative.name for unknown in self.description.derivatives]
         self.reset().initialize(start_time=time)
         self.set({name: value for name, value in values.items() if name not in states})
@@ -202,7 +202,7 @@ class Instance:
         self.time += size
 
     def run(self, end, step, *names):
-        """Steps to the end; returns one row (time, values of names) a communication point, the start included."""
+        """Step to the end; return one row (time, values of names) per communication point, including the start."""
         count = max(1, round((end - self.time) / step))
         start = self.time
         rows = [[self.time, *self.fmu.getReal(self.vr(*names))]]
@@ -215,7 +215,7 @@ class Instance:
 
     @contextmanager
     def fails(self, status, message):
-        """The call inside must end with this status, and log a message that the pattern finds."""
+        """Check that the enclosed call ends with this status and logs a message that matches the pattern."""
         before = len(self.messages)
         with pytest.raises(FMICallException) as raised:
             yield
@@ -234,7 +234,7 @@ class Instance:
 
 
 def complaints_about(source, compiler):
-    """What a compiler of plain C11 says of an FMU's source with all its warnings; nothing where it takes it."""
+    """Warnings and errors of a plain C11 compiler for an FMU's source, with all warnings on; empty if there are none."""
     words = [compiler, "-std=c11", "-pedantic-errors", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-fsyntax-only", source]
     return subprocess.run(words, capture_output=True, text=True).stderr
 

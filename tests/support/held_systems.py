@@ -1,4 +1,4 @@
-"""Systems with displacements, driven coordinates and inputs that move things, and how tests handle them."""
+"""Systems with displacements, driven coordinates and inputs with derivatives, and functions that test them."""
 
 import re
 
@@ -176,7 +176,7 @@ TABLE = """<system name="MovedTable" description="Bead on a table that is turned
 </system>
 """
 
-# The solvers that need nothing of a system.
+# The solvers that accept every system.
 METHODS = ["taylor", "radau", "auto", "bdf", "erk"]
 
 
@@ -185,7 +185,7 @@ def rename(text, name):
 
 
 def random_values(case, random, names):
-    """One for each argument of the independent derivation; displacements are 0, and so are their rates."""
+    """Random values for each argument of the independent derivation; displacements and their rates are 0."""
     system = case.system
     values = {symbol: random.uniform(0.3, 2) for symbol in system.arguments}
     for i, (q, v) in enumerate(zip(system.q, system.v)):
@@ -196,7 +196,7 @@ def random_values(case, random, names):
 
 
 def at(name, values, case, open_fmu):
-    """The FMU in initialization mode at these values."""
+    """Return the FMU in initialization mode at these values."""
     instance = open_fmu(name)
     instance.fmu.setupExperiment(startTime=values[time])
     known = {symbol.name: value for symbol, value in values.items() if symbol.name in instance.references}
@@ -208,7 +208,7 @@ def at(name, values, case, open_fmu):
 
 
 def move(instance, motions, time):
-    """Sets inputs and their derivatives so that they are polynomials (of numpy) from this time on."""
+    """Set inputs and their derivatives to polynomials (of numpy) from this time on."""
     for name, polynomial in motions.items():
         rates = [polynomial.deriv(k) if k > 0 else polynomial for k in range(3)]
         for rate, variable in zip(rates, (name, f"der({name})", f"der(der({name}))")):
@@ -224,7 +224,7 @@ def move(instance, motions, time):
 
 
 def check_balance(instance, motions, stop, steps, least):
-    """With inputs that fit together, totalEnergy changes by nonConservativeWork, at whatever points one looks."""
+    """Check that totalEnergy changes by nonConservativeWork at all communication points, for inputs with consistent derivatives."""
     move(instance, motions, 0.0)
     before, works = instance.get("totalEnergy"), []
     for time in np.linspace(0, stop, steps + 1)[1:]:

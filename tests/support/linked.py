@@ -1,4 +1,4 @@
-"""What is linked into each FMU, by the linker's map."""
+"""Object files linked into each FMU, from the linker's map."""
 
 import re
 
@@ -6,7 +6,7 @@ import fmu
 
 
 def linked_members(name, map="link.map"):
-    """Bytes that each object file contributes after garbage collection, from the linker's map."""
+    """Bytes of each object file after garbage collection of sections."""
     text = (fmu.archive(name).parent.parent / "systems" / name / map).read_text()
     text = text[text.index("Linker script and memory map") :]
     sizes = {}
@@ -17,7 +17,7 @@ def linked_members(name, map="link.map"):
 
 
 def sizes():
-    """A row (name, archive, library, SUNDIALS, equations) in bytes for each FMU."""
+    """Sizes in bytes of each FMU, as rows (name, archive, library, SUNDIALS, equations)."""
     rows = []
     for name in fmu.all_names():
         members = linked_members(name)

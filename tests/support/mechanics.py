@@ -1,4 +1,4 @@
-"""An independent derivation: SymPy applies Lagrange's equation to energies typed in its own notation."""
+"""Independent derivation: SymPy applies Lagrange's equation to energies typed in SymPy's notation."""
 
 from dataclasses import dataclass, field
 
@@ -11,7 +11,7 @@ time = sp.Symbol("time")
 
 @dataclass
 class System:
-    """T, U and the generalized forces Q as functions of the symbols below; positions by particle name."""
+    """System with kinetic energy T, potential U and generalized forces Q as functions of the symbols below; positions by particle name."""
 
     q: list
     v: list
@@ -22,8 +22,8 @@ class System:
     parameters: list = field(default_factory=list)
     positions: dict = field(default_factory=dict)
     linearized_at: dict = None
-    constraints: list = field(default_factory=list)  # each 0 at all times, of q and time, or linear in v
-    rates: dict = field(default_factory=dict)  # of inputs that are given with their time derivatives
+    constraints: list = field(default_factory=list)  # each 0 at all times: functions of q and time, or linear in v
+    rates: dict = field(default_factory=dict)  # time derivatives of inputs, for inputs given with them
 
     def __post_init__(self):
         self.Q = self.Q or [sp.Integer(0)] * len(self.q)
@@ -46,7 +46,7 @@ class System:
         self.arguments = [time, *self.q, *self.v, *self.inputs, *self.parameters]
 
     def _add_constraints(self):
-        """mass becomes (M J^T; J 0) and terms get rows of what J a must be; evaluator() then returns more rows than q has."""
+        """Extend mass to (M J^T; J 0) and terms by the right side of J a; evaluator() then returns more rows than q has."""
         rates = [c if c.has(*self.v) else velocity(c, self.q, self.v) for c in map(sp.sympify, self.constraints)]
         jacobian = sp.Matrix(len(rates), len(self.q), lambda i, j: sp.diff(rates[i], self.v[j]))
         self.mass = sp.Matrix(sp.BlockMatrix([[self.mass, jacobian.T], [jacobian, sp.zeros(len(rates))]]))
@@ -55,7 +55,9 @@ class System:
             self.terms.append(terms + [sp.Integer(0)] * (len(self.terms[0]) - len(terms)))
 
     def _linearize(self):
-        """At an equilibrium M a = rhs becomes M0 a = d rhs / d(q, v, u) (q, v, u): the derivative of M meets a = 0."""
+        """
+        Linearize at an equilibrium: M a = rhs becomes M0 a = d rhs / d(q, v, u) (q, v, u). The derivative of M drops out since a = 0.
+        """
         point = {symbol: self.linearized_at.get(symbol, 0) for symbol in [*self.q, *self.v, *self.inputs]}
         self.mass = self.mass.subs(point)
         for i, terms in enumerate(self.terms):
@@ -64,7 +66,7 @@ class System:
             self.terms[i] = [sp.diff(right, s).subs(point) * (s - value) for s, value in point.items()]
 
     def evaluator(self, module):
-        """A function of the arguments that returns M by rows and the terms of the right side, one row an equation."""
+        """Compile a function of the arguments that returns the rows of M and the terms of the right side, one row per equation."""
         n = len(self.terms)
         flat = [*self.mass, *(term for terms in self.terms for term in terms)]
         compiled = sp.lambdify(self.arguments, flat, modules=module, cse=True)
@@ -79,8 +81,8 @@ class System:
 
     def accelerations(self, values):
         """
-        Exact to 40 digits, and the scale of each: the sum of the magnitudes of the terms that cancel in it.
-        values: time, q, v, inputs and parameters.
+        Accelerations, exact to 40 digits, and their scales: the sum of the magnitudes of the terms that cancel in each. values: time, q, v,
+        inputs and parameters.
         """
         with mpmath.workdps(40):
             mass, terms = self.precise(*map(mpmath.mpf, values))
@@ -98,7 +100,7 @@ class System:
         return self._precise
 
     def right_side(self, inputs, parameters):
-        """f(t, x) for SciPy's integrators; inputs is a function of time."""
+        """Return f(t, x) for SciPy's integrators; inputs is a function of time."""
         evaluate = self.evaluator("numpy")
         n = len(self.q)
 
@@ -111,7 +113,7 @@ class System:
 
 
 def velocity(expression, q, v):
-    """d expression / dt for an expression of q and time."""
+    """Time derivative of an expression of q and time."""
     return sp.diff(expression, time) + sum(sp.diff(expression, qi) * vi for qi, vi in zip(q, v))
 
 
@@ -122,24 +124,24 @@ def kinetic(masses_and_positions, q, v):
 
 
 def rotation(axis, angle):
-    """Of a vector's components along the turned axes into those along the axes before."""
+    """Matrix that maps components along the rotated axes to components along the original axes."""
     turn = {"x": sp.rot_ccw_axis1, "y": sp.rot_ccw_axis2, "z": sp.rot_ccw_axis3}[axis]
     return turn(angle)
 
 
 def angular_velocity(turn, q, v):
-    """Along the body's own axes: R^T dR/dt is the matrix of its cross product."""
+    """Angular velocity along the body axes, from the skew-symmetric matrix R^T dR/dt."""
     cross = turn.T * turn.applyfunc(lambda element: velocity(element, q, v))
     return sp.Matrix([cross[2, 1], cross[0, 2], cross[1, 0]])
 
 
 def turning(turn, moments, q, v):
-    """Kinetic energy of a body that turns, by its moments of inertia about its own axes."""
+    """Kinetic energy of rotation of a body, by its principal moments of inertia."""
     return sum(J / 2 * rate**2 for J, rate in zip(moments, angular_velocity(turn, q, v)))
 
 
 class Constrained:
-    """M a + J^T F = right side, J a + (what is left of the second derivatives) = 0, by SymPy."""
+    """Equations of a constrained system by SymPy: M a + J^T F = right side, J a + (velocity terms of the second derivatives) = 0."""
 
     def __init__(self, q, v, T, U, Q, constraints, parameters):
         L = T - U

@@ -1,4 +1,4 @@
-"""Meshes that tests write: points, polygons of their numbers, and files of them."""
+"""Meshes that tests write: points, polygons of point numbers, and files."""
 
 import struct
 
@@ -7,11 +7,11 @@ from scipy.spatial import ConvexHull
 
 CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 SQUARES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-TETRAHEDRON = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(8)  # with edges of length 1
+TETRAHEDRON = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(8)  # regular, with edges of length 1
 
 
 def triangles_of(points):
-    """Of the convex hull, anticlockwise as seen from outside."""
+    """Triangles of the convex hull, counterclockwise as seen from outside."""
     hull = ConvexHull(points)
     triangles = []
     for (a, b, c), plane in zip(hull.simplices, hull.equations):
@@ -34,6 +34,6 @@ def stl_bytes(points, triangles):
 
 
 def obj_text(points, polygons, first=1):
-    """The first point's number is 1, or negative to count back."""
+    """Text of an OBJ file. `first` is the number of the first point: 1, or negative for relative numbers."""
     corners = "".join("v {:.17g} {:.17g} {:.17g}\n".format(*point) for point in points)
     return corners + "".join("f " + " ".join(str(first + i) for i in polygon) + "\n" for polygon in polygons)

@@ -1,4 +1,4 @@
-"""Systems whose motions have closed forms, for what differentiates motions; and the package that does."""
+"""Systems whose motions have closed forms, for tests of sensitivities; and the package lagrange_fmu."""
 
 import contextlib
 import importlib
@@ -17,16 +17,16 @@ OSCILLATOR = """<system name="Oscillator"><!-- kept -->
   <particle mass="m" x="x"/><potential>k*x^2/2</potential><dissipation>d*v^2/2</dissipation><force coordinate="x">F</force>
   <experiment stopTime="4"/></system>"""
 WORKED = OSCILLATOR.replace('name="Oscillator"', 'name="Worked"').replace("<experiment", "<work/><experiment")
-# So that explicit steps would have to be of some 5 us.
+# So stiff that explicit steps would be limited to about 5 us.
 STIFF = OSCILLATOR.replace('name="Oscillator"', 'name="Stiff"').replace('name="d" start="1"', 'name="d" start="1e6"')
 BALL = """<system name="Ball"><parameter name="g" start="9.81" unit="m/s2"/><coordinate name="h" velocity="v" unit="m" start="1"/>
   <parameter name="e" start="0.5" unit="1" min="0" max="1"/>
   <particle mass="1" y="h"/><gravity y="-g"/><contact name="floor" gap="h" unit="m" restitution="e"/></system>"""
-# A block on a belt, which sticks and slides.
+# A block on a belt, with stick-slip.
 BELT = """<system name="Belt"><parameter name="k" start="20" unit="N/m"/><parameter name="F" start="3" unit="N"/><parameter name="u" start="0.4" unit="m/s"/>
   <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <friction name="rub" velocity="v - u" force="F" stiction="1.5*F"/></system>"""
-# Chaotic; its energy at the end is that at the start.
+# Chaotic; the energy is conserved.
 DOUBLE = """<system name="Double"><parameter name="m1" start="1" unit="kg"/><parameter name="m2" start="0.7" unit="kg"/>
   <parameter name="l1" start="1" unit="m"/><parameter name="l2" start="0.6" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
   <coordinate name="a" velocity="va" unit="rad" start="3"/><coordinate name="b" velocity="vb" unit="rad" start="2.5" velocityStart="0.4"/>
@@ -38,7 +38,7 @@ DOUBLE_AT = {"m1": 1.0, "m2": 0.7, "l1": 1.0, "l2": 0.6, "g": 9.81, "a": 3.0, "v
 
 @contextlib.contextmanager
 def only_package(folder):
-    """Import lagrange_fmu from the folder alone; what other tests of this process have imported of that name comes back afterwards."""
+    """Import lagrange_fmu from this folder only; afterwards restore the modules of that name that other tests have imported."""
 
     def forget():
         return {name: sys.modules.pop(name) for name in list(sys.modules) if name.split(".")[0] == "lagrange_fmu"}
@@ -60,14 +60,14 @@ def lagrange_fmu(tmp_path_factory):
 
 
 def oscillation(t, m, k, d, x0, F=0.0):
-    """Weakly damped, from rest at x0, with a constant force."""
+    """Weakly damped oscillation from rest at x0, with a constant force."""
     a, shift = d / (2 * m), F / k
     w = mpmath.sqrt(k / m - a * a)
     return shift + (x0 - shift) * mpmath.exp(-a * t) * (mpmath.cos(w * t) + a / w * mpmath.sin(w * t))
 
 
 def creep(t, m, k, d, x0):
-    """The oscillation, damped beyond what swings."""
+    """Overdamped motion of the same oscillator."""
     a = d / (2 * m)
     w = mpmath.sqrt(a * a - k / m)
     slow, fast = -k / m / (a + w), -a - w
@@ -75,7 +75,7 @@ def creep(t, m, k, d, x0):
 
 
 def allow_calls(monkeypatch, owner, name, most):
-    """Of a function: more of them fail."""
+    """Fail a test that calls this function more often than `most`."""
     function, calls = getattr(owner, name), itertools.count(1)
 
     def call(*arguments):
@@ -86,14 +86,14 @@ def allow_calls(monkeypatch, owner, name, most):
 
 
 def work(t, *at):
-    """Of the damper and the force on the oscillation: what its energy changes by."""
+    """Work of the damper and the force on the oscillator: the change of its energy."""
     m, k = at[:2]
     energies = [(m * mpmath.diff(lambda s: oscillation(s, *at), when) ** 2 + k * oscillation(when, *at) ** 2) / 2 for when in (mpmath.mpf(t), mpmath.mpf(0))]
     return energies[0] - energies[1]
 
 
 def bounce(t, h0, g, e, bounces):
-    """The height of a ball that fell from h0, behind so many bounces."""
+    """Height at time t of a ball that fell from h0, after this number of bounces."""
     fall = mpmath.sqrt(2 * h0 / g)
     time, speed = fall, e * g * fall
     for _ in range(bounces - 1):
@@ -102,7 +102,10 @@ def bounce(t, h0, g, e, bounces):
 
 
 def small_bounces():
-    """Starts h, g and e of a ball, how often it bounces, a time in the flight behind that and its speed then by each: of small motions, and of what is left of a large one."""
+    """
+    Yield start values h, g and e of a ball, a time in the flight after a number of bounces, and the derivatives of the height there.
+    Covers small motions and the last bounces of a large one.
+    """
     for h, e, bounces in ((1e-3, 0.8, 7), (1e-4, 0.8, 1), (3e-5, 0.8, 1), (1e-5, 0.8, 1), (1.0, 0.5, 8), (1.0, 0.5, 12)):
         at = {"h": h, "g": 9.81, "e": e}
         fall = np.sqrt(2 * h / 9.81)
@@ -111,14 +114,14 @@ def small_bounces():
 
 
 def belt(times, k, F, u):
-    """Where the block is: a linear oscillator while it slides, carried along while it sticks; all in closed form."""
+    """Positions of the block in closed form: a linear oscillator while it slides, and the velocity of the belt while it sticks."""
     w = mpmath.sqrt(k)
     slide_at = 1.5 * F / k
-    # From rest at 0 it is pulled along at first: x'' = F - k x until v = u, or until it turns.
+    # Starts from rest at 0: x'' = F - k x until v = u, where the block sticks.
     catch = mpmath.asin(u * w / F) / w
     x_catch = F / k * (1 - mpmath.cos(w * catch))
     leave = catch + (slide_at - x_catch) / u
-    def sliding(t):  # x'' = F - k x with x = slide_at, v = u at first
+    def sliding(t):  # x'' = F - k x from x = slide_at and v = u
         return F / k + (slide_at - F / k) * mpmath.cos(w * t) + u / w * mpmath.sin(w * t)
     def place(t):
         return F / k * (1 - mpmath.cos(w * t)) if t <= catch else x_catch + u * (t - catch) if t <= leave else sliding(t - leave)
@@ -137,7 +140,7 @@ def energy_of_double(m1, m2, l1, l2, g, a, va, b, vb):
 
 
 def slopes(function, at):
-    """By each argument, by differences of 40 digits."""
+    """Derivatives by each argument, from differences at 40 digits."""
     with mpmath.workdps(40):
         exact = [mpmath.mpf(value) for value in at.values()]
         return {name: float(mpmath.diff(lambda value: function(*exact[:i], value, *exact[i + 1 :]), value)) for i, (name, value) in enumerate(zip(at, exact))}

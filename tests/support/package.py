@@ -1,4 +1,4 @@
-"""The package lagrange_fmu as the tree has it, without a wheel: for what needs no compiler."""
+"""The package lagrange_fmu assembled from the source tree, without a wheel, for tests that need no compiler."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ SCRIPTS = ROOT / "scripts"
 
 
 def assemble(folder):
-    """In the folder what the wheel would hold; as copies, since modules look for others beside themselves."""
+    """Fill the folder with the contents of the wheel, as copies, since modules look for others beside themselves."""
     package = folder / "lagrange_fmu"
     shutil.copytree(SCRIPTS / "wheel" / "lagrange_fmu", package, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(SCRIPTS / "live_page", package / "live_page", ignore=shutil.ignore_patterns("__pycache__"))
@@ -40,5 +40,5 @@ def python(folder, *words, cwd):
 
 
 def run(folder, *words, cwd):
-    """The command of an assembled package."""
+    """Run the command of an assembled package."""
     return python(folder, "-m", "lagrange_fmu", *words, cwd=cwd)

@@ -1,6 +1,6 @@
 """
-Systems of the tests with displacements and driven coordinates, typed once more in SymPy, where each of these is a genuine
-coordinate that a constraint with a Lagrange multiplier holds.
+Systems with displacements and driven coordinates, typed again in SymPy. Each displaced or driven coordinate is an ordinary one with a
+constraint and a Lagrange multiplier.
 """
 
 from dataclasses import dataclass, field
@@ -15,8 +15,8 @@ from mechanics import System, kinetic, time, velocity
 @dataclass
 class Held:
     """
-    A system whose coordinates `held` (by index) move with the accelerations given, those of displacements with 0, which
-    stand at 0 themselves. forces: the names of their multipliers, and the sign of each against M a = Q + ... - J^T F.
+    System whose coordinates `held` (by index) have prescribed accelerations; those of displacements are 0, as are their values. forces: the
+    names of the multipliers and the sign of each in M a = Q + ... - J^T F.
     """
 
     system: System
@@ -30,7 +30,7 @@ class Held:
         self.given = sp.lambdify(self.system.arguments, [sp.sympify(value) for value in values], modules="numpy")
 
     def solve(self, *arguments):
-        """Accelerations, and the multipliers F by name, from [[M, J^T], [J, 0]] [a, F] = [Q + ..., given]."""
+        """Solve [[M, J^T], [J, 0]] [a, F] = [Q + ..., given]; return the accelerations, and the multipliers F by name."""
         mass, terms = self.evaluate(*arguments)
         n, held = len(mass), list(self.held)
         matrix, right = np.zeros((n + len(held), n + len(held))), np.zeros(n + len(held))
@@ -48,14 +48,16 @@ m, l, g, b, k, J, F, tau, u = symbols("m l g b k J F tau u")
 
 
 def held(q, v, particles, potential, forces, parameters, inputs, held_ones, names, rotations=(), dissipation=0, further=0):
-    """particles: (mass, position); rotations: (inertia, angle); forces: (F, position) beside those of the dissipation."""
+    """
+    Build a Held. particles: (mass, position); rotations: (inertia, angle); forces: (F, position), in addition to those of the dissipation.
+    """
     T = kinetic(particles, q, v) + kinetic([(inertia, (angle,)) for inertia, angle in rotations], q, v) + further
     Q = [sum(f * sp.diff(x, qi) for f, x in forces) - sp.diff(dissipation, vi) for qi, vi in zip(q, v)]
     return Held(System(q, v, T, sp.sympify(potential), Q, inputs, parameters), held_ones, names)
 
 
 def bearing():
-    """A rod with an inertia on a damped hinge, with a force at its end and a torque; its pivot and its angle are displaced."""
+    """Rod with inertia on a damped hinge, with a force at its end and a torque; its pivot and its angle have displacements."""
     theta, stretch, px, py, turn, omega, vs, vpx, vpy, vt = symbols("theta stretch px py turn omega vs vpx vpy vt")
     q, v = [theta, stretch, px, py, turn], [omega, vs, vpx, vpy, vt]
     angle = theta + turn
@@ -69,7 +71,7 @@ def bearing():
 
 
 def chain(count=3):
-    """Rods whose lengths are displaced, on a pivot that moves with time; the mass matrix is factored at run time."""
+    """Rods with displaced lengths, on a pivot that moves with time; the mass matrix is factored at run time."""
     names = ("theta", "omega", "stretch", "rate")
     theta, omega, stretch, rate = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in names)
     q, v = [*theta, *stretch], [*omega, *rate]
@@ -85,7 +87,7 @@ def chain(count=3):
 
 
 def charged():
-    """A bead on a turning wire in a magnetic field, with an energy of its own; the wire is displaced across."""
+    """Bead on a rotating wire in a magnetic field, with an extra kinetic energy; the displacement is across the wire."""
     s, d, v, vd = symbols("s d v vd")
     q, rates = [s, d], [v, vd]
     x, y = s * cos(u) - d * sin(u), s * sin(u) + d * cos(u)
@@ -99,7 +101,7 @@ a, M, h = symbols("a M h")
 
 
 def crane():
-    """A load on a crane whose trolley an input drives; the rope's length is displaced, and something pushes the trolley."""
+    """Load on a crane whose trolley acceleration is an input; the rope's length has a displacement, and a force acts on the trolley."""
     x, theta, stretch, v, omega, vs = symbols("x theta stretch v omega vs")
     q, rates = [x, theta, stretch], [v, omega, vs]
     load = (x + (l + stretch) * sin(theta), -(l + stretch) * cos(theta))
@@ -111,7 +113,7 @@ def crane():
 
 
 def robot(count=4):
-    """Rods in a chain, of which the second is driven by time and the last by an input, between those that move freely."""
+    """Chain of rods: the second has an acceleration prescribed in time and the last one an input; the others are free."""
     theta, omega = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in ("theta", "omega"))
     x, y, bobs = sp.Integer(0), sp.Integer(0), []
     for i in range(count):
@@ -124,7 +126,7 @@ def robot(count=4):
 
 
 def arm():
-    """Both joints driven: what is left are the torques."""
+    """Arm with both joints driven: only the torques are unknown."""
     alpha, beta, va, vb = symbols("alpha beta va vb")
     q, v = [alpha, beta], [va, vb]
     elbow = (l * cos(alpha), l * sin(alpha))
@@ -134,12 +136,12 @@ def arm():
 
 
 def moved(name):
-    """An input and its derivatives: the coordinate, its velocity, and the acceleration that holds it."""
+    """Symbols of an input and its derivatives: coordinate, velocity, and prescribed acceleration."""
     return sp.Symbol(name), sp.Symbol(f"der({name})"), sp.Symbol(f"der(der({name}))")
 
 
 def seat():
-    """A seat with a driver on a floor that moves; what holds the floor is not asked for, but the force in the seat is."""
+    """Seat with a driver on a moved floor; the tests ask for the force in the seat, not for that on the floor."""
     x, y, s, v, w, vs = symbols("x y s v w vs")
     zb, rate, acceleration = moved("zb")
     q, rates = [x, y, s, zb], [v, w, vs, rate]
@@ -152,7 +154,7 @@ def seat():
 
 
 def hoist(count=3):
-    """A chain on a pivot that moves in x, of which the first rod is drawn in from outside: M depends on an input."""
+    """Chain on a pivot that moves in x, with an input as length of the first rod: M depends on an input."""
     theta, omega = ([sp.Symbol(f"{name}[{i + 1}]") for i in range(count)] for name in ("theta", "omega"))
     (xp, rate, acceleration), (L, drawn, jerked) = moved("xp"), moved("L")
     x, y, bobs = xp, sp.Integer(0), []
@@ -167,7 +169,7 @@ def hoist(count=3):
 
 
 def table():
-    """A bead on a table that is turned from outside, in a magnetic field, with inertias that turn with the table."""
+    """Bead on a table whose angle is an input, in a magnetic field, with inertias that rotate with the table."""
     r, vr = symbols("r vr")
     phi, rate, acceleration = moved("phi")
     q, v = [r, phi], [vr, rate]

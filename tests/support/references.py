@@ -1,6 +1,6 @@
 """
-Motions to any number of digits: Taylor series of SymPy's equations in FLINT's ball arithmetic. Nothing here is shared
-with the FMUs: the derivation is SymPy's, functions of series are FLINT's, and the mass matrix is eliminated by Gauss.
+Motions to any number of digits: Taylor series of SymPy's equations in FLINT's ball arithmetic. The FMUs share none of it: SymPy derives,
+FLINT computes functions of series, and Gaussian elimination solves with the mass matrix.
 """
 
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ def on_series(name):
 
 
 def on_exponentials(name):
-    """The hyperbolic functions, which FLINT has for numbers alone."""
+    """Hyperbolic functions of series, from exponentials; FLINT has them for numbers only."""
     def function(x):
         if not isinstance(x, arb_series):
             return getattr(arb(x), name)()
@@ -34,7 +34,7 @@ def on_exponentials(name):
 
 
 def number(value):
-    """A number as SymPy writes it: an integer, or mpmath's (sign, mantissa, exponent, bits)."""
+    """Convert a number of SymPy: an integer, or mpmath's (sign, mantissa, exponent, bits)."""
     if not isinstance(value, tuple):
         return arb(value)
     sign, mantissa, exponent, _ = value
@@ -49,7 +49,7 @@ FUNCTIONS |= {"Raised": lambda base, exponent: FUNCTIONS["exp"](exponent * FUNCT
 
 @contextmanager
 def precision(digits, length):
-    """FLINT's working precision, and the number of coefficients that it keeps."""
+    """Set FLINT's working precision and the number of series coefficients that it keeps."""
     before = ctx.prec, ctx.cap
     ctx.dps, ctx.cap = digits, length
     try:
@@ -59,7 +59,7 @@ def precision(digits, length):
 
 
 def solve(matrix, right):
-    """Gauss's elimination; the elements are numbers or series."""
+    """Solve by Gaussian elimination; the elements are numbers or series."""
     n = len(right)
     rows = [[*row, r] for row, r in zip(matrix, right)]
     for k in range(n):
@@ -82,7 +82,7 @@ def coefficient(series, k):
 
 
 class Motion:
-    """The motion of a system of systems_in_sympy from values by symbol name, as trajectory() and coefficients()."""
+    """Motion of a system of systems_in_sympy from values by symbol name, as trajectory() or coefficients()."""
 
     def __init__(self, definition, values, digits=40):
         self.definition, self.digits = definition, digits
@@ -102,8 +102,8 @@ class Motion:
 
     def coefficients(self, time, state, order):
         """
-        Those of the states up to order: each order of the accelerations gives the next of the states. Radii of the
-        balls are dropped each time: they would grow far beyond the errors that rounding really makes.
+        Taylor coefficients of the states up to order: each order of the accelerations gives the next order of the states. The radii of the
+        balls are dropped at each order, since they would grow far beyond the true rounding errors.
         """
         n, x = self.n, [[arb(value)] for value in state]
         for k in range(order):
@@ -115,7 +115,7 @@ class Motion:
         return x
 
     def trajectory(self, times, start_time=0.0):
-        """The states at the ascending times, as arrays of doubles; errors are about 10^(10 - digits) a step."""
+        """States at ascending times, as arrays of doubles; the error is about 10^(10 - digits) a step."""
         order, rows = self.digits, []
         time, state = arb(start_time), [arb(value) for value in self.start]
         with precision(self.digits, order + 1):
@@ -136,7 +136,7 @@ class Motion:
 
     @staticmethod
     def _at(x, s):
-        """Horner's rule."""
+        """Evaluate the series by Horner's rule."""
         values = []
         for row in x:
             total = arb(0)
@@ -147,7 +147,7 @@ class Motion:
 
 
 def exact_series(definition, values, order):
-    """Coefficients of the states to 50 digits, in an array of doubles."""
+    """Taylor coefficients of the states to 50 digits, as an array of doubles."""
     motion = Motion(definition, {s.name: v for s, v in values.items()}, 50)
     start_time = next(v for s, v in values.items() if s.name == "time")
     rows = motion.coefficients(start_time, motion.start, order)

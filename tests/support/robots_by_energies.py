@@ -1,6 +1,6 @@
 """
-Accelerations of robots from their URDF with mpmath: links are placed as the format's definition says, their energies follow by
-difference quotients of high precision, and from these Lagrange's equation. Quaternions are left to others.
+Accelerations of robots from their URDF with mpmath: links are placed by the definition of the format, energies follow from difference
+quotients of high precision, and accelerations from Lagrange's equation. Joints with quaternions are not covered.
 """
 
 import functools
@@ -16,7 +16,7 @@ def numbers(element, name, default):
 
 
 def turn(axis, angle):
-    """Rodrigues: 1 + sin [e] + (1 - cos) [e]^2."""
+    """Rotation matrix by Rodrigues' formula, 1 + sin [e] + (1 - cos) [e]^2."""
     x, y, z = axis
     cross = mp.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return mp.eye(3) + mp.sin(angle) * cross + (1 - mp.cos(angle)) * cross * cross
@@ -24,7 +24,7 @@ def turn(axis, angle):
 
 @functools.cache
 def place(element):
-    """Translation and rotation of an <origin>, to the digits in force when it is asked for first."""
+    """Translation and rotation of an <origin>, to the precision of the first call."""
     origin = element.find("origin")
     roll, pitch, yaw = numbers(origin, "rpy", "0 0 0")
     rotation = turn((0, 0, 1), yaw) * turn((0, 1, 0), pitch) * turn((1, 0, 0), roll)
@@ -32,7 +32,7 @@ def place(element):
 
 
 def across(axis):
-    """x and y of a planar joint: the axis of coordinates that follows the one nearest to the joint's, as far as it is across."""
+    """The x and y axes of a planar joint: x is the coordinate axis after the one nearest to the joint's axis, projected onto the plane."""
     sizes = [abs(component) for component in axis]
     next_one = (sizes.index(max(sizes)) + 1) % 3
     first = [(j == next_one) - axis[next_one] * axis[j] for j in range(3)]
@@ -46,7 +46,7 @@ class Robot:
         root = ET.fromstring(text)
         self.joints = root.findall("joint")
         self.links = {link.get("name"): link for link in root.findall("link")}
-        self.index, self.count = {}, 0  # joint name: place of its first coordinate
+        self.index, self.count = {}, 0  # index of the first coordinate by joint name
         for joint in self.joints:
             if joint.find("mimic") is None:
                 self.index[joint.get("name")] = self.count
@@ -73,7 +73,7 @@ class Robot:
         return mp.zeros(3, 1), turn(axis, self.position(joint, q))
 
     def poses(self, q):
-        """Of each link: where its frame is, and how it is turned."""
+        """Position and rotation matrix of each link's frame."""
         carried = {joint.find("child").get("link"): joint for joint in self.joints}
         poses = {}
 
@@ -91,7 +91,7 @@ class Robot:
         return {name: pose(name) for name in self.links}
 
     def masses(self, q):
-        """Of each link with an inertia: mass, tensor, centre of mass, axes of the tensor."""
+        """Mass, inertia tensor, centre of mass and axes of the tensor of each link that has an <inertial>."""
         for name, (position, rotation) in self.poses(q).items():
             inertial = self.links[name].find("inertial")
             if inertial is None:
@@ -105,7 +105,10 @@ class Robot:
         return sum(mass * mp.mpf("9.81") * position[2] for mass, _, position, _ in self.masses(q))
 
     def mass_matrix(self, q, h=mp.mpf(10) ** -20):
-        """From the velocities, and angular velocities along the axes of the tensor, that each coordinate gives to each body."""
+        """
+        Mass matrix from the velocities of each body, and its angular velocities along the axes of the tensor, per unit rate of each
+        coordinate.
+        """
         rates = []
         for i in range(self.count):
             before, after = ([*self.masses([x + s * h * (i == j) for j, x in enumerate(q)])] for s in (-1, 1))
@@ -123,7 +126,7 @@ class Robot:
         return matrix
 
     def accelerations(self, q, v, forces, h=mp.mpf(10) ** -10):
-        """M a = Q + dL/dq - d(M v)/dq v"""
+        """Solve M a = Q + dL/dq - d(M v)/dq v."""
         q, v = [mp.mpf(x) for x in q], mp.matrix([mp.mpf(x) for x in v])
         slope = lambda function, way: (function(1, way) - function(-1, way)) / (2 * h)
         at = lambda s, way: [x + s * h * w for x, w in zip(q, way)]

@@ -1,4 +1,4 @@
-"""The rope of fmu/Rope, its forces written by hand."""
+"""The rope of fmu/Rope, with forces written by hand."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ MASSES = np.append(np.full(N - 1, 1.0), 0.5) / N
 
 
 def accelerations(p, places, velocities):
-    """By Newton, from the forces of links, of bending (moments of second differences), drag and weight."""
+    """Accelerations by Newton's law, from the forces of links, of bending (moments of second differences), drag and weight."""
     mass, lifted = p["M"] * MASSES[:, None], np.array([0.0, p["g"]])
     at, rate = (np.vstack([np.zeros(2), values]) for values in (places, velocities))
     link, link_rate = np.diff(at, axis=0), np.diff(rate, axis=0)

@@ -1,6 +1,6 @@
 """
-Lagrange's equation for bodies in space by numbers alone: velocities from positions and rotation matrices by complex steps, its derivatives
-by central differences of order 8, in long doubles.
+Lagrange's equation for bodies in space, purely numerical: velocities from positions and rotation matrices by complex steps, and its
+derivatives by central differences of order 8, in long doubles.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ def array(*values):
 
 
 def rotation(axis, angle):
-    """By Rodrigues' formula."""
+    """Rotation matrix by Rodrigues' formula."""
     e = np.array([REAL(str(x)) for x in axis])
     e = e / np.sqrt(np.sum(e * e))
     cross = np.array([[0, -e[2], e[1]], [e[2], 0, -e[0]], [-e[1], e[0], 0]], dtype=COMPLEX)
@@ -23,27 +23,28 @@ def rotation(axis, angle):
 
 
 def rotation_of_quaternion(a, b, c, d):
-    """From q v conj(q)."""
+    """Rotation matrix of v -> q v conj(q)."""
     return np.array([[a*a + b*b - c*c - d*d, 2*(b*c - a*d), 2*(b*d + a*c)], [2*(b*c + a*d), a*a - b*b + c*c - d*d, 2*(c*d - a*b)],
                      [2*(b*d - a*c), 2*(c*d + a*b), a*a - b*b - c*c + d*d]])  # fmt: skip
 
 
 def slope(function, at=0.0):
-    """d function(s) / ds at 0."""
+    """Derivative d function(s) / ds at 0, by central differences."""
     return sum(w * (function(STEP * k) - function(-STEP * k)) for k, w in enumerate(WEIGHTS, 1)) / STEP
 
 
 class Mechanism:
     """
-    places(time, q, inputs): bodies as (mass, rotation matrix, position, tensor). power(velocity of a function of (time, q, inputs),
-    spin of another): of the other forces, by velocities as these two functions give them. inputs are given with their rates.
+    Mechanism of rigid bodies. places(time, q, inputs): bodies as (mass, rotation matrix, position, tensor). power(velocity, spin): power of
+    the other forces; its arguments return the velocity of a position, and the angular velocity of a rotation, as functions of (time, q,
+    inputs). Inputs are given with their rates.
     """
 
     def __init__(self, places, gravity=(0, 0, 0), power=None, potential=lambda time, q, inputs: 0):
         self.places, self.gravity, self.power_of, self.potential = places, gravity, power, potential
 
     def _moved(self, at, s):
-        """(time, q, inputs) a time s later; at: time, q, v, inputs, their rates."""
+        """Return (time, q, inputs) a time s later; at: time, q, v, inputs and their rates."""
         t, q, v, u, ru = at
         return t + s, q + s * v, u + s * ru
 
@@ -51,7 +52,7 @@ class Mechanism:
         return np.imag(function(*self._moved(at, 1j * TINY))) / TINY
 
     def spin(self, matrix, at):
-        """The angular velocity along the axes that the matrix turns, from R^T dR/dt."""
+        """Angular velocity along the rotated axes, from R^T dR/dt."""
         W = np.real(matrix(*self._moved(at, 0))).T @ self.velocity(matrix, at)
         return np.array([W[2, 1], W[0, 2], W[1, 0]])
 
@@ -71,13 +72,13 @@ class Mechanism:
         return self.power_of(lambda f: self.velocity(f, at), lambda f: self.spin(f, at), at)
 
     def _by_velocity(self, function, at, i):
-        """Of a function of the velocity that is a polynomial of degree 2."""
+        """Partial derivative by velocity i of a function that is a polynomial of degree 2 in the velocities."""
         t, q, v, u, ru = at
         e = np.eye(len(q), dtype=REAL)[i]
         return (function((t, q, v + e, u, ru)) - function((t, q, v - e, u, ru))) / 2
 
     def residual(self, at, a, au):
-        """M a - f for accelerations a, and those of the inputs."""
+        """M a - f for accelerations a of the coordinates and au of the inputs."""
         t, q, v, u, ru = at
         later = lambda s: (t + s, q + s * v + s * s * a / 2, v + s * a, u + s * ru + s * s * au / 2, ru + s * au)
         rows = []
@@ -89,7 +90,7 @@ class Mechanism:
         return np.array(rows)
 
     def accelerations(self, time, q, v, inputs=(), rates=(), input_accelerations=(), constraint=None):
-        """constraint: (J, right side) of J a = right side."""
+        """Solve for the accelerations; constraint: (J, right side) of J a = right side."""
         make = lambda values: np.array([REAL(x) for x in values], dtype=REAL)
         at, n, au = (REAL(time), make(q), make(v), make(inputs), make(rates)), len(q), make(input_accelerations)
         rest = self.residual(at, np.zeros(n, REAL), au)

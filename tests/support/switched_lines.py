@@ -1,6 +1,6 @@
 """
-Linear systems with contacts and dry friction, from event to event: matrix exponentials between them, samples and bisection for
-their times, and the modes behind them from all combinations, each tried out.
+Linear systems with contacts and dry friction, from event to event. Matrix exponentials give the motion between events, samples and
+bisection their times. After an event each combination of modes is tried.
 """
 
 import itertools
@@ -13,13 +13,13 @@ TOUCHING, RESTING, SHORT_FLIGHT, SAMPLE, AHEAD = 1e-9, 1e-9, 1e-6, 0.002, 1e-7
 
 
 class Redundant(Exception):
-    """What holds follows from itself, so that its forces are not known."""
+    """The active constraints are linearly dependent, so that their forces are indeterminate."""
 
 
 class Line:
     """
-    M a = load @ (x, v, 1, cos(w t), sin(w t)) less friction[i] along the velocity rows[i] @ v; gaps @ x + offsets stay at 0 or
-    above, with restitution.
+    System M a = load @ (x, v, 1, cos(w t), sin(w t)), less friction[i] along each velocity rows[i] @ v, with gaps @ x + offsets >= 0 and
+    restitution.
     """
 
     def __init__(self, mass, load, rate, gaps, offsets, restitution, rows, friction):
@@ -37,11 +37,11 @@ class Line:
         return self.gaps @ z[: self.n] + self.offsets
 
     def held(self, closed, modes):
-        """The rows that hold: those of closed contacts, then of frictions that stick."""
+        """Rows of the active constraints: closed contacts, then sticking frictions."""
         return np.vstack([self.gaps[list(closed)], self.rows[[i for i, mode in enumerate(modes) if mode == 0]]])
 
     def linear(self, closed, modes):
-        """Accelerations, and forces along the rows that hold, as matrices for z."""
+        """Accelerations, and forces along the active rows, as matrices that multiply z."""
         rows = self.held(closed, modes)
         load = self.load.copy()
         for i, mode in enumerate(modes):
@@ -60,7 +60,7 @@ class Line:
         return matrix
 
     def stays(self, closed, modes, forces):
-        """Rows whose products with z are not negative as long as the modes stay."""
+        """Rows whose products with z are nonnegative as long as the modes apply."""
         n, rows = self.n, []
         for i in range(len(self.gaps)):
             row = np.zeros(self.size)
@@ -91,7 +91,7 @@ class Line:
         raise AssertionError("impacts without end")
 
     def rest(self, z):
-        """Contacts and frictions at rest, with velocities without what rounding has left of theirs."""
+        """Contacts and frictions at rest; remove the rounding errors of their velocities from z."""
         free, _ = self.linear([], np.sign(self.rows @ self.velocity(z)))
         rates, falls = self.gaps @ self.velocity(z), -self.gaps @ (free @ z)
         close = [
@@ -106,7 +106,7 @@ class Line:
         return close, slow
 
     def modes(self, z):
-        """What holds next: the first of all combinations, those that hold most first, that a short way shows to be right."""
+        """Modes that apply next: the first combination that a short motion confirms, tried in descending order of active constraints."""
         self.collide(z)
         close, slow = self.rest(z)
         modes = np.sign(self.rows @ self.velocity(z)).astype(int)
@@ -129,7 +129,7 @@ class Line:
         raise Redundant if redundant else AssertionError("no combination of modes is right")
 
     def run(self, x, v, times):
-        """The states at times, the first of which is that of the start."""
+        """States at `times`; the first of these is the start time."""
         t = times[0]
         z = np.concatenate([x, v, [1.0, np.cos(self.rate * t), np.sin(self.rate * t)]])
         states, self.events = [], []
@@ -166,7 +166,7 @@ class Line:
 
 
 def taylor(flow, row, z):
-    """The coefficients of row @ z, the highest first, of a motion that starts at z."""
+    """Taylor coefficients of row @ z, highest first, of the motion that starts at z."""
     coefficients = []
     for k in range(14):
         coefficients.append(row @ z)
@@ -175,7 +175,7 @@ def taylor(flow, row, z):
 
 
 def first_fall(values, step, samples, flow, row):
-    """The first time at which a value falls below 0."""
+    """First time at which a value becomes negative."""
     below = values < -1e-12
     middle = values[1:-1]
     dips = (middle < values[:-2]) & (middle <= values[2:]) & (middle < 0.25 * (values[:-2] + values[2:] - 2 * middle))
@@ -184,7 +184,7 @@ def first_fall(values, step, samples, flow, row):
         base = max(k - 1, 0)
         polynomial = taylor(flow, row, samples[base])
         times = np.linspace(0, step * (1 if values[k] < 0 else 2), 65)
-        if base == 0:  # it may leave 0 for a short time
+        if base == 0:  # the value may leave 0 for a short time
             times = np.concatenate([[0], np.geomspace(1e-8, times[-1], 200)])
         fine = np.polyval(polynomial, times)
         for j in np.flatnonzero(fine < -1e-12):

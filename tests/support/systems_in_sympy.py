@@ -1,4 +1,4 @@
-"""Every system of the design once more, typed in SymPy; the tests compare them with the FMUs."""
+"""The systems of fmu/, typed again in SymPy, for comparison with the FMUs."""
 
 import functools
 
@@ -86,7 +86,7 @@ def elastic_pendulum():
 
 
 def passive_walker():
-    """The swing of the compass gait, from the positions of hip and legs."""
+    """Swing phase of the compass gait, from the positions of hip and legs."""
     swing, stance, omega_swing, omega_stance = symbols("thetaSwing thetaStance omegaSwing omegaStance")
     m_hip, m, a, b, g, slope = symbols("mHip m a b g slope")
     q, v = [swing, stance], [omega_swing, omega_stance]
@@ -116,7 +116,7 @@ def double_pendulum():
 
 
 def chain_pendulum(count=10):
-    """T in the closed form of the n-pendulum: m l^2 / 2 sum_ij (n + 1 - max(i, j)) w_i w_j cos(theta_i - theta_j)."""
+    """n-pendulum with T in closed form: m l^2 / 2 sum_ij (n + 1 - max(i, j)) w_i w_j cos(theta_i - theta_j)."""
     m, l, g = symbols("m l g")
     theta = [sp.Symbol(f"theta[{i}]") for i in range(1, count + 1)]
     omega = [sp.Symbol(f"omega[{i}]") for i in range(1, count + 1)]
@@ -255,7 +255,7 @@ def inerter_tree():
 
 
 def motor():
-    """By Kirchhoff's law of the armature and Newton's of the rotor, without a potential for the magnets."""
+    """DC motor by Kirchhoff's voltage law of the armature and Newton's law of the rotor."""
     charge, theta, current, omega, voltage, load = symbols("charge theta current omega voltage load")
     R, L, k, J, b = symbols("R L k J b")
     forces = [voltage - R * current - k * omega, k * current - b * omega - load]
@@ -296,7 +296,7 @@ def gyrocompass():
 
 
 def flyball_governor():
-    """The springs' lengths from the plane of shaft and arm, which turns with it."""
+    """Flyball governor; the lengths of the springs follow in the rotating plane of shaft and arm."""
     psi, s, Omega, vs = symbols("psi s Omega vs")
     alpha, nu = symbols("alpha[1] alpha[2]"), symbols("nu[1] nu[2]")
     rho, L, w, e, h, mBall, k, c, l0, g = symbols("rho L w e h mBall k c l0 g")

@@ -1,4 +1,4 @@
-"""What typeset formulas of a documentation page say, against their text."""
+"""Comparison of typeset formulas (MathML) of a documentation page with their text."""
 
 import random
 import re
@@ -16,7 +16,7 @@ FUNCTIONS |= dict(pow=pow, asin=np.arcsin, acos=np.arccos, atan=np.arctan, asinh
 
 
 def infix(element):
-    """What the element means, as an expression in Python."""
+    """Convert a MathML element to an expression in Python."""
     tag, parts = element.tag.removeprefix(MATHML), [infix(child) for child in element]
     if tag == "mfrac":
         return f"(({parts[0]})/({parts[1]}))"
@@ -38,7 +38,7 @@ def infix(element):
 
 
 def symbol(name):
-    """The letter and the indices of a name, joined by _."""
+    """Letter and indices of a name, joined by _."""
     *part, last = name.rsplit(".", 1)
     word, number, bracket = re.fullmatch(r"(.*?\D|)(\d*)(?:\[(.*)\])?", last).groups() if "[" not in last else (last[: last.index("[")], "", last[last.index("[") + 1 : -1])
     if word.endswith("_") or not word:
@@ -52,7 +52,7 @@ def symbol(name):
 
 
 def plain(text):
-    """The text in the names that infix() gives."""
+    """Rewrite the text with the names that infix() gives."""
     text = re.sub(r"\bder\(", "der ", re.sub(r"der\(der\(([\w.\[\]]+)\)\)", r"der_der_<\1>", text))
     text = re.sub(r"der ([\w.\[\]]+)\)", r"der_<\1>", text)
     text = re.sub(r"(?<![\w.<])([A-Za-z_][\w.]*(?:\[[\w,]+\])?(?:\.[A-Za-z_]\w*)*)(?![\w(<.\[])", lambda found: symbol(found[1]), text)
@@ -66,7 +66,7 @@ def value(side, values):
 
 
 def check(page):
-    """Compares every formula with its text at random values; returns how many there are."""
+    """Compare every formula with its text at random values; return their number."""
     root, count = ElementTree.fromstring(page), 0
     generator = random.Random(1)
     for equation in root.iter("div"):

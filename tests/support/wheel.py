@@ -1,4 +1,4 @@
-"""The wheel, built and installed for tests that use it."""
+"""The wheel, built and installed for tests."""
 
 import fcntl
 import functools
@@ -11,12 +11,12 @@ from fmu import ROOT
 
 FOLDER = ROOT / "build" / "wheel"
 COMMAND = FOLDER / "venv" / "bin" / "lagrange-fmu"
-# Neither a compiler nor CMake nor zip, nor a home with what zig has compiled.
+# Environment without compiler, CMake, zip, and zig's cache in a home folder.
 BARE = {"PATH": "/nonexistent", "TMPDIR": str(FOLDER / "scratch"), "LAGRANGE_FMU_CACHE": str(FOLDER / "scratch" / "cache")}
 
 
 def build_wheel(source, folder, *further):
-    """From the folder of a pyproject.toml."""
+    """Build a wheel from a folder with a pyproject.toml."""
     words = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-build-isolation", "--no-deps", "--wheel-dir", folder, *further]
     words.append(source)
     result = subprocess.run(words, capture_output=True, text=True)
@@ -33,7 +33,7 @@ def build_sdist(folder):
 
 
 def _install(wheel):
-    """Into an environment of its own, with what the wheel asks for and nothing else."""
+    """Install a wheel with its requirements alone into an environment of its own."""
     pip = FOLDER / "venv" / "bin" / "pip"
     if not pip.exists():
         subprocess.run([sys.executable, "-m", "venv", FOLDER / "venv"], check=True)
@@ -43,7 +43,7 @@ def _install(wheel):
 
 @functools.cache
 def installed():
-    """The wheel of this tree, after it has been installed where COMMAND is; once in a run of tests, other processes wait."""
+    """Install the wheel of this tree where COMMAND is, once in a run of tests; other processes wait. Return the wheel."""
     (FOLDER / "scratch").mkdir(parents=True, exist_ok=True)
     this_run = os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid()))
     with open(FOLDER / "lock", "a+") as lock:
@@ -60,7 +60,7 @@ def installed():
 
 @functools.cache
 def package():
-    """The package lagrange_fmu of the wheel, in this process, with its environment's packages."""
+    """Import lagrange_fmu of the installed wheel into this process, with the packages of its environment."""
     installed()
     [folder] = (FOLDER / "venv" / "lib").glob("python*/site-packages")
     sys.path.append(str(folder))
@@ -70,6 +70,6 @@ def package():
 
 
 def run(*words, cwd, environment=BARE):
-    """The command of the wheel in an environment without tools."""
+    """Run the command of the wheel in an environment without tools."""
     installed()
     return subprocess.run([COMMAND, *map(str, words)], env=environment, cwd=cwd, capture_output=True, text=True)
