@@ -1,4 +1,4 @@
-"""What motion conserves, and what the forces' work changes."""
+"""Conserved quantities, and the energy balance with the work of forces."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ import fmu
 
 TOLERANCE = 1e-11
 
-# Systems without friction, drive or explicit time, started far from rest.
+# Systems without friction, inputs or explicit time, started far from rest.
 CONSERVATIVE = {
     "ParticleCartesian": dict(m=0.7, kx=3, x=2, vy=3, vz=-1),
     "ParticlePolar": dict(r=1, omega=1.3, mu=1.4),
@@ -54,7 +54,7 @@ def test_angular_momentum_about_the_vertical(open_fmu):
 
 
 def test_work_on_the_damped_pendulum(open_fmu):
-    """Change of K + U = work of the torque and of friction, with a torque that changes at every step."""
+    """The change of K + U equals the work of friction and of a torque that changes at every step."""
     instance = open_fmu("DampedPendulum").initialize(dict(b=0.7, theta=1.2, m=2, l=0.6), TOLERANCE)
     start = instance.get("totalEnergy")
     for i in range(200):
@@ -72,7 +72,7 @@ def test_friction_takes_energy(open_fmu):
 
 
 def test_power_of_the_force_on_the_cart(open_fmu):
-    """With a constant force, change of K + U = force times the cart's way."""
+    """With a constant force, the change of K + U equals the force times the displacement of the cart."""
     instance = open_fmu("InvertedPendulumCart").initialize(dict(theta=0.5, F=2.5), TOLERANCE)
     start = instance.get("totalEnergy")
     for _, energy, x in instance.run(5, 0.1, "totalEnergy", "x"):
@@ -81,8 +81,8 @@ def test_power_of_the_force_on_the_cart(open_fmu):
 
 def test_the_lost_term(open_fmu):
     """
-    A derivation that is often copied keeps - m l x' theta' sin(theta) in the equation of theta, because it drops
-    the same term of dL/dtheta. It does not conserve energy; the FMU does.
+    A common error in derivations of this system drops m l x' theta' sin(theta) from dL/dtheta, so that the same term of d/dt dL/domega
+    remains in the equation of theta. The wrong equation does not conserve energy; the FMU does.
     """
     M, m, l, g = 1.0, 0.3, 0.5, 9.81
     start = [0.0, 0.4, 1.0, 0.0]
@@ -109,7 +109,7 @@ def test_the_lost_term(open_fmu):
 
 
 def test_couplers_against_their_formulas(open_fmu):
-    """The systems without coordinates."""
+    """The systems without coordinates give the values of their closed formulas."""
     random = np.random.default_rng(3)
     spring = open_fmu("SpringDamper").initialize()
     feedback = open_fmu("StateFeedback").initialize()

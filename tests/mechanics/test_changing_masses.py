@@ -1,4 +1,4 @@
-"""What fmu/README.md advises for masses that change, beside its examples: against closed forms, and what is refused."""
+"""Systems of variable mass as fmu/README.md describes them, against closed forms; and the error messages."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import fmu
 from fmu import lagc
 
 HEAD = '<system name="{}"><parameter name="g" start="9.81" unit="m/s2"/>'
-# Each starts as m = 2 kg, and 3 m/s where it does not begin to fall.
+# Each starts with m = 2 kg, and at 3 m/s unless it starts to fall from rest.
 SYSTEMS = {
     "SandInCart": """<coordinate name="x" velocity="v" unit="m" velocityStart="3"/>
   <parameter name="rate" start="0.5" unit="kg/s"/><parameter name="m0" start="2" unit="kg"/>
@@ -27,7 +27,7 @@ def built():
     fmu.build_systems("changing-masses", {name: HEAD.format(name) + text for name, text in SYSTEMS.items()})
 
 
-# m v is kept; m dv/dt = F; and v^2 = g x from the energy.
+# From the conservation of m v, from m dv/dt = F, and from the energy, v^2 = g x.
 MOTIONS = {
     "SandInCart": lambda t: (2 * 3 / 0.5 * np.log((2 + 0.5 * t) / 2), 2 * 3 / (2 + 0.5 * t)),
     "LeakingCart": lambda t: (3 * t + 8 * t + 8 * (4 - t) * np.log(1 - t / 4), 3 - 8 * np.log(1 - t / 4)),

@@ -1,4 +1,4 @@
-"""Constraints: an independent derivation with multipliers, closed forms, published values, and what cannot be fulfilled."""
+"""Constraints against an independent derivation with multipliers, closed forms and published values; and constraints without a solution."""
 
 import subprocess
 
@@ -127,7 +127,7 @@ SYSTEMS = {
     "Angles8": ANGLES.format(count=8),
 }
 
-# Constraints that agree at the start and contradict each other later, and constraints by their whole text.
+# Constraints that agree at the start and contradict each other later, and constraints given as a whole text.
 POINT = """<system name="{name}"><parameter name="g" start="9.81"/>
 <coordinate name="x" velocity="vx" start="0.3"/><coordinate name="y" velocity="vy"/>
 <particle mass="2" x="x" y="y"/><potential>2*g*y</potential>{constraints}<experiment stopTime="1"/></system>"""
@@ -182,7 +182,7 @@ def knife_edge():
 
 @pytest.mark.parametrize("name, define", [("Slider", slider), ("FourBar", four_bar), ("KnifeEdge", knife_edge)])
 def test_accelerations_and_forces(name, define, open_fmu):
-    """At random states, which need not fulfil the constraints; the forces with their signs."""
+    """Accelerations and forces agree at random states, which need not satisfy the constraints; the forces agree in sign."""
     definition, constraints = define()
     random = np.random.default_rng(3)
     instance = open_fmu(name, kind=FMU2Model)
@@ -197,7 +197,7 @@ def test_accelerations_and_forces(name, define, open_fmu):
 
 
 def test_driven_mechanism(open_fmu):
-    """The crank turns as it is told; the torque is the multiplier of a further row, d2 theta/dt2 = what is told."""
+    """The crank follows its prescribed acceleration; its torque is the multiplier of the additional row d2 theta/dt2 = acceleration."""
     definition, _ = four_bar()
     instance = open_fmu("DrivenFourBar").initialize(tolerance=1e-10)
     states = fmu.states_of("DrivenFourBar")
@@ -217,7 +217,7 @@ def test_driven_mechanism(open_fmu):
 
 
 def test_pendulum_and_its_tension(open_fmu):
-    """Jacobi's elliptic function, and m (g cos(theta) + l omega^2) along the rod, positive in tension."""
+    """The angle follows Jacobi's elliptic function; the force is m (g cos(theta) + l omega^2) along the rod, positive in tension."""
     instance = open_fmu("PendulumCartesian").initialize({"x": np.sin(1.2), "y": -np.cos(1.2)}, tolerance=1e-10)
     for _ in range(50):
         instance.step(0.1)
@@ -228,7 +228,7 @@ def test_pendulum_and_its_tension(open_fmu):
 
 
 def test_knife_edge(open_fmu):
-    """From rest with a spin, the plate runs along a cycloid and does not slide down for good (Neimark and Fufaev)."""
+    """From rest with a spin, the plate moves along a cycloid and does not slide down indefinitely (Neimark and Fufaev)."""
     instance = open_fmu("KnifeEdge").initialize(tolerance=1e-10)
     scale = 9.81 * np.sin(0.2) / 2
     for _ in range(20):
@@ -245,7 +245,7 @@ ANDREWS = dict(
 
 
 def test_andrews_mechanism(open_fmu):
-    """The values of the test set for initial value problems: accelerations and forces at the start, positions at 0.03 s."""
+    """Accelerations and forces at the start, and positions at 0.03 s, are those of the Test Set for IVP Solvers."""
     instance = open_fmu("AndrewsSqueezer").initialize(tolerance=1e-10)
     start = instance.get("der(vbeta)", "der(vtheta)", "der(vgamma)", "loop3X.force", "loop3Y.force")
     np.testing.assert_allclose(
@@ -258,19 +258,22 @@ def test_andrews_mechanism(open_fmu):
 
 
 def test_flat_positions_are_passed(open_fmu):
-    """All rods lie flat now and then, where the row is free for an instant; energy is the measure (IFToMM: 0.1 J)."""
+    """
+    The chain passes positions in which all rods lie flat and the Jacobian loses rank. The energy error stays below the 0.1 J of the IFToMM
+    benchmark.
+    """
     instance = open_fmu("NFourBar").initialize()
     energy = instance.get("totalEnergy")
     for _ in range(1000):
         instance.step(0.01)
-    assert instance.get("theta[0]") > 4 * np.pi  # it has turned
+    assert instance.get("theta[0]") > 4 * np.pi  # it has made two revolutions
     assert abs(instance.get("totalEnergy") - energy) < 1e-6
     assert abs(instance.get("theta[0]") - instance.get("theta[40]")) < 1e-9 and abs(instance.get("phi[20]")) < 1e-9
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_method(method, open_fmu):
-    """Against SciPy with SymPy's equations; constraints at all levels, of which one moves and one is nonholonomic."""
+    """Each solver agrees with SciPy on SymPy's equations. The constraints are at all levels; one moves and one is nonholonomic."""
     from scipy.integrate import solve_ivp
 
     definition, _ = slider()
@@ -292,7 +295,7 @@ def test_every_method(method, open_fmu):
 
 
 def test_directional_derivatives(open_fmu):
-    """Of accelerations, forces and an output of both, against central differences."""
+    """Derivatives of accelerations, forces and an output of both agree with central differences."""
     instance = open_fmu("Slider", kind=FMU2Model)
     known = ["x", "y", "s", "vx", "vy", "vs", "g", "R"]
     unknown = ["der(vx)", "der(vs)", "pressure"]
@@ -305,7 +308,7 @@ def test_directional_derivatives(open_fmu):
 
 
 def test_model_exchange_asks_for_projection(open_fmu):
-    """A state that drifted by more than the tolerance is brought back in an event; one that did not is left alone."""
+    """An event projects a state that drifted by more than the tolerance; a smaller drift leaves the state unchanged."""
     instance = open_fmu("PendulumCartesian", kind=FMU2Model)
     instance.initialize(tolerance=1e-6)
     model = instance.fmu
@@ -327,7 +330,9 @@ def model_pointer():
 
 
 def test_start_values_are_moved_least(open_fmu):
-    """The nearest point on the circle lies on the ray; velocities lose their radial part alone. The log tells."""
+    """
+    Start values move to the nearest point of the circle, which lies on the ray; velocities lose their radial part only. The log reports it.
+    """
     instance = open_fmu("PendulumCartesian").initialize({"x": -0.9, "y": 0.1, "vx": 0.3, "vy": 0.2})
     length = np.hypot(0.9, 0.1)
     direction = np.array([-0.9, 0.1]) / length
@@ -367,7 +372,7 @@ def test_redundant_constraints_are_told_from_contrary_ones(open_fmu):
 @pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("size", [0.01, 1.0])
 def test_constraints_that_part_later(number, size, open_fmu):
-    """One that follows from the other at the start, but not later, is not forgotten."""
+    """A constraint that follows from the other at the start, but not later, stays active."""
     instance = open_fmu(f"Parting{number}").initialize()
     with instance.fails(DISCARD, r"the constraint 'c[01]' cannot be kept there with the others; expected constraints that agree"):
         while instance.time < 1:
@@ -383,7 +388,7 @@ def test_constraints_without_derivatives(open_fmu):
 
 
 def test_start_values_from_afar(open_fmu):
-    """The nearest point of a circle lies straight ahead, however far away; what has no value is told."""
+    """Start values far away move to the nearest point of the circle, along the ray. A constraint without a finite value is an error."""
     for x, y in ((100.0, -3.0), (5.0, 5.0), (1e6, 1.0)):
         instance = open_fmu("Whole2").initialize({"x": x, "y": y})
         np.testing.assert_allclose(instance.get("x", "y"), np.array([x, y]) / np.hypot(x, y) / 2, atol=1e-9)
@@ -393,7 +398,7 @@ def test_start_values_from_afar(open_fmu):
 
 
 def test_model_exchange_for_long():
-    """FMPy's CVode at a loose tolerance: the length of the rod does not drift."""
+    """The rod's length does not drift under FMPy's CVode at a loose tolerance."""
     import fmpy
 
     result = fmpy.simulate_fmu(
@@ -404,7 +409,10 @@ def test_model_exchange_for_long():
 
 
 def test_a_step_that_fails_does_not_go_back(open_fmu):
-    """The coordinate jumps at t = 0.2, inside a step of the solver that has served earlier communication steps."""
+    """
+    The coordinate jumps at t = 0.2, within a solver step that covers earlier communication points. The failed step keeps a state no earlier
+    than the last communication point.
+    """
     instance = open_fmu("Jump").initialize()
     for _ in range(3):
         instance.step(0.05)
@@ -415,7 +423,10 @@ def test_a_step_that_fails_does_not_go_back(open_fmu):
 
 
 def test_overconstrained_table(open_fmu):
-    """A table on three cranks stays level; one crank is too many. It does not swing through where they lie flat, and it could fold."""
+    """
+    A table on three cranks stays level although one crank is redundant. The cranks do not pass the flat position, where the table could
+    fold.
+    """
     instance = open_fmu("Table").initialize()
     assert any("'third' follows from the others" in text for _, _, text in instance.messages)
     energy = instance.get("totalEnergy")
@@ -426,7 +437,7 @@ def test_overconstrained_table(open_fmu):
 
 
 def test_limit_of_a_mechanism(open_fmu):
-    """The tip comes to the end of the arm's reach: sqrt(4 - 0.3^2) = 1 + 0.2 t at t = 4.887."""
+    """The tip reaches the limit of the workspace: sqrt(4 - 0.3^2) = 1 + 0.2 t at t = 4.887."""
     instance = open_fmu("PulledArm").initialize()
     while instance.time < 4.87:
         instance.step(0.01)
@@ -438,7 +449,7 @@ def test_limit_of_a_mechanism(open_fmu):
 
 
 def test_chain_of_rods(open_fmu):
-    """By positions with constraints and by angles without: the same motion, tensions and energies."""
+    """A chain by positions with constraints and one by angles have the same motion, tensions and energies."""
     rods, angles = open_fmu("Rods8").initialize(tolerance=1e-11), open_fmu("Angles8").initialize(tolerance=1e-11)
     for _ in range(10):
         rods.step(0.1)
@@ -449,7 +460,7 @@ def test_chain_of_rods(open_fmu):
 
 
 def test_long_run_keeps_constraints(open_fmu):
-    """Nothing adds up: 20,000 s, some 300,000 steps of the solver. LONG_RUNS=1 takes the million."""
+    """Constraint residuals do not accumulate over 20,000 s, some 300,000 solver steps. LONG_RUNS=1 runs a million."""
     import os
 
     instance = open_fmu("PendulumCartesian").initialize()
@@ -461,7 +472,7 @@ def test_long_run_keeps_constraints(open_fmu):
 
 
 def test_a_parameter_that_is_tuned(open_fmu):
-    """The rod becomes longer between two steps: the bob is moved onto it, and the log says so."""
+    """The rod becomes longer between two steps: the bob is moved to the new length, and the log reports it."""
     instance = open_fmu("PendulumCartesian").initialize()
     instance.step(0.5)
     instance.set(l=1.1)
@@ -472,7 +483,7 @@ def test_a_parameter_that_is_tuned(open_fmu):
 
 
 def test_a_parameter_that_is_tuned_beyond_reach(open_fmu):
-    """The step is discarded and the state stays, as an importer needs it to try another value."""
+    """The step is discarded and the state stays, so that an importer can try another value."""
     instance = open_fmu("FourBar").initialize()
     instance.step(0.1)
     state = instance.fmu.getFMUState()
@@ -488,7 +499,7 @@ def test_a_parameter_that_is_tuned_beyond_reach(open_fmu):
 
 
 def test_jacobian(tmp_path):
-    """Column by column as the derivative along each state, which is held against differences above."""
+    """Each column of the Jacobian equals the directional derivative along that state, which a test above compares with differences."""
     source = fmu.archive("Sliderbdf").parent.parent / "systems" / "Sliderbdf" / "system.c"
     words = ["gcc", "-O1", f"-I{fmu.ROOT}/include", f"-I{fmu.ROOT}/src/runtime", fmu.ROOT / "tests" / "c" / "jacobian.c", source, *runtime(2)]
     subprocess.run([*map(str, words), "-o", str(tmp_path / "jacobian")], check=True)
@@ -497,7 +508,7 @@ def test_jacobian(tmp_path):
 
 
 def test_linearization():
-    """A pendulum by x and y at rest below its pivot: der(vx) = -g/l x, and der(vy) = 0 to first order."""
+    """Pendulum by x and y at rest below its pivot: der(vx) = -g/l x, and der(vy) = 0 to first order."""
     system = fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml"
     result = fmu.lagc("--linearize", system, "--at", "y=-1")
     assert result.returncode == 0 and "[-9.81, 0, 0, 0]\n  [0, 0, 0, 0]" in result.stdout

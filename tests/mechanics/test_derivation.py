@@ -1,4 +1,4 @@
-"""The derived accelerations, energies and positions against SymPy's, at random states and parameters."""
+"""Derived accelerations, energies and positions against SymPy's, at random states and parameters."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ TOLERANCE = 1e-11
 
 
 def sample(name, definition, random):
-    """Time and one value for each coordinate, velocity, input and parameter, away from singular points."""
+    """Random time, coordinates, velocities, inputs and parameters, away from singular points."""
     values = {time: random.uniform(0, 3)}
     for symbol in [*definition.q, *definition.v, *definition.inputs]:
         values[symbol] = random.uniform(-3, 3)
@@ -30,7 +30,7 @@ def sample(name, definition, random):
 
 
 def situations(name, open_fmu):
-    """The instance in initialization mode with random values, and these values, many times."""
+    """Yield the instance in initialization mode at random values, and these values, CASES times."""
     definition = system(name)
     instance = open_fmu(name)
     random = np.random.default_rng(sum(map(ord, name)))
@@ -67,16 +67,16 @@ def test_every_system_is_compared():
 
 
 def terms_up_to(order, expression, variables):
-    """The Taylor polynomial about the origin of the variables."""
+    """Taylor polynomial about the origin of the variables."""
     e = sp.Symbol("e")
     moved = sp.sympify(expression).subs({variable: e * variable for variable in variables}, simultaneous=True)
     return sum(sp.diff(moved, e, k).subs(e, 0) / sp.factorial(k) for k in range(order + 1))
 
 
 def energies_and_positions(name, definition):
-    """By the variables' names. Linear systems have energies of second order and positions of first order."""
+    """Expressions by variable name. Linear systems have energies of second order and positions of first order."""
     T = definition.T
-    if name == "RelativisticParticle":  # what stands in a Lagrangian there is no energy
+    if name == "RelativisticParticle":  # its Lagrangian's kinetic term is not its kinetic energy
         T = sum(v * sp.diff(T, v) for v in definition.v) - T
     energies = {"kineticEnergy": T, "potentialEnergy": definition.U}
     positions = {
@@ -121,7 +121,7 @@ PIVOT_EQUATION = "-g/l*sin(theta - gamma) - r*w**2/l*sin(theta + w*time)"
     ],
 )
 def test_published_equations(name, equations, open_fmu):
-    """The equations of textbooks, typed as they are printed, so that SymPy's derivation is checked as well."""
+    """Accelerations agree with equations typed as textbooks print them, which also checks SymPy's derivation."""
     definition = system(name)
     names = {symbol.name: symbol for symbol in definition.arguments}
     formulas = [sp.sympify(line, locals=names) for line in equations.split("\n") if line.strip()]

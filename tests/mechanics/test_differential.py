@@ -1,4 +1,4 @@
-"""Random systems (differential/) against SymPy's equations followed in long doubles; scripts/differential runs thousands."""
+"""Random systems (differential/) against SymPy's equations integrated in long doubles; scripts/differential runs thousands."""
 
 import copy
 import faulthandler
@@ -24,8 +24,8 @@ from differential.system import Action, Plan, System, Table
 from references import Motion
 
 SEED = 644
-COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the fewest that have all families of equations, of any seed tried
-# Few that have contacts, stops, friction, events, frames, hills, and event mode; scripts/differential --kind switching runs many.
+COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the smallest count that has all families of equations, whatever the seed
+# Seeds with contacts, stops, friction, events, frames, hills and event mode; scripts/differential --kind switching runs many.
 SWITCHING = [34, 47, 52]
 SMOOTH = {
     "smooth_potential",
@@ -36,40 +36,40 @@ SMOOTH = {
     "time_function",
     "magnetic",
 }
-TIME_LIMIT = 300  # s; none needs more than some seconds
+TIME_LIMIT = 300  # s; each runs for a few seconds
 
 
 @pytest.mark.parametrize("number", range(COUNT))
 def test_random_system(number, tmp_path):
-    """A value that is off, a crash, a hang, or C that does not compile is wrong; a refusal has to have a message."""
+    """Wrong values, crashes, hangs, and C that does not compile are failures. An error is accepted if it has a message."""
     system = generate(SEED, number)
-    system.plan.unrolled = False  # takes long to compile; those of fmu/ are
+    system.plan.unrolled = False  # unrolled code compiles slowly; the systems of fmu/ cover it
     outcome = judge_system(system, tmp_path, TIME_LIMIT)
     assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
 
 @pytest.mark.parametrize("number", SWITCHING)
 def test_random_system_that_switches(number, tmp_path):
-    """As above, from event to event; through event mode of FMI 3.0 where the plan says so."""
+    """The same for random systems with events, through event mode of FMI 3.0 if the plan says so."""
     system = switching_generator.generate(1, number)
     outcome = judge_system(system, tmp_path, TIME_LIMIT)
     assert outcome.verdict == "agrees", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
 
 def test_the_systems_have_everything():
-    """A hundred have no family of equations that those of one run have not."""
+    """The systems of one run have every family of equations that a hundred systems have."""
     families = lambda count: {family for number in range(count) for family in generate(SEED, number).families}
     assert families(COUNT) >= families(100)
 
 
 def test_a_system_is_the_same_everywhere():
-    """The generator uses no hash and no set's order."""
+    """The generator depends on no hash and on no order of a set."""
     assert generate(7, 11).xml() == generate(7, 11).xml()
     assert generate(7, 11).xml() != generate(7, 12).xml()
 
 
 def oscillator(*forces, start=(1.0, 0.0), length=2.0, steps=1):
-    """q'' = force, of mass 1."""
+    """System q'' = force, of mass 1."""
     system = System("Oscillator", plan=Plan(0.0, length, [Action() for _ in range(steps)], 1e-10))
     draw = Draw(0, system)
     q, _ = coordinate(draw, *start)
@@ -79,14 +79,14 @@ def oscillator(*forces, start=(1.0, 0.0), length=2.0, steps=1):
 
 
 def follow(system, folder):
-    """By both references: the state at the end, and their difference."""
+    """State at the end by both references, and their difference."""
     reference = Reference(Derivation(system), folder)
     exact, other = reference.trajectory(7, 1e-16, 0.5), reference.trajectory(5, 1e-15, 0.3)
     return exact[-1], np.max(np.abs(exact - other))
 
 
 def test_wrong_results_are_found(tmp_path):
-    """An FMU of another system, whose spring is 1e-6 stiffer, has to be called wrong."""
+    """An FMU of another system, whose spring is 1e-6 stiffer, is judged wrong."""
     right = oscillator(-4 * name("q1"))
     assert judge_system(right, tmp_path / "right").verdict == "agrees"
     stiffer = copy.deepcopy(right)
@@ -97,7 +97,7 @@ def test_wrong_results_are_found(tmp_path):
 
 
 def abort():
-    """As a crash in C, of which Python is not to tell in the log of the tests."""
+    """Crash as C code does, without Python's report in the log of the tests."""
     faulthandler.disable()
     os.abort()
 
@@ -111,7 +111,7 @@ def test_crashes_and_hangs_are_found(fate, message, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_reference_sees_a_pulse(width, tmp_path):
-    """q'' = exp(-((t - 1)/w)^2) from rest: the velocity becomes w sqrt(pi), the path that over 1 s."""
+    """q'' = exp(-((t - 1)/w)^2) from rest: the velocity becomes w sqrt(pi), and the path within the last 1 s has the same value."""
     pulse = exp(-(((name("time") - 1) / node(width)) ** 2))
     (q, v), doubt = follow(oscillator(pulse, start=(0.0, 0.0)), tmp_path)
     impulse = width * math.sqrt(math.pi)
@@ -120,7 +120,7 @@ def test_reference_sees_a_pulse(width, tmp_path):
 
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 def test_reference_sees_a_hill(width, tmp_path):
-    """q'' = -dU/dq, U = 1/4 exp(-(q/w)^2), passed at 1 m/s: the time lost is the integral of 1/v - 1."""
+    """q'' = -dU/dq, U = 1/4 exp(-(q/w)^2), passed at 1 m/s: the delay is the integral of (1/v - 1) dq."""
     shape = name("q1") / node(width)
     (q, v), doubt = follow(oscillator(shape / (2 * node(width)) * exp(-(shape**2)), start=(-1.0, 1.0)), tmp_path)
     s = np.linspace(-10, 10, 4001)  # the trapezoidal rule converges exponentially
@@ -129,7 +129,7 @@ def test_reference_sees_a_hill(width, tmp_path):
 
 
 def test_reference_sees_a_kink(tmp_path):
-    """q'' = -|q| from q = 0 at 1 m/s: a sine until pi, and from there a hyperbolic sine."""
+    """q'' = -|q| from q = 0 at 1 m/s: a sine until pi, then a hyperbolic sine."""
     (q, v), doubt = follow(oscillator(-absolute(name("q1")), start=(0.0, 1.0), length=5.0), tmp_path)
     assert doubt < 1e-13
     assert q == pytest.approx(-math.sinh(5 - math.pi), rel=1e-14) and v == pytest.approx(
@@ -139,8 +139,9 @@ def test_reference_sees_a_kink(tmp_path):
 
 def test_reference_switches(tmp_path):
     """
-    A ball under g = 2 bounces with 0.5 from 1 m and rests from t = 3 on; a mass of 1 m/s that friction of 0.5 brakes stands at
-    x = 1 from t = 2 on; a push of 1/w inside of the hill of a condition, and an event that counts it.
+    Closed forms of three motions. A ball under g = 2 falls from 1 m, bounces with restitution 0.5 and rests from t = 3. A mass at 1 m/s,
+    braked by a friction of 0.5, stops at x = 1 at t = 2. A force of 1/w acts while a narrow hill of time exceeds 0.5, and an event counts
+    both crossings.
     """
     w = 1e-4
     system = System("Known", plan=Plan(0.0, 4.0, [Action() for _ in range(8)], 1e-10), switches=Switches(are_followed=True, finest=w / 20))
@@ -164,11 +165,11 @@ def test_reference_switches(tmp_path):
     assert column("q3")[2:] == pytest.approx(push * np.array([0.8, 2.8, 3.3]), rel=1e-13)
 
 
-S1, S2, GRAVITY = 0.25, 0.75, 2.0  # slopes on both sides of a knot at x = 1, y = 0.25
+S1, S2, GRAVITY = 0.25, 0.75, 2.0  # slopes on either side of a knot at x = 1, y = 0.25
 
 
 def ramp(gap, rates, restitution):
-    """A point that starts at the knot with these rates, with gravity."""
+    """A point under gravity that starts at the knot with these rates."""
     system = System("Ramp", plan=Plan(0.0, 0.5, [Action() for _ in range(2)], 1e-10), switches=Switches(are_followed=True))
     system.tables.append(Table("profile", [0.0, 1.0, 2.0], [0.0, S1, S1 + S2], "linear"))
     draw = Draw(0, system)
@@ -184,8 +185,8 @@ def ramp(gap, rates, restitution):
 @pytest.mark.parametrize("restitution, direction", [(0.5, 1), (0.0, 1), (0.5, -1)])
 def test_reference_starts_at_a_knot(gap, restitution, direction, tmp_path):
     """
-    Up along S1 to the slope S2: by Newton's law through the mass along the normal (-S2, 1), s + (1 + e) (S2 - S1)/(1 + S2^2) of it.
-    Down from the knot it stays on S1.
+    Up along S1 onto the slope S2, Newton's law of restitution gives the impulse per mass (1 + e) (S2 - S1)/(1 + S2^2) along the normal
+    (-S2, 1). Down from the knot the point stays on S1.
     """
     system = ramp(gap, (direction, direction * S1), restitution)
     rows = EventReference(Derivation(system), tmp_path).trajectory(7, 1e-16, 0.5)
@@ -201,11 +202,11 @@ def test_reference_starts_at_a_knot(gap, restitution, direction, tmp_path):
 
 
 def test_reference_agrees_with_taylor_series(tmp_path):
-    """With FLINT's series at 30 digits, where systems are smooth and their forces wide."""
+    """The reference agrees with FLINT's series at 30 digits on smooth systems without narrow forces."""
     compared = 0
     for number in range(200):
         system = generate(SEED, number)
-        # Motion knows neither kinks nor changes, and its atan2 has one branch.
+        # Motion supports neither kinks nor changed parameters, and its atan2 has one branch.
         if not system.families <= SMOOTH | {f for f in system.families if f.startswith("skeleton")}:
             continue
         if system.work or "atan2" in system.xml() or any(action.parameters for action in system.plan.actions):

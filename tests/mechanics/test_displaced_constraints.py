@@ -1,4 +1,4 @@
-"""Forces of reaction beside constraints, and beside what is driven, against an independent derivation with multipliers."""
+"""Reaction forces beside constraints and driven coordinates, against an independent derivation with multipliers."""
 
 import numpy as np
 import pytest
@@ -8,8 +8,8 @@ from sympy import cos, sin, sqrt
 import fmu
 from mechanics import System, kinetic
 
-# A bob on a rod, that a constraint holds; on it another one with an inertia, whose length and angle are displaced, and
-# whose joint is displaced across; a mass is driven along a rail and pulls the first bob by a spring.
+# A bob on a rod, which is a constraint. A second rod with inertia hangs from the bob; its length, its angle and its joint have
+# displacements. A mass driven along a rail pulls the bob by a spring.
 HANGING = """
 <system name="{name}">
   <parameter name="m" start="1.3"/><parameter name="M" start="0.8"/><parameter name="J" start="0.2"/>
@@ -51,7 +51,7 @@ def solve():
     T = kinetic([(m, (x, y)), (M, rod), (J, (t + u,)), (2, (d,))], q, v)
     rate = sum(sp.diff(rod[0], qi) * vi for qi, vi in zip(q, v))
     Q = [sp.diff(rod[0], qi) * (F - b * rate) for qi in q]
-    motion = sp.sin(2 * time) / 2  # of the drive: its acceleration is cos(2 t), whatever its velocity
+    motion = sp.sin(2 * time) / 2  # of the drive; its acceleration is cos(2 t) for any velocity
     constraints = [sqrt(x**2 + y**2) - l, v[3] - motion, s, u, a]
     system = System(list(q), list(v), T, g * (m * y + M * rod[1]) + k * (x - d) ** 2 / 2, Q, inputs=[F],
                     parameters=[m, M, J, l, h, k, g, b], constraints=constraints)  # fmt: skip
@@ -96,7 +96,7 @@ def test_forces_along_a_motion(solve, open_fmu):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_derivative_of_an_output(name, open_fmu):
-    """Along directions in which the constraint goes on to hold, against central differences."""
+    """Derivatives agree with central differences along directions that keep the constraint satisfied."""
     instance = open_fmu(name)
     instance.fmu.setupExperiment(startTime=0.4)
     instance.fmu.enterInitializationMode()

@@ -1,4 +1,4 @@
-"""Driven coordinates with every solver, in linear systems, and the work of what drives them."""
+"""Driven coordinates with every solver and in linear systems, and the work of the driving forces."""
 
 import re
 
@@ -14,7 +14,7 @@ from held_systems import CRANE, METHODS, ROBOT, rename
 
 @pytest.fixture(scope="module")
 def cranes():
-    """The crane with each solver, and the chain with work, for which its mass matrix is factored symbolically."""
+    """Build the crane with each solver, and the chain with <work>, whose mass matrix is factored symbolically."""
     texts = {f"Crane{m}": rename(CRANE.format(further=f'<work/><solver method="{m}"/>'), f"Crane{m}") for m in METHODS}
     texts["WorkingRobot"] = rename(ROBOT.format(further="<work/>"), "WorkingRobot")
     fmu.build_systems("cranes", texts)
@@ -22,7 +22,7 @@ def cranes():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_every_solver_drives(method, cranes, open_fmu):
-    """The motion against DOP853 on the independent derivation; the energy changes by the work of force and drive alone."""
+    """The motion agrees with DOP853 on the independent derivation; the energy changes by the work of force and drive."""
     case = reactions_in_sympy.CASES["DrivenCrane"]()
     start = fmu.start_values(f"Crane{method}") | {"F": 3.0, "u": 1.5, "v": 0.5}
     others = [start[s.name] for s in [*case.system.inputs, *case.system.parameters]]
@@ -66,13 +66,13 @@ DRIVEN_SPRING = """<system name="DrivenSpring">
 
 
 def test_linear_systems_with_drives(open_fmu):
-    """y'' = -u - 9 y: y = -u/9 (1 - cos 3 t), by the method for linear systems."""
+    """y'' = -u - 9 y: y = -u/9 (1 - cos 3 t), by the exact method for linear systems."""
     fmu.build_systems("drivenspring", {"DrivenSpring": DRIVEN_SPRING.format("u")})
     instance = open_fmu("DrivenSpring").initialize({"u": 4.5})
     instance.step(2.0)
     assert instance.get("x") == pytest.approx(9.0, rel=1e-12)
     assert instance.get("y") == pytest.approx(-0.5 * (1 - np.cos(6)), rel=1e-12)
-    assert instance.get("x.force") == pytest.approx(-18 * instance.get("y"), rel=1e-12)  # the spring pushes
+    assert instance.get("x.force") == pytest.approx(-18 * instance.get("y"), rel=1e-12)  # from the force of the spring
 
 
 def test_linear_systems_are_not_driven_by_time(tmp_path):
@@ -82,7 +82,7 @@ def test_linear_systems_are_not_driven_by_time(tmp_path):
 
 
 def test_linearized_crane(tmp_path):
-    """x'' = u whatever the state; theta'' = -(g theta + u)/l - b omega/(m l^2)."""
+    """x'' = u at any state; theta'' = -(g theta + u)/l - b omega/(m l^2)."""
     (tmp_path / "system.xml").write_text(CRANE.format(further=""))
     result = lagc("--linearize", "system.xml", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

@@ -1,4 +1,4 @@
-"""The energies of Lagrangians that are not those of masses at rest, and the power of forces on moved points."""
+"""Energies of Lagrangians that are not quadratic in the velocities, and the power of forces on points that move with time."""
 
 import html
 import re
@@ -35,19 +35,19 @@ def formula(text, left):
     return sp.sympify(right.replace("^", "**"), locals=NAMES)
 
 
-# <kinetic> elements, and their energy by hand.
+# <kinetic> elements, and their energies derived by hand.
 KINETIC = [
     ("a*(v^2 + w^2)/2", "a*(v**2 + w**2)/2"),
-    ("a*(v + b)^2/2 + w^2", "a*(v + b)**2/2 + w**2"),  # a mass on something that moves has its real energy
+    ("a*(v + b)^2/2 + w^2", "a*(v + b)**2/2 + w**2"),  # a mass on a moving base has its true energy
     ("a*(v + cos(b*time))^2/2 + w^2", "a*(v + cos(b*time))**2/2 + w**2"),
     ("a*b^2*(1 - sqrt(1 - (v^2 + w^2)/b^2))", "a*b**2*(1/sqrt(1 - (v**2 + w**2)/b**2) - 1)"),
     ("((v + b)^3 - v^3)/(3*b) + w^2", "v**2 + b*v + b**2/3 + w**2"),
     ("(v^2 + w)^2 - v^4", "(v**2 + w)**2 - v**4 + 2*v**2*w"),  # 2 v^2 w + w^2, of third degree
     ("a*(v^4 + w^4)", "3*a*(v**4 + w**4)"),
     ("a*(v^3 + w^2)", "a*(2*v**3 + w**2)"),
-    ("sqrt(a^2*v^4 + w^4)", "sqrt(a**2*v**4 + w**4)"),  # of second degree, though no polynomial
+    ("sqrt(a^2*v^4 + w^4)", "sqrt(a**2*v**4 + w**4)"),  # homogeneous of degree 2, though no polynomial
     ("a*v^2/(b + x^2) + w^2", "a*v**2/(b + x**2) + w**2"),
-    ("a*(v^2 + w^2)/2</kinetic><kinetic>b*x*w", "a*(v**2 + w**2)/2"),  # gyroscopic terms store nothing
+    ("a*(v^2 + w^2)/2</kinetic><kinetic>b*x*w", "a*(v**2 + w**2)/2"),  # gyroscopic terms contribute no energy
     ("a*(v^2 + w^2)/2</kinetic><kinetic>b*x^2", "a*(v**2 + w**2)/2 - b*x**2"),
     ("a*v^4</kinetic><kinetic>b*(w + 1)^2/2", "3*a*v**4 + b*(w + 1)**2/2"),
 ]
@@ -88,7 +88,7 @@ def test_power_of_forces(tmp_path):
 
 
 def test_relativistic_energy(open_fmu):
-    """m c^2 (gamma - 1) + k r^2 / 2, which the motion keeps."""
+    """The energy is m c^2 (gamma - 1) + k r^2 / 2 and is conserved."""
     instance = open_fmu("RelativisticParticle").initialize(dict(x=8, vy=5, m=2, k=3), 1e-12)
     rows = np.array(instance.run(10, 0.1, "totalEnergy", "kineticEnergy", "x", "y", "vx", "vy"))
     _, total, kinetic, x, y, vx, vy = rows.T
@@ -100,7 +100,7 @@ def test_relativistic_energy(open_fmu):
 
 
 def test_work_on_a_moved_particle(open_fmu):
-    """1 N on 1 kg that starts at 2 m/s: after 1 s it has 3 m/s, and (9 - 4) / 2 J more."""
+    """1 N on 1 kg that starts at 2 m/s: after 1 s it moves at 3 m/s, and its energy has grown by (9 - 4) / 2 J."""
     instance = open_fmu("MovingBelt").initialize(dict(m=1, w=2, F=1), 1e-12)
     start = instance.get("totalEnergy")
     instance.run(1, 0.1, "q")

@@ -1,4 +1,4 @@
-"""The systems with which scripts/cost measures what derivation costs are right."""
+"""Correctness of the systems with which scripts/cost measures the cost of derivation."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""lagc --linearize: A and B as formulas and as numbers, against the design's and SymPy's."""
+"""lagc --linearize: A and B as formulas and as numbers, against textbook formulas and SymPy's."""
 
 import re
 
@@ -10,7 +10,7 @@ from fmu import ROOT, lagc
 
 
 def printed(name, *words):
-    """(A, B) as SymPy formulas and as numbers, and the values that the numbers are for."""
+    """Return (A, B) as SymPy formulas and as numbers, and the values for which the numbers hold."""
     result = lagc("--linearize", ROOT / "fmu" / name / "system.xml", *words)
     assert result.returncode == 0, result.stderr
     formulas, numbers = re.split(r"^at .*:$", result.stdout, flags=re.M)
@@ -47,7 +47,7 @@ def test_matrices(name, words, A, B):
     expected = [sp.Matrix(A)] + ([sp.Matrix(B)] if B else [])
     for formula, number, right in zip(formulas, numbers, expected, strict=True):
         difference = (formula - right).applyfunc(sp.simplify)
-        # pi is a number in the program, so that sin(pi) = 0 only up to rounding.
+        # The program treats pi as a number, so that sin(pi) = 0 only up to rounding.
         assert max(abs(float(entry.subs(values))) for entry in difference) < 1e-13
         np.testing.assert_allclose(
             np.array(number, float), np.array(right.subs(values), float), rtol=1e-13, atol=1e-13
@@ -55,7 +55,7 @@ def test_matrices(name, words, A, B):
 
 
 def test_formulas_are_short():
-    """What is printed is what one would write, not merely equal to it."""
+    """The printed formulas are as short as those written by hand."""
     (A, B), _, _ = printed("InvertedPendulumCartTorque")
     assert sum(sp.count_ops(entry) for entry in [*A, *B]) <= 24
 
@@ -67,8 +67,8 @@ def test_linearization_of_a_linearization():
 
 def test_chain_stays_exact():
     """
-    Rods that hang at rest: M_ij = m l^2 (N + 1 - max(i, j)) and K_ii = m g l (N + 1 - i), so that A has whole multiples of
-    g/l, and nothing like 0.9999999.
+    Rods that hang at rest: M_ij = m l^2 (N + 1 - max(i, j)) and K_ii = m g l (N + 1 - i). A then has integer multiples of g/l, without
+    rounding errors.
     """
     (A,), _, _ = printed("ChainPendulum", "-D", "N=4")
     mass = sp.Matrix(4, 4, lambda i, j: 4 - max(i, j))
@@ -78,7 +78,7 @@ def test_chain_stays_exact():
 
 
 def warnings_at(point, folder):
-    """A mass on a spring of 1 N/m and a cubic one, at rest in x = 0."""
+    """Warnings for a mass on a linear spring of 1 N/m and a cubic spring, with its equilibrium at x = 0."""
     (folder / "system.xml").write_text(
         '<system name="Spring"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><potential>x^2/2 + x^4</potential></system>'
     )
@@ -88,14 +88,14 @@ def warnings_at(point, folder):
 
 
 def test_how_near_to_an_equilibrium(tmp_path):
-    """Rounding such as sin(pi) is none of the author's; what he could have meant is told from 1e-9 on."""
+    """Residuals from 1e-9 on give a warning; smaller ones, such as sin(pi), are rounding."""
     assert warnings_at("x=0,v=0", tmp_path) == warnings_at("x=2e-10,v=-2e-10", tmp_path) == []
     assert warnings_at("x=1e-8", tmp_path) == [("0", "-1e-08")] and warnings_at("x=-1e-8", tmp_path) == [("0", "1e-08")]
     assert warnings_at("v=1e-8", tmp_path) == [("1e-08", "0")] and warnings_at("v=-1e-8", tmp_path) == [("-1e-08", "0")]
 
 
 def test_a_linearization_has_a_solver_of_its_own(tmp_path):
-    """Neither the method nor the limits of the system that it is of."""
+    """A linearization takes neither the method nor the step limits of its system."""
     (tmp_path / "system.xml").write_text(
         '<system name="Spring"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><potential>x^4 + x^2</potential>'
         '<solver method="erk" maxStep="0.1" maxSteps="50"/></system>'
@@ -110,7 +110,7 @@ def test_a_linearization_has_a_solver_of_its_own(tmp_path):
 
 
 def test_events_and_samples_are_left_out(tmp_path):
-    """A and B are of the motion between events, with modes as they start."""
+    """A and B describe the motion between events, with modes at their start values."""
     system = """<system name="S"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><parameter name="k" start="4"/>
 <potential>k*x^2/2</potential><mode name="n" start="3"/><input name="u"/><force coordinate="x">n + 3*u</force>
 <event when="x - 1"><set mode="n">1</set></event><sample every="0.1"><set mode="n">2</set></sample></system>"""

@@ -26,7 +26,7 @@ CRANK = """
   <experiment stopTime="5"/>
 </system>
 """
-# Two particles on a rod whose angle is a coordinate; each constraint lets go of the angle now and then.
+# Two particles on a rod whose angle is a coordinate. Each constraint loses its hold on the angle at some positions.
 DUMBBELL = """
 <system name="Dumbbell">
   <parameter name="m1" start="2"/><parameter name="m2" start="3"/><parameter name="l" start="0.8"/>
@@ -39,7 +39,7 @@ DUMBBELL = """
   <experiment stopTime="10"/>
 </system>
 """
-# A rack turns a wheel, and the wheel one with a spring; neither wheel has inertia.
+# A rack turns a wheel, which turns another wheel with a spring; neither wheel has inertia.
 GEARS = """
 <system name="Gears">
   <parameter name="m" start="2"/><parameter name="R" start="0.1"/><parameter name="k" start="3"/>
@@ -52,7 +52,7 @@ GEARS = """
   <experiment stopTime="2"/>
 </system>
 """
-# A torque on a wheel without inertia that rolls; and two angles of which a mass knows the sum alone.
+# A torque on a massless wheel that rolls; and two angles, only the sum of which moves a mass.
 ROLLING = """
 <system name="RollingWheel">
   <coordinate name="x" velocity="v"/><coordinate name="phi" velocity="w"/>
@@ -81,7 +81,7 @@ def built():
 
 
 def crank_motion(times, J=0.4, m=1.5, r=0.3, l=0.7, k=20.0, p=0.5, w=4.0):
-    """Of the crank's angle alone, which gives x(p): (J + m x'^2) p'' + m x' x'' w^2 = -k (x - 0.6) x'."""
+    """Motion of the crank's angle alone, with the slider at x(p): (J + m x'^2) p'' + m x' x'' w^2 = -k (x - 0.6) x'."""
 
     def slider(p):
         root = np.sqrt(l**2 - (r * np.sin(p)) ** 2)
@@ -118,7 +118,7 @@ def test_slider_crank(method, open_fmu):
 
 
 def test_what_has_no_mass_moves_at_the_start(open_fmu):
-    """The angle of the rod costs nothing to move, so that the others stay where they fit already."""
+    """Initialization moves only the angle of the massless rod, which costs nothing in the mass norm; the other coordinates already fit."""
     x = 0.3 * np.cos(0.5) + np.sqrt(0.49 - (0.3 * np.sin(0.5)) ** 2)
     instance = open_fmu("Cranktaylor").initialize({"x": x, "q": 0.2})
     assert instance.get("p", "x") == pytest.approx([0.5, x], abs=1e-9)
@@ -127,7 +127,7 @@ def test_what_has_no_mass_moves_at_the_start(open_fmu):
 
 @pytest.mark.parametrize("m1, m2", [(2, 3), (1e-6, 1), (1, 1e-6), (1e6, 1), (1e6, 1e6), (1e-6, 1e-6), (1e-6, 1e6)])
 def test_dumbbell_of_any_masses(m1, m2, open_fmu):
-    """The centre of mass moves straight on, and the rod turns at its rate with the tension m1 m2/(m1 + m2) l omega^2."""
+    """The centre of mass moves uniformly, and the rod rotates at constant rate with the tension m1 m2/(m1 + m2) l omega^2."""
     instance = open_fmu("Dumbbell").initialize({"m1": m1, "m2": m2}, tolerance=1e-10)
     reduced = m1 * m2 / (m1 + m2)
     for _ in range(20):
@@ -147,7 +147,7 @@ def test_dumbbell_of_any_masses(m1, m2, open_fmu):
 
 @pytest.mark.parametrize("R, m", [(0.1, 2), (1e-4, 2), (10, 1e-5), (0.1, 1e5)])
 def test_a_chain_of_them(R, m, open_fmu):
-    """The spring's stiffness at the rack is k/(2 R)^2."""
+    """The effective stiffness of the spring at the rack is k/(2 R)^2."""
     instance = open_fmu("Gears").initialize({"R": R, "m": m, "x": 0.2, "a": 0.2 / R, "b": 0.1 / R}, tolerance=1e-10)
     rate = np.sqrt(3 / m) / (2 * R)
     for _ in range(20):
@@ -167,7 +167,7 @@ def test_a_wheel_that_rolls(open_fmu):
 
 
 def test_two_angles_of_one_motion(open_fmu):
-    """a is given, and a + b swings as a pendulum, since nothing pulls at a but its constraint."""
+    """a is given. a + b swings as a pendulum, since a has no inertia and no force apart from its constraint."""
     times = np.linspace(0.1, 2, 20)
     expected = solve_ivp(lambda t, s: [s[1], -2 * 9.81 * np.sin(s[0])], (0, 2), [1.0, 0.6], rtol=1e-12, atol=1e-12, t_eval=times).y[0]
     instance = open_fmu("SumOfAngles").initialize({"wa": 0.6, "wb": 0.0}, tolerance=1e-10)
@@ -179,7 +179,7 @@ def test_two_angles_of_one_motion(open_fmu):
 
 
 def test_a_motion_of_three_coordinates_without_inertia(tmp_path):
-    """Masses at a + b and b + c do not feel (1, -1, 1), which a + b + c does."""
+    """Masses at a + b and b + c have no inertia along (1, -1, 1); the constraint on a + b + c determines that motion."""
     (tmp_path / "system.xml").write_text(
         '<system name="Three"><coordinate name="a" velocity="va"/><coordinate name="b" velocity="vb"/>'
         '<coordinate name="c" velocity="vc"/><particle mass="1" x="a + b" y="b + c"/>'
@@ -190,7 +190,10 @@ def test_a_motion_of_three_coordinates_without_inertia(tmp_path):
 
 
 def test_motions_without_inertia_one_after_the_other(tmp_path):
-    """A mass at a + b + c does not feel (1, -1, 0), which 'equal' holds, nor (1, 1, -2), which 'equal' does not feel either."""
+    """
+    A mass at a + b + c has no inertia along (1, -1, 0), which 'equal' constrains, nor along (1, 1, -2), which 'equal' leaves free and
+    'total' constrains.
+    """
     (tmp_path / "system.xml").write_text(
         '<system name="Two"><coordinate name="a" velocity="va"/><coordinate name="b" velocity="vb"/><coordinate name="c" velocity="vc"/>'
         '<particle mass="1" x="a + b + c"/><constraint name="equal">a - b</constraint><constraint name="total">c - a - b</constraint></system>'
@@ -200,7 +203,7 @@ def test_motions_without_inertia_one_after_the_other(tmp_path):
 
 
 def test_rounding_leaves_no_inertia(tmp_path):
-    """Three of four motions have none; of the squares of these levers, elimination leaves 1e-17."""
+    """Three of four motions have no inertia. Their pivots of 1e-17, left by rounding in the elimination, count as 0."""
     (tmp_path / "system.xml").write_text(
         '<system name="Four">'
         + "".join(f'<coordinate name="{q}" velocity="v{q}"/>' for q in "abcd")

@@ -1,4 +1,4 @@
-"""Inputs in constraints: coordinates that are moved from outside."""
+"""Inputs in constraints, which prescribe motions from outside."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ HAND = """
   <experiment stopTime="3"/>
 </system>
 """
-# A skate whose sideways velocity is given, and a rod between two points of which one is moved along both axes.
+# A skate with a prescribed sideways velocity, and a rod between two points, one of which is moved along both axes.
 SKATE = """
 <system name="PushedSkate">
   <input name="s" derivatives="1"/>
@@ -53,7 +53,7 @@ def built():
 
 
 def swing(acceleration, stop, theta=0.4):
-    """theta at these times, of a pendulum whose pivot has this acceleration."""
+    """theta and omega at the times `stop` of a pendulum whose pivot has this acceleration."""
 
     def derivative(t, state):
         return [state[1], -2 * (9.81 * np.sin(state[0]) + acceleration(t) * np.cos(state[0]))]
@@ -63,7 +63,7 @@ def swing(acceleration, stop, theta=0.4):
 
 @pytest.mark.parametrize("name", HANDS)
 def test_a_hand_with_constant_acceleration(name, open_fmu):
-    """The second derivative alone tells it all: the steps end where the hand is, and nothing jumps."""
+    """The second derivative suffices: each step ends at the prescribed position, and nothing jumps."""
     instance = open_fmu(name).initialize({"v": -0.3, "der(u)": -0.3, "der(der(u))": 0.8}, tolerance=1e-10)
     assert instance.get("v") == pytest.approx(-0.3, abs=1e-14)
     times = np.linspace(0.1, 2, 20)
@@ -83,7 +83,7 @@ def test_a_hand_with_constant_acceleration(name, open_fmu):
 
 
 def shaken(instance, step, stop):
-    """u = 0.2 sin(3 t), whose values alone are given at each communication point."""
+    """Set u = 0.2 sin(3 t) and its derivatives at each communication point, without polynomials; return theta at the end."""
     for k in range(round(stop / step) + 1):
         t = k * step
         values = [0.2 * np.sin(3 * t), 0.6 * np.cos(3 * t), -1.8 * np.sin(3 * t)]
@@ -94,7 +94,7 @@ def shaken(instance, step, stop):
 
 
 def test_values_at_communication_points_are_enough(open_fmu):
-    """The error falls with the step, by its second power at least, and the log does not fill."""
+    """The error decreases at least with the second power of the step, and the log has no message about moved coordinates."""
     expected = swing(lambda t: -1.8 * np.sin(3 * t), [2.0])[0, -1]
     errors = []
     for step in (0.02, 0.01, 0.005):
@@ -107,7 +107,7 @@ def test_values_at_communication_points_are_enough(open_fmu):
 
 
 def test_polynomials_of_the_inputs(open_fmu):
-    """A cubic is followed exactly in steps of any length, with what moves it as accurate as the tolerance."""
+    """The FMU follows a cubic exactly in steps of any length, and its force to the accuracy of the tolerance."""
     path = {"u": np.polynomial.Polynomial([0.1, 0.2, -0.3, 0.15])}
     expected = swing(lambda t: -0.6 + 0.9 * t, [2.0])[0, -1]
     for steps in (2, 40):
@@ -139,7 +139,7 @@ def test_jumps_are_refused(open_fmu):
 
 
 def test_one_that_moves_a_velocity(open_fmu):
-    """vx sin(phi) - vy cos(phi) = s = 0.3 t, with phi = 1.5 t: forces and motion by SciPy from Newton's law."""
+    """vx sin(phi) - vy cos(phi) = s = 0.3 t, with phi = 1.5 t: forces and motion agree with SciPy on Newton's law."""
     instance = open_fmu("PushedSkate").initialize({"der(s)": 0.3})
 
     def derivative(t, state):
@@ -158,7 +158,7 @@ def test_one_that_moves_a_velocity(open_fmu):
 
 
 def test_model_exchange(open_fmu):
-    """Accelerations at a point follow from all three; a state that the input has left is brought back in an event."""
+    """Accelerations at a point follow from the input and its two derivatives; an event projects a state that no longer fits the input."""
     instance = open_fmu("MovedRod", kind=FMU2Model)
     instance.initialize({"der(X)": 0.5, "der(der(X))": -0.7, "der(der(Y))": 1.1})
     model = instance.fmu
@@ -180,7 +180,9 @@ def test_model_exchange(open_fmu):
 
 
 def test_directional_derivatives(open_fmu):
-    """Of accelerations and the force, along the inputs' derivatives, against differences of values linear in them."""
+    """
+    Derivatives of accelerations and the force along the inputs' derivatives equal exact differences, since these values are linear in them.
+    """
     instance = open_fmu("Hand")
     instance.fmu.setupExperiment()
     instance.fmu.enterInitializationMode()

@@ -1,4 +1,4 @@
-"""What inputs with derivatives move: its work with every solver, and the variables."""
+"""Inputs with derivatives: their work with every solver, and the variables of their FMUs."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from held_systems import HOIST, METHODS, SEAT, TABLE, check_balance, rename
 
 @pytest.fixture(scope="module")
 def moved():
-    """What inputs move with each solver, and the chain with work."""
+    """Build the seat with each solver, the other systems with moved inputs, and the chain with <work>."""
     texts = {f"Seat{m}": rename(SEAT.format(further=f'<work/><solver method="{m}"/>'), f"Seat{m}") for m in METHODS}
     texts["WorkingHoist"] = rename(HOIST.format(further="<work/>"), "WorkingHoist")
     texts["TurnedTable"] = rename(TABLE.format(further="<work/>"), "TurnedTable")
@@ -30,14 +30,14 @@ def test_work_of_what_draws_a_chain(moved, open_fmu):
 
 
 def test_work_of_what_turns_a_table(moved, open_fmu):
-    """A gyroscopic potential and a <kinetic> of the table's rate are in the balance too."""
+    """The work includes a gyroscopic potential and a <kinetic> of the table's rate."""
     motions = {"phi": np.polynomial.Polynomial([0.1, 2.0, 0.5, -0.2])}
     instance = open_fmu("TurnedTable").initialize({"phi": 0.1, "der(phi)": 2.0, "der(der(phi))": 1.0}, 1e-12)
     check_balance(instance, motions, 1.0, 4, 1.0)
 
 
 def test_exact_method_with_a_moved_floor(moved, open_fmu):
-    """A step of any length as with the Taylor series, inputs held."""
+    """A step of any length agrees with the Taylor series, for constant inputs."""
     values = {"zb": 0.1, "der(zb)": 0.3, "der(der(zb))": 2.0}
     results = []
     for name in ("ExactSeat", "Seattaylor"):
@@ -53,6 +53,6 @@ def test_inputs_with_derivatives_are_variables(moved):
         variable = by_name[name]
         assert (variable.causality, variable.unit, float(variable.start)) == ("input", unit, start)
     assert float(by_name["L"].min) == -9 and by_name["der(L)"].min is None
-    # der(der(x)) is no structured name of the standard, whose second derivative is der(x,2).
+    # der(der(x)) is not a structured name of the standard, which writes der(x,2).
     assert fmu.description("WorkingHoist").variableNamingConvention == "flat"
     assert fmu.description("SimplePendulum").variableNamingConvention == "structured"

@@ -1,4 +1,4 @@
-"""lagc --pull: the forces with which a page pulls bodies, against moments by hand."""
+"""lagc --pull: the forces with which a page's pointer pulls bodies, against moments computed by hand."""
 
 import math
 import random
@@ -28,7 +28,7 @@ def built():
 
 
 def inputs_of(name, body, chance):
-    """Pointer, held point, time and stiffness, and the values of the FMU's inputs."""
+    """Random pointer, grasped point, time and stiffness, and the values of the FMU's inputs."""
     pointer, held = np.array([chance.uniform(-2, 2) for _ in range(3)]), np.array([chance.uniform(-0.5, 0.5) for _ in range(3)])
     time, stiffness = chance.uniform(0, 0.5), chance.uniform(10, 100)
     values = dict(zip(("pull.x", "pull.y", "pull.z", "pull.u", "pull.v", "pull.w"), [*pointer, *held]))
@@ -57,7 +57,7 @@ def test_a_planar_body(seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_body_in_space(seed):
-    """Also where its centre of mass does not move."""
+    """The moment is right even for a body whose centre of mass does not move."""
     chance = random.Random(seed)
     pointer, held, time, stiffness, values = inputs_of("PulledWheel", "wheel", chance)
     turn, rate = chance.uniform(-3, 3), chance.uniform(-2, 2)

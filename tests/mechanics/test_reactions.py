@@ -1,4 +1,4 @@
-"""Forces of reaction and of drives against Lagrange multipliers of an independent derivation, and displacements."""
+"""Reaction forces and driving forces against Lagrange multipliers of an independent derivation; and displacements."""
 
 import re
 
@@ -46,7 +46,7 @@ def test_forces_are_multipliers(name, form, open_fmu):
 
 
 def without_displacements(text):
-    """The same system for an author who does not ask for forces."""
+    """The same system as an author writes it who needs no reaction forces."""
     text = re.sub(r"<displacement .*?/>|<output .*?</output>", "", text)
     for written, plain in [(r"px \+ \(l \+ stretch\)", "l"), (r"py - \(l \+ stretch\)", "-l"), (r"theta \+ turn", "theta"),
                            (r"\(l \+ stretch\[j\]\)", "l"), (r"- d\*sin\(u\)|\+ d\*cos\(u\)|\+ d/3", "")]:  # fmt: skip
@@ -55,7 +55,7 @@ def without_displacements(text):
 
 
 def operations(text, folder):
-    """Of each function that the FMU calls for the motion, by its description."""
+    """Number of operations of each function that the FMU calls for the motion, by its description."""
     (folder / "system.xml").write_text(text)
     assert lagc("system.xml", "-o", "out", cwd=folder).stderr == ""
     found = re.findall(r"^/\* (.*?); (\d+) operations", (folder / "out" / "system.c").read_text(), re.M)
@@ -80,7 +80,7 @@ def test_variables():
 
 
 def test_dependencies_of_outputs():
-    """The tension follows from the angle, its rate, the torque by way of the acceleration, and F."""
+    """The tension depends on the angle, its rate and F; the bearing force depends also on the torque, through the acceleration."""
     (tension,) = [u for u in fmu.description("DisplacedBearing").outputs if u.variable.name == "tension"]
     assert {variable.name for variable in tension.dependencies} == {"theta", "omega", "F"}
     (pull,) = [u for u in fmu.description("DisplacedBearing").outputs if u.variable.name == "pull"]
@@ -97,7 +97,7 @@ def test_dependencies_of_outputs():
                                           ("MovedTable", "der(nonConservativeWork)")])  # fmt: skip
 @pytest.mark.parametrize("form", ["", "T"])
 def test_derivatives_of_forces(name, output, form, open_fmu):
-    """Directional derivatives of an output against central differences of it, by states, inputs and parameters."""
+    """Directional derivatives of an output by states, inputs and parameters agree with central differences."""
     case = reactions_in_sympy.CASES[name]()
     values = random_values(case, np.random.default_rng(3), fmu.references(name))
     knowns = [s.name for s in case.system.arguments if s.name in fmu.references(name) and s is not time]
@@ -113,7 +113,7 @@ def test_derivatives_of_forces(name, output, form, open_fmu):
 
 
 def test_rate_of_a_force(open_fmu):
-    """The time derivative of a tension, from the series of the motion, against differences of it."""
+    """The time derivative of a tension from the series of the motion agrees with differences."""
     instance = open_fmu("DisplacedChain").initialize(tolerance=1e-12)
     instance.step(0.5)
     rate = instance.fmu.getRealOutputDerivatives(instance.vr("T[1]"), [1])[0]
@@ -124,11 +124,11 @@ def test_rate_of_a_force(open_fmu):
 
 
 def test_linearized_force(tmp_path, open_fmu):
-    """Near the lowest point the tension is m g, to first order, and the bearing has m g theta across."""
+    """At the lowest point the tension is m g to first order, and the force across is proportional to m g theta."""
     instance = open_fmu("LinearBearing").initialize({"theta": 0.1, "m": 3.0, "b": 0.0})
     assert instance.get("stretch.force") == pytest.approx(3 * 9.81, rel=1e-12)
     instance.step(0.2)
-    # For J = 0.1: the rod takes part in the acceleration with m l^2/(m l^2 + J).
+    # For J = 0.1: the rod's share in the acceleration is m l^2/(m l^2 + J).
     share = 3 * 0.25 / (3 * 0.25 + 0.1)
     assert instance.get("px.force") == pytest.approx(3 * 9.81 * instance.get("theta") * share, rel=1e-9)
 
@@ -142,7 +142,7 @@ def test_page_shows_the_force(tmp_path):
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
 
 
-# Power is force times velocity, and energy force times displacement: N, N.m and V.
+# A force unit times the velocity's is power: N, N.m and V.
 FORCES = {
     "dx.force": "N", "dp.force": "N.m", "a.force": "N", "b.force": "N.m", "node.force": "kg.m2/(s3.A)", "blade.force": "N", "line.force": "N",
     "rub.force": "N.m", "grip.force": "N", "y.max.force": "N", "wall.force": "N", "phi.max.force": "N.m", "loose.force": "N",
@@ -178,7 +178,7 @@ def test_units_of_forces(tmp_path):
 
 @pytest.mark.parametrize("name", FORCES)
 def test_units_of_forces_in_expressions(tmp_path, name):
-    """Before and after the element; another unit is refused, after it in any case."""
+    """The unit holds before and after the element. A wrong unit is an error after the element."""
     unit = FORCES[name]
     for before, after in ((f'<output name="o" unit="{unit}">{name}</output>', ""), ("", f'<output name="o" unit="{unit}">{name}</output>')):
         (tmp_path / "system.xml").write_text(UNITS.replace("{output}", before, 1).format(output=after))

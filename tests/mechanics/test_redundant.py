@@ -1,11 +1,11 @@
-"""Forces of redundant constraints: of all that keep the motion, those of least norm, against NumPy and closed forms."""
+"""Redundant constraints: of all forces that give the motion, those of least norm, against NumPy and closed forms."""
 
 import numpy as np
 import pytest
 
 import fmu
 
-# Four parallel rods hold a plate, of which two are too many; the constraints have different scales, one in each state.
+# A plate on four parallel rods, two of which are redundant. The constraints have different scales, one of which depends on the state.
 PLATE = """
 <system name="Plate" description="plate on four parallel rods">
   <parameter name="m" start="2"/><parameter name="J" start="0.7"/><parameter name="g" start="9.81"/>
@@ -41,7 +41,7 @@ SAME = """
   <experiment stopTime="2"/>
 </system>
 """
-# A crank that is driven turns two wheels, one of them held twice.
+# A driven crank turns two wheels, one of which has two constraints.
 DRIVEN = """
 <system name="DrivenTwice">
   <coordinate name="t" velocity="w" velocityStart="2" acceleration="0.5"/>
@@ -67,7 +67,7 @@ def systems():
 
 
 def least_forces(x, y, vx, vy, scale, m=2.0, g=9.81, J=0.7, R=0.8, F=1.5, tau=-0.6):
-    """At f = 0 and without spin, where the plate moves as a particle does: the body's Newton-Euler equations and pinv."""
+    """Forces of least norm at f = 0 and without spin, where the plate moves as a particle: the plate's Newton-Euler equations, by pinv."""
     jacobian = np.array([[x / R, y / R, a * y / R] for a in ATTACHED])  # of the distances
     jacobian *= np.array([1, 2 * R, 2 * (1 + 0.3 * x), scale])[:, None]
     angular = (-F / m * y - g * x) / R**2  # p'' with x = R sin(p), y = -R cos(p): R p'' = F/m cos(p) - g sin(p)
@@ -114,7 +114,7 @@ def test_forces_do_not_jump_in_motion(open_fmu):
 @pytest.mark.parametrize("form", ["", "T"])
 @pytest.mark.parametrize("name", ["Plate", "PlateInMillimetres"])
 def test_directional_derivatives(name, form, open_fmu):
-    """Along directions in which the constraints go on to hold, against central differences."""
+    """Derivatives agree with central differences along directions that keep the constraints satisfied."""
     instance = open_fmu(name + form)
     instance.fmu.setupExperiment()
     instance.fmu.enterInitializationMode()
@@ -142,7 +142,7 @@ def test_directional_derivatives(name, form, open_fmu):
 
 
 def test_the_same_constraint_twice(open_fmu):
-    """Each carries a third of m (v^2 - g y), and one that is written the other way round with the other sign."""
+    """Three identical constraints carry a third of m (v^2 - g y) each; the one of opposite sign has the opposite force."""
     instance = open_fmu("Same").initialize()
     for _ in range(20):
         instance.step(0.1)
@@ -152,7 +152,7 @@ def test_the_same_constraint_twice(open_fmu):
 
 @pytest.mark.parametrize("form", ["", "T"])
 def test_drive_of_what_is_held_twice(form, open_fmu):
-    """The gear's load 0.6 (1 + 0.2 cos(p)) p'' - 0.06 sin(p) p'^2 is shared as 1 to 3; the drive delivers twice the load."""
+    """Two constraints share the gear's load 0.6 (1 + 0.2 cos(p)) p'' - 0.06 sin(p) p'^2 as 1 to 3; the drive supplies twice the load."""
     instance = open_fmu("DrivenTwice" + form).initialize()
     for _ in range(5):
         instance.step(0.2)

@@ -1,4 +1,4 @@
-"""Forces of redundant constraints all along a motion, where others of the constraints have least hold by turns: NumPy's pinv."""
+"""Forces of redundant constraints along a motion in which the nearly dependent constraint changes, against NumPy's pinv."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from fmpy.fmi2 import FMU2Model
 
 import fmu
 
-# Two constraints would do for the particle, but at p = 0 the first two are one and the same.
+# Two constraints suffice for the particle; at p = 0 the first two are identical.
 TURNING = """
 <system name="Turning">
   <coordinate name="p" velocity="w" velocityStart="0.7" acceleration="0.3"/>
@@ -19,7 +19,7 @@ TURNING = """
   <constraint name="c3">y - 2 - sin(3*p)</constraint>
 </system>
 """
-# The second holds y as well, but hardly.
+# The second constraint depends on y too, but weakly.
 NEARLY = """
 <system name="{name}">
   <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz"/>
@@ -30,7 +30,7 @@ NEARLY = """
 </system>
 """
 HOLDS = {"Nearly3": 1e-3, "Nearly5": 1e-5}
-# Of units that do not go together.
+# Constraints in units of different scales.
 COPIES = f"""
 <system name="Copies">
   <coordinate name="x" velocity="vx" start="0.8"/><coordinate name="y" velocity="vy" start="-0.6" velocityStart="1"/>
@@ -42,7 +42,7 @@ COPIES = f"""
 """
 SCALES = np.array([1, 1e3, 1e-3, -7])
 
-# Three free bodies with four revolute joints of five constraints each, of which three are too many.
+# Three free bodies with four revolute joints of five constraints each, three of which are redundant.
 LENGTHS, GROUND, MASSES = (0.7, 1.8, 1.5), 2.0, (1.5, 2.0, 2.5)
 JOINTS = {"O": (None, 0), "A": (0, 1), "B": (1, 2), "C": (2, None)}
 STATES = [f"{letter}{i}" for i in range(3) for letter in "xyzabc"]
@@ -85,13 +85,13 @@ def built():
 
 
 def assert_near(forces, jacobian, load, tolerance, share=1e-15):
-    """forces: those of least norm with J^T F = load."""
+    """Compare forces with those of least norm that satisfy J^T F = load."""
     expected = np.linalg.pinv(jacobian.T, rcond=share) @ load
     assert np.max(np.abs(forces - expected)) < tolerance * np.max(np.abs(expected)), (forces, expected)
 
 
 def test_hold_passes_from_one_to_another(open_fmu):
-    """However near to the angle at which the first two constraints are the same."""
+    """Forces are right however near p is to the angle at which the first two constraints are identical."""
     near = 10.0 ** np.linspace(-17, 0, 400)
     instance, names = open_fmu("Turning", kind=FMU2Model), ("p", "x", "y", "w", "vx", "vy")
     w = 0.7
@@ -99,7 +99,7 @@ def test_hold_passes_from_one_to_another(open_fmu):
         instance.put(zip(names, [p, np.cos(p), 2 + np.sin(3 * p), w, -np.sin(p) * w, 3 * np.cos(3 * p) * w]))
         ax, ay = -np.cos(p) * w**2 - 0.3 * np.sin(p), -9 * np.sin(3 * p) * w**2 + 0.9 * np.cos(3 * p)
         jacobian = np.array([[1, 0], [np.cos(p), np.sin(p)], [0, 1]])
-        # A constraint that differs from others by less than 1e-6 counts as one that follows.
+        # A constraint that differs from a combination of others by less than 1e-6 counts as dependent.
         tolerance = 2e-9 if abs(p) > 1e-6 else max(abs(p), 1e-13)
         assert_near(instance.get("c1.force", "c2.force", "c3.force"), jacobian, np.array([-2 - 1.5 * ax, -14.715 - 1.5 * ay]), tolerance)
 
@@ -140,7 +140,7 @@ def jacobian_in_space():
 
 
 def test_linkage_in_space(jacobian_in_space, open_fmu):
-    """Forces at 1000 points, and how they change in time by directional derivatives and by those of outputs."""
+    """Forces at 1000 points, and their time derivatives by directional derivatives and by output derivatives."""
     instance = open_fmu("FourBarInSpace").initialize(tolerance=1e-11)
     assert sum("follows from the others" in text for _, _, text in instance.messages) == 3
     outputs = instance.vr(*(f"F_{name}" for name in FORCES))
@@ -159,14 +159,14 @@ def test_linkage_in_space(jacobian_in_space, open_fmu):
             others.append(instance.fmu.getRealOutputDerivatives(outputs, [1] * len(outputs)))
         instance.step(0.002)
     forces = np.array(all_forces)
-    weights = {3: 1, 2: -9, 1: 45, -1: -45, -2: 9, -3: -1}  # of differences of order 6
+    weights = {3: 1, 2: -9, 1: 45, -1: -45, -2: 9, -3: -1}  # of central differences of order 6
     differences = sum(weight * forces[400 + k : 410 + k] for k, weight in weights.items()) / (60 * 0.002)
     np.testing.assert_allclose(rates, differences, atol=1e-5 * np.max(np.abs(differences)))
     np.testing.assert_allclose(others, rates, atol=1e-8 * np.max(np.abs(rates)))
 
 
 def turn(axis, angle, rate, acceleration):
-    """Rotations about an axis, and their rates and halved accelerations: arrays [3, samples, 3, 3]."""
+    """Rotations about an axis with their first and halved second time derivatives: arrays [3, samples, 3, 3]."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
     series = np.zeros((3, len(angle), 3, 3))
     series[0, :, axis, axis] = 1
@@ -183,7 +183,7 @@ def product(a, b):
 
 
 def bricard(q, v, a):
-    """Series of the points, six of a sixth of the mass for each rod, and of the last rod's end and axes; rods: (axis, direction)."""
+    """Time series of points, six of a sixth of the mass for each rod, and of the last rod's end and axes; rods are (axis, direction)."""
     l, w = 1.0, 0.1
     frame, origin, points = np.tile(np.eye(3), (1, len(q), 1, 1)), np.zeros((3, len(q), 3)), []
     frame = np.concatenate([frame, np.zeros((2, len(q), 3, 3))])
@@ -198,7 +198,7 @@ def bricard(q, v, a):
 
 
 def test_bricard(open_fmu):
-    """At all points of its motion, by Newton's law for particles that stand for the rods."""
+    """Forces at all points of the motion agree with Newton's law for particles equivalent to the rods."""
     q, v, a = ([f"{name}[{i}]{end}" for i in range(1, 6)] for name, end in (("q", ""), ("v", ""), ("der(v", ")")))
     names = [f"{name}.force" for name in ("closeX", "closeY", "closeZ", "axisY", "axisZ")]
     rows = np.array(open_fmu("Bricard").initialize().run(10, 0.01, *q, *v, *a, *names))[:, 1:]

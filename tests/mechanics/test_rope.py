@@ -1,4 +1,4 @@
-"""The rope against forces written by hand, its catenary, and the swings of a hanging rope in closed form."""
+"""The rope against forces written by hand, its catenary, and the modes of a hanging rope in closed form."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def test_accelerations(open_fmu):
 
 
 def test_energy_balance(open_fmu):
-    """What internal damping and drag take is missing in the energy."""
+    """The energy decreases by the work of internal damping and drag."""
     instance = open_fmu("Rope").initialize(tolerance=1e-7)
     rows = np.array(instance.run(0.5, 0.1, "totalEnergy", "nonConservativeWork", "kineticEnergy"))
     assert rows[-1, 2] < -1e-4 and rows[-1, 3] > 0.1
@@ -46,7 +46,7 @@ def test_energy_balance(open_fmu):
 
 @pytest.fixture(scope="module")
 def short_rope():
-    """Of few links, which comes to rest soon."""
+    """A rope of few links, which comes to rest fast."""
     text = (fmu.ROOT / "fmu" / "Rope" / "system.xml").read_text()
     text = text.replace('name="Rope"', f'name="RopeOf{FEW}"').replace('name="N" value="200"', f'name="N" value="{FEW}"')
     fmu.build_systems("rope", {f"RopeOf{FEW}": text})
@@ -54,7 +54,7 @@ def short_rope():
 
 
 def catenary(p, n):
-    """The places of the masses in equilibrium without bending, and the tension at the upper end."""
+    """Positions of the masses in equilibrium without bending, and the tension at the upper end."""
     weight, d = p["M"] * p["g"] / n, L / n
 
     def shape(unknown):
@@ -72,7 +72,7 @@ def catenary(p, n):
 
 @pytest.mark.parametrize("end", [dict(xEnd=1.0, yEnd=0.0), dict(xEnd=1.5, yEnd=-0.4)])
 def test_catenary(end, short_rope, open_fmu):
-    """Let go beside it, the rope with both ends held comes to rest in the catenary of its masses."""
+    """Released beside it, the rope with both ends fixed comes to rest in the catenary of its masses."""
     p = START | end | dict(EI=0.0, kEnd=1e4, EA=1e3, b=1.0)
     places, tension = catenary(p, FEW)
     assert np.abs(places[-1] - [end["xEnd"], end["yEnd"]]).max() < 1e-3
@@ -85,7 +85,7 @@ def test_catenary(end, short_rope, open_fmu):
 
 @pytest.mark.parametrize("mode", [1, 2, 3])
 def test_small_swings(mode, open_fmu):
-    """x = J0(j sqrt(1 - s / L)) cos(j / 2 sqrt(g / L) t) for the zeros j of J0 (D. Bernoulli), but for the masses' lumps."""
+    """x = J0(j sqrt(1 - s / L)) cos(j / 2 sqrt(g / L) t) for the zeros j of J0 (D. Bernoulli), up to the error of lumped masses."""
     p = START | dict(EI=0.0, b=0.0, EA=1e6)
     s, zero, width = D * np.arange(1, N + 1), jn_zeros(0, mode)[-1], 1e-3
     shape = width * j0(zero * np.sqrt(1 - s / L))

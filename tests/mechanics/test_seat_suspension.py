@@ -1,4 +1,4 @@
-"""A seat on a floor that is moved from outside, against the closed form of its frequency response."""
+"""A seat on a floor with prescribed motion, against the closed form of its frequency response."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def response(w):
 
 
 class Floor:
-    """z = sin(w t) in cm, told at every communication point."""
+    """Floor motion z = sin(w t) in cm, set at every communication point."""
 
     def __init__(self, instance, w):
         self.instance, self.w = instance, w
@@ -28,7 +28,7 @@ class Floor:
         return 0.01 * self.w**order * np.sin(self.w * time + order * np.pi / 2)
 
     def tell(self, time, highest):
-        """With the derivatives of each of the three up to an order, by which they go on until the next point."""
+        """Set the input, its derivatives, and the polynomials of each up to this order until the next point."""
         self.instance.fmu.setReal(self.variables, [self.derivative(k, time) for k in range(3)])
         orders = [(k, order) for k in range(3) for order in range(1, highest + 1)]
         values = [self.derivative(k + order, time) for k, order in orders]
@@ -50,7 +50,7 @@ def shaken(open_fmu, w, step, highest, names, end):
 
 @pytest.mark.parametrize("w", [2.0, 8.0, 12.0, 40.0])
 def test_transmissibility(w, open_fmu):
-    """Below, at and above the resonance at 9 rad/s and that of the cushion: amplitudes and phases, once the start has died away."""
+    """Amplitudes and phases below, at and above the resonance at 9 rad/s and that of the cushion, after the transient."""
     rows = shaken(open_fmu, w, 0.002, 3, ("zd", "shake", "load", "height"), 9.0)
     late = rows[:, 0] > 8.0
     for amplitude, values in zip(response(w), rows.T[1:]):
@@ -59,7 +59,7 @@ def test_transmissibility(w, open_fmu):
 
 
 def test_held_inputs_are_of_the_first_order(open_fmu):
-    """As the reference of the language says: half the step, half the error."""
+    """With constant inputs, half the step gives half the error, as the language reference states."""
     errors = []
     for step in (0.01, 0.005, 0.0025):
         rows = shaken(open_fmu, 8.0, step, 0, ("zd",), 7.0)

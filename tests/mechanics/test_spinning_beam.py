@@ -1,4 +1,6 @@
-"""SpinningBeam: a Lagrangian density with Ritz functions, against a rod in tension, published frequencies, and a published motion."""
+"""
+SpinningBeam: a Lagrangian density with Ritz functions, against a rotating rod in tension, published frequencies, and a published motion.
+"""
 
 from ctypes import c_double
 
@@ -7,21 +9,22 @@ import pytest
 from fmpy.fmi2 import FMU2Model
 
 L, EI, EA, RHO_A = 10.0, 1.4e4, 2.8e7, 1.2
-# Of the first bending mode, in sqrt(EI/(rhoA L^4)), at the speed eta in the same unit: A. D. Wright et al., Vibration modes of
-# centrifugally stiffened beams, Journal of Applied Mechanics 49, 1982. Out of the plane; in the plane the square is less by eta^2.
+# Frequency of the first bending mode, in sqrt(EI/(rhoA L^4)), at the speed eta in the same unit. Source: A. D. Wright et al., Vibration
+# modes of centrifugally stiffened beams, Journal of Applied Mechanics 49, 1982. The values are out of the plane; in the plane the square is
+# less by eta^2.
 FREQUENCIES = {0: 3.5160, 1: 3.6816, 2: 4.1373, 3: 4.7973, 4: 5.5850, 5: 6.4495, 6: 7.3604}
 
 
 def tip_stretch(W):
-    """Of a rod that turns: EA u'' + rhoA W^2 (s + u) = 0 with u(0) = 0 and u'(L) = 0."""
+    """Stretch of a rotating rod: EA u'' + rhoA W^2 (s + u) = 0 with u(0) = 0 and u'(L) = 0."""
     k = W * np.sqrt(RHO_A / EA)
     return np.tan(k * L) / k - L
 
 
 def test_spin_up(open_fmu):
     """
-    The motion of Simo and Vu-Quoc: the tip lags by at most 0.58 m, at about 7 s, and comes back into line, stretched. Their
-    figure is read to a hundredth of a metre.
+    Motion of Simo and Vu-Quoc: the tip lags by at most 0.58 m, at about 7 s, and returns into line, stretched. Values are read from their
+    figure to 0.01 m.
     """
     rows = np.array(open_fmu("SpinningBeam").initialize({}, 1e-9).run(20.0, 0.05, "tipAlong", "tipAcross"))
     time, along, across = rows.T
@@ -33,7 +36,7 @@ def test_spin_up(open_fmu):
 
 @pytest.mark.parametrize("eta", FREQUENCIES)
 def test_frequencies(eta, open_fmu):
-    """Eigenvalues of the motion about the steady one, in which the stretch u rests, by directional derivatives."""
+    """Frequencies are eigenvalues of the linearized motion about steady rotation, by directional derivatives."""
     unit = np.sqrt(EI / (RHO_A * L**4))
     instance = open_fmu("SpinningBeam", kind=FMU2Model).initialize({"W": eta * unit, "T": 1.0}, start_time=2.0)
     instance.fmu.enterContinuousTimeMode()
@@ -52,4 +55,4 @@ def test_frequencies(eta, open_fmu):
         assert instance.get("tipAlong") == pytest.approx(tip_stretch(eta * unit), rel=3e-3)
     lowest = np.sort(np.abs(np.linalg.eigvals(jacobian()).imag))[0]
     published = np.sqrt(FREQUENCIES[eta] ** 2 - eta**2)
-    assert 0.9995 * published < lowest / unit < 1.005 * published  # Ritz functions come from above
+    assert 0.9995 * published < lowest / unit < 1.005 * published  # Ritz functions give upper bounds

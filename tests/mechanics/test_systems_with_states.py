@@ -1,4 +1,4 @@
-"""The systems of fmu/ with states of first order, against closed forms and SciPy."""
+"""The systems of fmu/ with first-order states, against closed forms and SciPy."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def rows_of(instance, end, step, *names):
 
 
 def test_pid_ramp(open_fmu):
-    """A measurement y = t that an input polynomial follows: P = -K t, I = -K/Ti t^2/2, D = -K Td (1 - exp(-N t/Td))."""
+    """Ramp y = t, by an input polynomial: P = -K t, I = -K/Ti t^2/2, D = -K Td (1 - exp(-N t/Td))."""
     instance = open_fmu("PidController").initialize(dict(r=0.0, uMin=-1e3, uMax=1e3), 1e-10)
     for i in range(20):
         time = 0.05 * i
@@ -28,7 +28,9 @@ def test_pid_ramp(open_fmu):
 
 
 def test_pid_winds_up_to_its_end(open_fmu):
-    """r = 1: I = K t/Ti until K + I = 5 at 0.75 s; then I -> 5 - K + Tt K/Ti = 3.8 with Tt. At 2 s the measurement ends it."""
+    """
+    r = 1: I = K t/Ti until K + I = 5 at 0.75 s; then I tends to 5 - K + Tt K/Ti = 3.8 with time constant Tt. At 2 s the error becomes 0.
+    """
     instance = open_fmu("PidController").initialize({}, 1e-10)
     rows = rows_of(instance, 2.0, 0.05, "I", "u")
     t = rows[:, 0]
@@ -38,11 +40,11 @@ def test_pid_winds_up_to_its_end(open_fmu):
     instance.set(y=1.0)  # the error is 0: the derivative pushes the output to its lower limit, P = 0
     assert instance.get("u") == -5
     instance.step(1.0)
-    assert instance.get("u") == pytest.approx(instance.get("I"), rel=1e-9)  # between the limits, D has died away
+    assert instance.get("u") == pytest.approx(instance.get("I"), rel=1e-9)  # within the limits, after D has decayed
 
 
 def test_pid_without_wind_up_would_take_longer(open_fmu):
-    """The time at which the output leaves its limit: with Tt it is at once, by Tt = 1e6 s after the integral has run down."""
+    """With Tt = 0.2 s the output leaves its limit at once; without anti-windup (Tt = 1e6 s) only after the integral has decreased."""
     slow, fast = (open_fmu("PidController").initialize(dict(Tt=Tt, Td=1e-3), 1e-10) for Tt in (1e6, 0.2))
     for instance in (slow, fast):
         instance.step(2.0)
@@ -53,7 +55,7 @@ def test_pid_without_wind_up_would_take_longer(open_fmu):
     assert fast.get("u") == pytest.approx(-2 + (3.8 - 0.8 * np.exp(-1.25 / 0.2)) - 2.0, rel=1e-9)
 
 
-# BristleFriction
+# BristleFriction (LuGre)
 
 
 def bristles(t, y, values):
@@ -68,17 +70,17 @@ PAPER = dict(m=1.0, k=2.0, vPull=0.1, sigma0=1e5, sigma1=np.sqrt(1e5), sigma2=0.
 
 
 def test_stick_slip_of_bristles(open_fmu):
-    """The experiment of the paper's figure 3, by Radau in SciPy."""
+    """Experiment of figure 3 of the LuGre paper, against Radau in SciPy."""
     rows = rows_of(open_fmu("BristleFriction").initialize({}, 1e-9), 20.0, 0.05, "x", "v", "z")
     solution = solve_ivp(bristles, (0, 20), [0, 0, 0], method="Radau", args=(PAPER,), t_eval=rows[:, 0], rtol=1e-9,
                          atol=[1e-11, 1e-11, 1e-14], max_step=0.05)  # fmt: skip
     np.testing.assert_allclose(rows[:, 1], solution.y[0], atol=3e-6)
     moving = rows[:, 2] > 0.05
-    assert 0.1 < np.mean(moving) < 0.9  # it sticks, and it slips
+    assert 0.1 < np.mean(moving) < 0.9  # stick-slip
 
 
 def test_presliding(open_fmu):
-    """Up to Fs, z = F/sigma0 and dx = dz/(1 - F/Fs): the block creeps by -Fs/sigma0 log(1 - F/Fs), some micrometres."""
+    """Below Fs, z = F/sigma0 and dx = dz/(1 - F/Fs): the block creeps by -Fs/sigma0 log(1 - F/Fs), some micrometres."""
     instance = open_fmu("BristleFriction").initialize({}, 1e-9)
     for force in (0.2, 0.6, 1.0, 1.2):
         instance.step(force / 0.2 - instance.time)
@@ -86,9 +88,9 @@ def test_presliding(open_fmu):
 
 
 def test_steady_sliding_of_bristles(open_fmu):
-    """At a constant velocity the friction is Fc + (Fs - Fc) exp(-(v/vs)^2) + sigma2 v, Stribeck's curve."""
+    """At a constant velocity the friction is Fc + (Fs - Fc) exp(-(v/vs)^2) + sigma2 v (Stribeck's curve)."""
     for velocity in (5e-4, 1e-3, 2e-3, 0.1):
-        start = dict(k=1e6, vPull=velocity, v=velocity, sigma2=2000.0)  # against the falling part of the curve
+        start = dict(k=1e6, vPull=velocity, v=velocity, sigma2=2000.0)  # stabilizes the falling part of the curve
         instance = open_fmu("BristleFriction").initialize(start, 1e-9)
         instance.step(2.0)
         assert instance.get("v") == pytest.approx(velocity, rel=1e-5)
@@ -114,7 +116,7 @@ def cylinder(t, y, u, F, o=OIL):
 
 @pytest.mark.parametrize("u, F", [(0.5, 0.0), (0.5, 8000.0), (-0.4, 0.0), (0.0, 500.0)])
 def test_cylinder(u, F, open_fmu):
-    """Out, out against a load, back, and held by a closed valve, by SciPy."""
+    """Extension, extension against a load, retraction, and a closed valve, against SciPy."""
     rows = rows_of(open_fmu("HydraulicCylinder").initialize(dict(u=u, F=F), 1e-9), 0.4, 0.01, "x", "v", "p1", "p2")
     solution = solve_ivp(cylinder, (0, 0.4), [0.1, 0, 5e6, 8e6], method="Radau", args=(u, F), t_eval=rows[:, 0], rtol=1e-10,
                          atol=[1e-12, 1e-12, 1e-3, 1e-3])  # fmt: skip
@@ -123,7 +125,9 @@ def test_cylinder(u, F, open_fmu):
 
 
 def test_cylinder_ends_at_its_stop(open_fmu):
-    """With the valve open, it comes to the end, where the pressures are those of supply and tank and the stop carries the rest."""
+    """
+    With the valve open, the piston reaches its stop. The pressures become those of supply and tank, and the stop carries the difference.
+    """
     instance = open_fmu("HydraulicCylinder").initialize(dict(u=1.0, leak=0.0), 1e-8)
     instance.step(4.0)
     x, v, p1, p2, force = instance.get("x", "v", "p1", "p2", "x.max.force")
@@ -133,7 +137,7 @@ def test_cylinder_ends_at_its_stop(open_fmu):
 
 
 def test_steady_speed_of_the_cylinder(open_fmu):
-    """Without load and friction p1 A1 = p2 A2 and q1 A2 = q2 A1: (ps - p1) (A2/A1)^2 = p2 - pt, by Merritt."""
+    """Without load and friction p1 A1 = p2 A2 and q1 A2 = q2 A1: (ps - p1) (A2/A1)^2 = p2 - pt (Merritt)."""
     values = dict(length=50.0, b=0.0, leak=0.0, dpLaminar=1.0, u=1.0, x=5.0)
     instance = open_fmu("HydraulicCylinder").initialize(values, 1e-9)
     instance.step(8.0)
@@ -147,8 +151,8 @@ def test_steady_speed_of_the_cylinder(open_fmu):
 
 def test_rope_of_changing_length(open_fmu):
     """
-    A load that is lowered at a constant speed by a trolley that stands: l theta'' + 2 l' theta' + g theta = 0 for small angles, with
-    l = l0 + w t. In s = 2 sqrt(g l)/w it is Bessel's equation: theta = (a J1(s) + b Y1(s))/s.
+    A load lowered at constant speed by a trolley at rest: l theta'' + 2 l' theta' + g theta = 0 for small angles, with l = l0 + w t. In s =
+    2 sqrt(g l)/w this is Bessel's equation: theta = (a J1(s) + b Y1(s))/s.
     """
     w, l0, g = 0.25, 4.0, 9.81
     start = dict(trolleySpeed=0.0, hoistSpeed=w, theta=1e-4, l=l0, w=w, d=0.0, M=1e9, kl=1e9, Fl=1e9)
@@ -162,7 +166,7 @@ def test_rope_of_changing_length(open_fmu):
 
 
 def test_crane_between_its_switches(open_fmu):
-    """The drive accelerates with its whole force while the speed lags by more than Fx/kx; the trolley ends at the stop."""
+    """The drive gives its full force while the speed error exceeds Fx/kx; the trolley ends at the stop."""
     instance = open_fmu("GantryCrane").initialize(dict(trolleySpeed=2.0, m=1e-3, J=0.0, d=0.0, Fx=400.0), 1e-9)
     instance.step(1.0)
     assert instance.get("v") == pytest.approx(0.5, rel=1e-4)  # 400 N on 800 kg
@@ -172,7 +176,7 @@ def test_crane_between_its_switches(open_fmu):
 
 
 def test_crane_in_numbers(open_fmu):
-    """All drives at work, by SciPy from Lagrange's equations written out."""
+    """With all drives active, the motion agrees with SciPy on Lagrange's equations written by hand."""
     M, m, J, g, d, kx, Fx, kl, Fl = 800.0, 1500.0, 200.0, 9.81, 30.0, 20000.0, 6000.0, 60000.0, 30000.0
 
     def rates(t, y):
@@ -196,7 +200,7 @@ SERVO = dict(R=2.0, L=1e-3, k=0.05, J=2e-5, b=1e-5, Ts=1e-3, q=1e-3, kp=6.0, kd=
 
 
 def servo(period, s=SERVO):
-    """The motor over a period in which the voltage stays: x(t + period) = A x + B u of theta, omega, i."""
+    """Discrete-time motor over a period of constant voltage: x(t + period) = A x + B u for (theta, omega, i)."""
     rates = np.zeros((4, 4))
     rates[0, 1] = 1
     rates[1, 1:3] = -s["b"] / s["J"], s["k"] / s["J"]
@@ -207,7 +211,9 @@ def servo(period, s=SERVO):
 
 @pytest.mark.parametrize("ref, q, uMax", [(1.0, 1e-3, 24.0), (1.0, 1e-3, 3.0), (0.02, 2e-3, 24.0)])
 def test_servo_is_its_recursion(ref, q, uMax, open_fmu):
-    """Between samples by the exponential of a matrix, at them by the counts: 200 samples, the voltage limited at first or never."""
+    """
+    The exponential of a matrix gives the motion between 200 samples, and encoder counts the samples; with and without limited voltage.
+    """
     instance = open_fmu("DigitalServo").initialize(dict(ref=ref, q=q, uMax=uMax), 1e-11)
     A, B = servo(SERVO["Ts"])
     x, u, late, count = np.zeros(3), 0.0, 0.0, 0.0
@@ -224,12 +230,12 @@ def test_servo_is_its_recursion(ref, q, uMax, open_fmu):
 
 def test_servo_of_the_z_transform(open_fmu):
     """
-    Without steps of the encoder the loop is linear. Its response to a step of the reference is that of the transfer function from
-    ref to theta, z^-1 P(z) kp/(1 + z^-1 P(z) (kp + kd (1 - z^-1)/Ts)), here as a sum over its poles.
+    Without quantization by the encoder the loop is linear. Its step response is that of the transfer function from ref to theta, z^-1 P(z)
+    kp/(1 + z^-1 P(z) (kp + kd (1 - z^-1)/Ts)), here as a sum over its poles.
     """
     A, B = servo(SERVO["Ts"])
     kp, kd = SERVO["kp"], SERVO["kd"] / SERVO["Ts"]
-    # States theta, omega, i, the late voltage, the last count.
+    # States: theta, omega, i, the delayed voltage, the last count.
     loop = np.zeros((5, 5))
     loop[:3, :3], loop[:3, 3] = A, B
     loop[3, 0], loop[3, 4], loop[4, 0] = -(kp + kd), kd, 1
@@ -251,8 +257,8 @@ WORM = dict(J1=1e-3, J2=0.5, n=30.0, load=60.0)
 
 def worm(tau, c, back=1.0, s=WORM):
     """
-    The acceleration of the worm, and the torque L of the teeth: J1 a'' = tau - L - back c L, J2 a''/n = n L - load for L > 0,
-    back = 1 while it lifts and -1 while it lowers.
+    Acceleration of the worm and torque L of the teeth: J1 a'' = tau - L - back c L, J2 a''/n = n L - load for L > 0, with back = 1 while it
+    lifts and -1 while it lowers.
     """
     loss = 1 + back * c
     acceleration = (tau - loss * s["load"] / s["n"]) / (s["J1"] + loss * s["J2"] / s["n"] ** 2)
@@ -261,7 +267,7 @@ def worm(tau, c, back=1.0, s=WORM):
 
 @pytest.mark.parametrize("tau, c, omega", [(6.0, 1.5, 0.0), (5.2, 1.5, 3.0), (-1.5, 1.5, -3.0), (0.0, 0.2, 0.0), (3.0, 0.2, 0.0)])
 def test_worm_lifts_and_lowers(tau, c, omega, open_fmu):
-    """From rest or on the way: what lifts pays for the loss, what locks itself is driven down, what does not runs down."""
+    """Lifting pays for the loss; a self-locking gear needs torque to lower; another runs down by itself. From rest and in motion."""
     back = 1.0 if omega > 0 or tau > (1 + c) * 2 else -1.0
     acceleration, _ = worm(tau, c, back)
     instance = open_fmu("WormGear").initialize({"tau": tau, "c": c, "omega": omega, "W": omega / 30}, 1e-9)
@@ -272,14 +278,14 @@ def test_worm_lifts_and_lowers(tau, c, omega, open_fmu):
 
 @pytest.mark.parametrize("tau", [-0.9, 0.0, 2.0, 4.9])
 def test_worm_holds(tau, open_fmu):
-    """From (1 - c) load/n = -1 N.m to (1 + c) load/n = 5 N.m nothing moves."""
+    """Nothing moves for torques from (1 - c) load/n = -1 N.m to (1 + c) load/n = 5 N.m."""
     instance = open_fmu("WormGear").initialize({"tau": tau}, 1e-9)
     instance.step(1.0)
     assert instance.get("omega", "a", "phi") == pytest.approx([0, 0, 0], abs=1e-12)
 
 
 def test_efficiency_of_the_worm(open_fmu):
-    """The load gets 1/(1 + c) of the power of the motor that lifts it steadily, at any speed."""
+    """In steady lifting the load receives 1/(1 + c) of the motor's power, at any speed."""
     instance = open_fmu("WormGear").initialize({"tau": 5.0, "omega": 12.0, "W": 0.4}, 1e-9)
     instance.step(0.5)
     assert instance.get("omega") == pytest.approx(12.0, rel=1e-9)
@@ -290,7 +296,10 @@ def test_efficiency_of_the_worm(open_fmu):
 
 
 def half_car():
-    """d/dt x = A x + B n of z, pitch, zf, zr, their velocities, roads, forces, filters, integrals; n: noises and bumps of both axles."""
+    """
+    Return (A, B) of d/dt x = A x + B n. x: z, pitch, zf, zr, their velocities, roads, forces, filters, integrals; n: noises and bumps of
+    both axles.
+    """
     m, J, mw, lf, lr, k, c, kt, gain, lag, speed, cut = 700, 1200, 40, 1.2, 1.5, 2e4, 1200, 1.8e5, 1000, 0.01, 20, 0.07
     K, Ti, Td, N = 20, 2, 0.2, 10
     A, B = np.zeros((16, 16)), np.zeros((16, 4))
@@ -320,7 +329,7 @@ CAR = ["z", "pitch", "zf", "zr", "vz", "q", "vf", "vr", "roadFront", "roadRear",
 
 
 def test_half_car_on_its_road(open_fmu):
-    """Between samples by the exponential of a matrix; the rear axle meets the noise of the front one 27 samples later."""
+    """The exponential of a matrix gives the motion between samples; the rear axle meets the noise of the front axle 27 samples later."""
     instance = open_fmu("HalfCar").initialize({"rough": 0.05}, 1e-10)
     A, B = half_car()
     whole = expm(0.005 * np.block([[A, B], [np.zeros((4, 20))]]))
@@ -337,7 +346,7 @@ def test_half_car_on_its_road(open_fmu):
 
 @pytest.mark.parametrize("w", [3.0, 8.0, 60.0])
 def test_half_car_on_waves(w, open_fmu):
-    """The transfer function from the height under the front wheel, once the start has died away; no noise."""
+    """The response after the transient is that of the transfer function from the height under the front wheel; no noise."""
     instance = open_fmu("HalfCar").initialize({"rough": 0.0}, 1e-9)
     A, B = half_car()
     amplitude = 0.001 * np.linalg.solve(1j * w * np.eye(16) - A, B[:, 2])
@@ -353,7 +362,7 @@ def test_half_car_on_waves(w, open_fmu):
 
 
 def test_half_car_goes_back_bit_by_bit(open_fmu):
-    """From a saved state the same road comes again, and the same motion, to the last bit."""
+    """From a saved state the same road and the same motion return, to the last bit."""
     instance = open_fmu("HalfCar").initialize({"rough": 0.3, "seed": 7})
     instance.step(0.5)
     saved, time, rows = instance.fmu.getFMUstate(), instance.time, []
