@@ -1,4 +1,4 @@
-"""Broken system.xml files: each must give this line and this message, and leave no output."""
+"""Invalid system.xml files: each gives the expected line and message, and no output."""
 
 import re
 import resource
@@ -9,7 +9,7 @@ import pytest
 
 from fmu import LAGC, ROOT, lagc
 
-# A right system; the cases below replace or add lines of it (counted from 1).
+# A valid system; the cases below replace or add lines (counted from 1).
 RIGHT = """\
 <system name="Broken" description="Pendulum">
   <parameter name="m" start="1" unit="kg" min="0"/>
@@ -26,7 +26,7 @@ RIGHT = """\
 </system>
 """
 
-# What is wrong, the line replaced, its new text (several lines are fine), the line and message expected.
+# Kind of mistake, the replaced line, its new text (possibly several lines), the expected line and message.
 CASES = [
     ("not XML", 7, "<particle <", 7, "'<' begins an element"),
     ("tag not closed", 8, "<potential>m*g*l", 13, "</system> stands where <potential> of line 8 is still open"),
@@ -318,7 +318,7 @@ def test_broken_system(what, line, text, expected_line, message, tmp_path):
     assert result.stdout == ""
 
 
-# Likely mistakes: the FMU is made, with a word about them.
+# Likely mistakes: lagc writes the FMU's sources and a warning.
 WARNINGS = [
     ("root of a negative start", 8, "<potential>m*g*l*sqrt(theta - 2)</potential>", 8, "root or fractional power of -1"),
     ("fractional power", 8, "<potential>m*g*l*(\ntheta - 2)^1.5</potential>", 9, "root or fractional power of -1"),
@@ -410,7 +410,7 @@ def test_files_that_hold_no_system(text, message, tmp_path):
 
 @pytest.mark.parametrize("version", ["1.1", "1.2"])
 def test_another_version_of_xml(version, tmp_path):
-    """The file is read all the same, as XML 1.0 asks for."""
+    """lagc reads the file with a warning, as XML 1.0 requires."""
     result = compile_text(f'<?xml version="{version}"?>\n{RIGHT}', tmp_path)
     assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
 
@@ -472,13 +472,13 @@ COHERENT = "coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' 
     ("%/s", "1/s, and the value times 1e-2"),
 ])  # fmt: skip
 def test_what_is_written_for_other_units(unit, remedy, tmp_path):
-    """The factors are those by which a value in the unit is multiplied, by hand."""
+    """The message names the factor to SI units; the expected factors are computed by hand."""
     result = compile_text(broken(2, f'<parameter name="m" start="1" unit="{unit}"/>'), tmp_path)
     assert result.stderr == f"system.xml:2: the unit '{unit}' is not known: expected {remedy}\n"
 
 
 def test_loops_in_loops_that_are_too_many(tmp_path):
-    """One message, at a loop, and none about what was not read for want of work."""
+    """lagc reports the loop once, and nothing about the unread rest of the file."""
     inner = '<for index="k" from="1" to="10000"></for>'
     loops = f'<for index="i" from="1" to="10000">\n<for index="j" from="1" to="10000">\n{inner}</for></for>\n'
     result = compile_text(broken(11, loops + '<solver method="erk" tolerance="1e-8"/>'), tmp_path)
@@ -492,7 +492,7 @@ def test_several_errors_in_one_run(tmp_path):
 
 
 def test_one_mistake_in_a_long_loop(tmp_path):
-    """The first hundred messages are enough, each with its suggestion, and the rest costs no search for one."""
+    """lagc prints the first hundred messages, each with its suggestion, and searches no suggestions for the others."""
     loop = '<for index="i" from="1" to="10000"><parameter name="p[i]" start="1"/><potential>q[i]*bob.y</potential></for>'
     result = compile_text(broken(11, loop), tmp_path)
     lines = result.stderr.splitlines()
@@ -502,7 +502,7 @@ def test_one_mistake_in_a_long_loop(tmp_path):
 
 
 def test_old_output_goes_when_the_system_breaks(tmp_path):
-    """A stale system.c beside a broken system.xml would be built without a word."""
+    """An invalid system.xml removes the old system.c, which the build would otherwise compile."""
     compile_text(RIGHT, tmp_path)
     assert (tmp_path / "out" / "system.c").exists()
     compile_text(broken(8, "<potential>m*G</potential>"), tmp_path)
@@ -534,7 +534,7 @@ def test_bad_command_lines(words, message, tmp_path):
 
 
 def test_files_beyond_the_limit_of_the_user(tmp_path):
-    """One line, as for a full disk, and no half of a file."""
+    """A file-size limit gives one line, as a full disk does, and no partial file."""
     (tmp_path / "system.xml").write_text(RIGHT)
     result = subprocess.run(
         [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True,
@@ -546,7 +546,7 @@ def test_files_beyond_the_limit_of_the_user(tmp_path):
 
 
 def test_point_that_is_no_equilibrium(tmp_path):
-    """A warning: the linear system is then the tangent there, with a constant part."""
+    """lagc warns: the linear system is then the tangent at the point, with a constant term."""
     (tmp_path / "system.xml").write_text(RIGHT)
     result = lagc("--linearize", "system.xml", "--at", "theta=1", cwd=tmp_path)
     assert result.returncode == 0
@@ -578,7 +578,7 @@ def test_broken_linearizations(of, line, expected, tmp_path):
 
 
 def test_long_and_deep_expressions(tmp_path):
-    """10,000 terms and 1,000 parentheses are fine; more parentheses are refused, and never crash."""
+    """lagc accepts 10,000 terms and 1,000 nested parentheses; more parentheses are an error and never crash it."""
     wide = " + ".join(f"{i % 7 + 1}*m*g*bob.y/10000" for i in range(10000))
     deep = "(" * 1000 + "m*g*bob.y" + ")" * 1000
     for expression in (wide, deep):
@@ -604,7 +604,7 @@ def test_external_entities_are_not_read(tmp_path):
 
 
 def test_every_system_compiles_without_a_word(name, tmp_path):
-    """But for how many nodes integrals take."""
+    """lagc prints nothing but the notes about the nodes of integrals."""
     result = lagc(ROOT / "fmu" / name / "system.xml", "-o", tmp_path / "out")
     words = re.sub(r"^\S+: note: integral\(.* is exact to 1e-13 by \d+ nodes? near the start values\n", "", result.stderr, flags=re.M)
     assert (result.returncode, result.stdout, words) == (0, "", "")
@@ -620,7 +620,7 @@ FILES = ["documentation/index.html", "documentation/licenses/license.txt", "fmi3
 
 @pytest.mark.parametrize("limit", [0, 1, 4096, 7000])
 def test_stopped_while_it_writes(limit, tmp_path):
-    """Nothing is left that the build would take for the result, however far it came before a file was too large."""
+    """An interrupted run leaves no partial output that the build would use, whichever file exceeded the limit."""
     compile_text(RIGHT, tmp_path)
     before = {name: (tmp_path / "out" / name).read_bytes() for name in FILES}
     assert limit < max(map(len, before.values()))
@@ -635,7 +635,7 @@ def test_stopped_while_it_writes(limit, tmp_path):
 
 
 def test_a_disk_that_is_full(tmp_path):
-    """The same without a signal: writing fails, and nothing is left that the build would take."""
+    """A failing write without a signal leaves no partial output either."""
     compile_text(RIGHT, tmp_path)
 
     def fill():
@@ -683,7 +683,7 @@ def test_the_point_may_hold_functions_with_commas(tmp_path):
 
 
 def test_numbers_without_rounding_errors(tmp_path):
-    """-0.3/3 is -0.09999999999999999 in doubles."""
+    """-0.3/3 is -0.09999999999999999 in doubles; the output has -0.1."""
     (tmp_path / "system.xml").write_text(
         '<system name="P"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic><force coordinate="x">-0.3*x/3</force></system>'
     )
@@ -692,7 +692,7 @@ def test_numbers_without_rounding_errors(tmp_path):
 
 
 def test_units_with_roots(tmp_path):
-    """FMI's units have whole exponents: a root of metres has none, and three thirds of a metre are one."""
+    """Units in FMI have integer exponents: the root of a metre has no unit, and the product of three cube roots is a metre."""
     outputs = '<output name="a">sqrt(l)</output><output name="b">sqrt(l)*sqrt(l)</output><output name="c">l^(1/3)*l^(1/3)*l^(1/3)</output>'
     result = compile_text(broken(10, outputs), tmp_path)
     assert (result.returncode, result.stderr) == (0, "")

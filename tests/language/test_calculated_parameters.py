@@ -1,4 +1,4 @@
-"""Parameters that follow from others, against a rod's closed form and derivatives by hand."""
+"""Calculated parameters, against a rod's closed form and derivatives by hand."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ import fmu
 from closed_forms import pendulum_angle
 from fmu import ERROR, OK, ROOT, lagc
 
-# J, k and w before and after what they follow from, and in a loop.
+# J, k and w stand before and after the parameters that they depend on, and in a loop.
 ROD = """<system name="{name}" description="Rod that is hinged at its end">
   <parameter name="w" value="sqrt(k/J)" unit="rad/s" description="of small swings"/>
   <parameter name="J" value="m*l^2/3" unit="kg.m2" description="inertia about the hinge"/>
@@ -63,7 +63,7 @@ def test_values_follow_at_once(name, open_fmu):
     check(instance, 2.0, 0.5)
     instance.set(m=3.0, l=0.8)
     check(instance, 3.0, 0.8)
-    assert all(status == OK for status, _, _ in instance.messages)  # they are InitialUnknowns, which may be read then
+    assert all(status == OK for status, _, _ in instance.messages)  # they are InitialUnknowns, which may be read in this state
     instance.fmu.exitInitializationMode()
     instance.step(0.1)
     instance.set(l=1.5)
@@ -82,7 +82,7 @@ def test_motion(name, open_fmu):
 
 
 def test_motion_after_tuning(open_fmu):
-    """The state goes on, as in an instance that begins there with the new length."""
+    """The state continues as in an instance that starts there with the new length."""
     tuned, fresh = open_fmu("CalculatedRod").initialize(), open_fmu("CalculatedRod")
     tuned.step(0.3)
     tuned.set(l=1.1)
@@ -136,7 +136,7 @@ def test_derivatives_by_parameters(name, kind, open_fmu):
 
 
 def test_linearization(open_fmu):
-    """theta - pi = -(pi - 1) cosh(rate t)"""
+    """theta - pi = (1 - pi) cosh(rate t) for the pendulum linearized about its upper equilibrium."""
     instance = open_fmu("CalculatedLinear").initialize({"l": 0.9})
     check(instance, 2.0, 0.9)
     instance.step(0.4)

@@ -14,7 +14,7 @@ FUNCTIONS = """<function name="wave" arguments="s k">sin(k*s)*exp(-s) + abs(s - 
 <function name="slope" arguments="s">diff(wave(s, p), s)</function>
 <function name="ramp" arguments="s">abs(s)*s</function>
 <function name="held" arguments="a b">diff(a^3*p + b*x, p)</function>"""
-# Each with the value that it has at x = 0.7, y = -0.3, v = 0, vy = 0.5, p = 1.5, u = 2, time = 0.
+# Expressions and their values at x = 0.7, y = -0.3, v = 0, vy = 0.5, p = 1.5, u = 2, time = 0.
 X, Y, VY, P, U = 0.7, -0.3, 0.5, 1.5, 2.0
 VALUES = {
     "diff(x^2*y + p*v, x)": 2 * X * Y,
@@ -38,7 +38,7 @@ VALUES = {
     "integral(s, 0, 1, der(s*x*y))": X * VY / 2,
     "integral(s, 0, 1, sum(i, 1, 3, s^i))": 1 / 2 + 1 / 3 + 1 / 4,
 }  # fmt: skip
-# A string that hangs between its ends: sag functions of the third degree, whose energy is no polynomial.
+# A string that hangs between its ends: two Ritz functions for the sag, whose energy is not a polynomial.
 STRING = """<system name="CalculusString"><parameter name="L" start="2" unit="m"/><parameter name="EA" start="50" unit="N"/>
 <parameter name="rho" start="0.4" unit="kg/m"/><parameter name="g" start="9.81" unit="m/s2"/>
 <coordinate name="a" velocity="va" unit="m" start="0.1"/><coordinate name="b" velocity="vb" unit="m"/>
@@ -60,7 +60,7 @@ def test_values(open_fmu):
 
 
 def test_forces_of_an_integral(open_fmu):
-    """Accelerations from the derivatives of the energies by quadrature that adapts."""
+    """Accelerations agree with those from derivatives of the energies by adaptive quadrature."""
     instance = open_fmu("CalculusString").initialize({"a": 0.15, "b": -0.08})
     a, b, L, EA, rho, g = 0.15, -0.08, 2, 50, 0.4, 9.81
 
@@ -91,7 +91,7 @@ def test_as_many_nodes_as_the_degree_needs(tmp_path, expression, nodes):
 
 
 def test_parameters_that_are_0_hide_nothing(tmp_path):
-    """q = 0 at the start may be tuned: s^10 needs 6 nodes. Its limits hold: no root of a negative number is tried."""
+    """q = 0 at the start may be tuned, so that s^10 needs 6 nodes. The search respects min = 0 and tries no root of a negative number."""
     content = '<parameter name="q" start="0" min="0"/><output name="o">integral(s, 0, 1, q*s^10 + sqrt(q))</output>'
     assert "is exact to 1e-13 by 6 nodes" in said_of(tmp_path, content).stderr
 
@@ -101,7 +101,7 @@ def test_parameters_that_are_0_hide_nothing(tmp_path):
     ("exp(-((s - 0.37)/0.001)^2)", 0, 1), ("1/(s - 0.5)", 0, 1),
 ])  # fmt: skip
 def test_what_few_nodes_do_not_see_is_not_called_exact(tmp_path, integrand, low, high):
-    """One node in the middle gives 0, or a symmetric value, of these, which are another number or none."""
+    """One central node gives 0 or a symmetric value of these integrands, which is wrong. lagc then does not call the integral exact."""
     text = integrand.replace("<", "&lt;")
     said = said_of(tmp_path, f'<output name="o">integral(s, {low}, {high}, {text})</output>').stderr
     assert "note:" not in said and "has a relative error of" in said, said

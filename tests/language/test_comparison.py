@@ -1,4 +1,4 @@
-"""fmu/COMPARISON.md: its figures are those that were measured."""
+"""The figures in fmu/COMPARISON.md are the measured ones."""
 
 import re
 

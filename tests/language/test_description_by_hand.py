@@ -1,4 +1,4 @@
-"""modelDescription.xml of small systems, all of it known by hand; lagc alone makes it."""
+"""modelDescription.xml of small systems from lagc alone, against values known by hand."""
 
 import re
 
@@ -39,7 +39,7 @@ def description(text, folder):
 
 
 def structure(root, section):
-    """For each unknown by name: the kind of each known that it depends on, by name."""
+    """For each unknown by name, the kind of dependency on each known by name."""
     names = [variable.get("name") for variable in root.find("ModelVariables")]
     return {
         names[int(unknown.get("index")) - 1]: dict(
@@ -54,7 +54,7 @@ def structure(root, section):
 
 
 def test_kinds_of_dependencies(tmp_path):
-    """m v' = F - k x, 2 w' = 1 + sin(y). A factor of numbers is constant, one of parameters tunable; else dependent."""
+    """m v' = F - k x, 2 w' = 1 + sin(y). A numeric factor is constant, a factor of parameters tunable, everything else dependent."""
     root = description(re.sub(' unit="[^"]*"', "", SYSTEM.format(MORE)), tmp_path)
     assert structure(root, "Derivatives") == {
         "der(x)": {"v": "constant"},
@@ -70,7 +70,7 @@ def test_kinds_of_dependencies(tmp_path):
         "acceleration": {"x": "tunable", "F": "tunable"},
         "none": {},
     }
-    # Parameters are knowns of the initial values; "tunable" is for none of them (section 2.2.8).
+    # Parameters are knowns of the initial unknowns, where "tunable" does not apply (FMI 2.0, section 2.2.8).
     assert structure(root, "InitialUnknowns") == {
         "der(x)": {"v": "constant"},
         "der(y)": {"w": "constant"},
@@ -85,7 +85,7 @@ def test_kinds_of_dependencies(tmp_path):
 
 
 def test_kinds_behind_a_coupled_block(tmp_path):
-    """Accelerations of three masses that inerters couple are found at run time, from all that moves any of them."""
+    """The coupled accelerations of three masses with inerters are solved at run time; they depend on all that moves any of the masses."""
     root = description(
         """<system name="Row"><parameter name="k" start="1"/><input name="F"/>
   <for index="i" from="1" to="3"><coordinate name="x[i]" velocity="v[i]"/><particle mass="1" x="x[i]"/></for>
@@ -128,7 +128,7 @@ def test_capabilities(tmp_path):
     exchange = both | dict(completedIntegratorStepNotNeeded="true")
     assert attributes(with_inputs, "ModelExchange") == exchange and attributes(with_inputs, "CoSimulation") == steps
     assert with_inputs.get("numberOfEventIndicators") == "0" and with_inputs.get("fmiVersion") == "2.0"
-    # Sources are complete without SUNDIALS alone; erk and bdf have no series, nor has a kink.
+    # The source list is complete for solvers without SUNDIALS. erk and bdf have no series, nor has a system with a kink.
     for section in ("ModelExchange", "CoSimulation"):
         assert [file.get("name") for file in with_inputs.find(f"{section}/SourceFiles")] == ["ByHand.c"]
     kink = description(SYSTEM.format('<output name="o">abs(x)</output>'), tmp_path)
@@ -160,7 +160,7 @@ def test_values_of_variables(tmp_path):
 
 
 def test_each_unit_once(tmp_path):
-    """In base units, by hand."""
+    """Each unit is defined once, with the base units known by hand."""
     units = description(SYSTEM.format('<output name="p" unit="Pa">k/x</output>'), tmp_path).findall("UnitDefinitions/Unit")
     exponents = {
         "m": dict(m="1"), "m/s": dict(m="1", s="-1"), "m/s2": dict(m="1", s="-2"), "N": dict(kg="1", m="1", s="-2"),

@@ -1,4 +1,4 @@
-"""The documentation page is well-formed, and its typeset formulas say what their text says."""
+"""The documentation page is well-formed, and its typeset formulas agree with their text."""
 
 import html
 import re
@@ -14,14 +14,14 @@ from typeset import check
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_formulas_of_every_system(name):
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
-    # Very long ones, and those with conditions of pieces, are there as text alone.
+    # Very long formulas, and those with conditions of pieces, appear as text only.
     texts = re.findall("<code>(.*?)</code>", page, re.S)
     short = [text for text in texts if len(html.unescape(text)) <= 3000 and " in line " not in text]
     assert check(page) == len(short) > 0
 
 
 def test_typeset_forms(tmp_path):
-    """Every form of an expression, and what is not typeset but shown as it is."""
+    """Covers every form of an expression, and the parts that appear untypeset."""
     (tmp_path / "system.xml").write_text(
         """<system name="Forms"><input name="a"/><input name="b2"/><input name="theta[3]"/>
   <output name="u">-(a + 1)^2/(b2*(a - b2)) - 3/theta[3]</output><output name="v">a^-b2 - (a - (b2 - 1))*2</output>

@@ -1,4 +1,4 @@
-"""The functions that lagc writes for a system, in both forms, each by itself at random points: against SymPy's derivation."""
+"""The functions that lagc writes, in both forms, called one by one at random points: against SymPy's derivation."""
 
 import subprocess
 
@@ -10,7 +10,7 @@ import sympy as sp
 from fmu import BUILD, ROOT, lagc
 from mechanics import System, time
 
-# Three coordinates whose block of M is sparse, factored at run time, and not in the order of the file; and one by itself.
+# Three coordinates with a sparse block of M, factored at run time and out of order; and one uncoupled coordinate.
 TEXT = """<system name="Code">
   <parameter name="a" start="1.5"/><parameter name="b" start="0.7"/><input name="u"/>
   <coordinate name="r" velocity="w"/><coordinate name="q" velocity="v"/><coordinate name="s" velocity="x"/>
@@ -45,7 +45,7 @@ OTHERS = sp.lambdify(SYSTEM.arguments, [POWER, KINETIC, POTENTIAL], modules="mpm
 
 
 def derivatives(values):
-    """Of coordinates, velocities and work, to 40 digits; values: time, state without the work, input and parameters."""
+    """Rates of coordinates, velocities and work, to 40 digits; values: time, state without the work, input and parameters."""
     mass, terms = SYSTEM.precise(*values)
     accelerations = mpmath.matrix(mass) ** -1 * mpmath.matrix([mpmath.fsum(row) for row in terms])
     return [*values[5:9], *accelerations, OTHERS(*values)[0]]
@@ -63,7 +63,7 @@ def program(method, form, folder):
     sources = [ROOT / "tests" / "c" / "evaluate.c", folder / "out" / "system.c"]
     flags = ["-O1", f"-I{ROOT}/include", "-include", "lagrangian.h"]
     name = {"taylor": "taylor", "bdf": "bdf"}[method]
-    stub = folder / "solver.c"  # the functions are called without their solver
+    stub = folder / "solver.c"  # links the functions without a solver
     stub.write_text(f"struct Solver {{ int unused; }};\nextern const struct Solver solver_{name};\nconst struct Solver solver_{name} = {{0}};\n"
                     "struct EventLaws { int unused; };\nextern const struct EventLaws event_laws;\nconst struct EventLaws event_laws = {0};\n")
     subprocess.run(["gcc", *flags, *sources, stub, BUILD / "libsolvers.a", "-lm", "-o", folder / "evaluate"], check=True)
@@ -76,7 +76,7 @@ def test_functions(method, form, tmp_path):
     executable, random = program(method, form, tmp_path), np.random.default_rng(7)
     for _ in range(3):
         values, direction = random.uniform(0.4, 1.3, 12), random.uniform(-1, 1, 12)
-        numbers = [*values[:9], 0.0, *values[9:], *direction[:9], 0.0, *direction[9:]]  # with the work, on which nothing depends
+        numbers = [*values[:9], 0.0, *values[9:], *direction[:9], 0.0, *direction[9:]]  # including the work, on which nothing depends
         text = subprocess.run([executable], input=" ".join(map(repr, map(float, numbers))), capture_output=True, text=True, check=True).stdout
         rows = {}
         for name, *row in map(str.split, text.splitlines()):
@@ -99,7 +99,7 @@ def test_functions(method, form, tmp_path):
                 near(rows["jacobian"], [*(slope(derivatives, unit) for unit in units), [0] * 9])
                 continue
             near(rows["start"][0], derivatives(at))
-            # The polynomials obey the equations up to the order; what is left at 1/100 is of its eleventh power.
+            # The series satisfy the equations up to their order; at a step of 1/100 the residual is of order 11.
             step, series = mpmath.mpf("0.01"), [[mpmath.mpf(float(c)) for c in row] for row in rows["series"]]
             state = [mpmath.fsum(c * step**k for k, c in enumerate(row)) for row in series]
             rate = [mpmath.fsum(k * c * step ** (k - 1) for k, c in enumerate(row) if k > 0) for row in series]

@@ -1,4 +1,4 @@
-"""Whatever lagc accepts compiles without a warning, by gcc and by clang."""
+"""C from every accepted system compiles without warnings by gcc and clang."""
 
 import re
 import subprocess
@@ -41,7 +41,7 @@ def compile_all(*folders):
 
 
 def check_all_methods(elements, folder):
-    """With a series, without, with a Jacobian, which bdf gets as radau does, and with both."""
+    """Compile with a series, without one, with a Jacobian (bdf has the same as radau), and with both."""
     methods = ("taylor", "erk", "radau", "auto")
     for method in methods:
         (folder / "system.xml").write_text(SYSTEM.format(elements, method))
@@ -52,7 +52,7 @@ def check_all_methods(elements, folder):
 
 @pytest.mark.parametrize("place", PLACES)
 def test_powers(place, tmp_path):
-    """Each of a coordinate of its own."""
+    """Each expression uses a coordinate of its own."""
     elements = []
     for i, expression in enumerate(EXPRESSIONS):
         elements.append(f'<coordinate name="x{i}" velocity="v{i}" start="0.7"/><particle name="p{i}" mass="a" x="x{i}"/>')
@@ -63,12 +63,12 @@ def test_powers(place, tmp_path):
 @pytest.mark.parametrize("expression", ["3", "x - x"])
 @pytest.mark.parametrize("place", PLACES)
 def test_constants(place, expression, tmp_path):
-    """Where nothing else is, little is needed of what is written before."""
+    """In a system with a single expression, many generated declarations are unused."""
     check_all_methods(PLACES[place].format(expression), tmp_path)
 
 
 def test_inertia_of_many_long_names(tmp_path):
-    """C allows 4095 characters in a string; the message of a vanished inertia names what it has room for."""
+    """C guarantees strings of 4095 characters; the message about vanished inertia is cut to that."""
     name = "theCoordinateWithTheLongestNameThatAnyoneHasGivenToOne"
     elements = (
         f'<for index="i" from="1" to="100"><coordinate name="{name}[i]" velocity="v[i]"/></for><particle mass="a" '
@@ -85,7 +85,7 @@ def test_inertia_of_many_long_names(tmp_path):
 @pytest.mark.parametrize("form", ["statements", "tables"])
 @pytest.mark.parametrize("method", ["taylor", "erk", "bdf", "radau", "auto"])
 def test_coupled_masses(method, form, tmp_path):
-    """A constant M of three coordinates, whose accelerations are in no derivative of the equations."""
+    """M is constant and couples three coordinates, whose accelerations appear in no derivative of the equations."""
     elements = '<for index="i" from="1" to="3"><coordinate name="q[i]" velocity="w[i]"/><particle mass="a" x="q[i]"/></for>'
     (tmp_path / "system.xml").write_text(SYSTEM.format(elements + "<kinetic>(w[1] + w[2] + w[3])^2</kinetic>", method))
     assert lagc("system.xml", "-o", "out", "--form", form, cwd=tmp_path).returncode == 0

@@ -1,4 +1,4 @@
-"""Systems inside of others, against the normal modes of oscillators and formulas by hand."""
+"""Systems included in others, against the normal modes of oscillators and formulas by hand."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ import fmu
 from building import build_by_cmake
 from fmu import lagc
 
-# An oscillator of N equal springs in parallel; its definition, body and output have names that others use too.
+# An oscillator of N equal parallel springs; its definition, body and output use names that occur in other files too.
 PART = """<system name="IncludePart">
   <constant name="N" value="1"/>
   <parameter name="m" start="{mass}" unit="kg" min="0"/>
@@ -27,7 +27,7 @@ PART = """<system name="IncludePart">
   <experiment stopTime="77"/>
 </system>
 """
-# Three of them in a row, each on a spring to the next; i is a name out here too.
+# Three of them in a row, coupled by springs; the name i is also used in the outer system.
 ROW = """<system name="IncludeRow">
   <parameter name="i" start="4" unit="N/m"/>
   <for index="j" from="1" to="3">
@@ -42,7 +42,7 @@ ROW = """<system name="IncludeRow">
   <potential>i*(mass[1].body1.x^2 + mass[3].elongation^2)/2</potential>
 </system>
 """
-# Parts in parts: damped by what is out here, with three springs and another stiffness from outside of all.
+# Nested parts, with a damping from the outer system, three springs, and a stiffness set by the outermost file.
 NEST = """<system name="IncludeNest">
   <parameter name="b" start="1.5" unit="N.s/m"/>
   <include file="../IncludeMiddle/system.xml" as="middle">
@@ -107,7 +107,7 @@ def test_variables():
         assert validate_fmu(str(fmu.archive(name))) == []
 
 
-# Each file changes some attributes of what the one further in says; in c[1] and d[1] the outermost changes none.
+# Each file overrides some attributes set by the next inner one; in c[1] and d[1] the outermost file overrides none.
 LAYERS = {
     "cell.xml": """<system name="Cell">
   <constant name="N" value="1"/>
@@ -254,7 +254,7 @@ def test_mistakes_in_the_name(second, message, tmp_path):
 
 
 def test_parts_that_multiply_end(tmp_path):
-    """Each file includes the next one a hundred times."""
+    """Files that each include the next one a hundred times are an error."""
     texts = {f"p{i}.xml": f'<system name="P"><for index="i" from="1" to="100"><include file="p{i + 1}.xml" as="a[i]"/></for></system>' for i in range(9)}
     result = compile_all(tmp_path, {**texts, "p9.xml": '<system name="P"/>', "system.xml": texts["p0.xml"]})
     assert result.returncode == 1 and "the system is too large" in result.stderr, result.stderr

@@ -1,4 +1,4 @@
-"""Every element of a system arrives in its equations: each carries a coefficient of its own."""
+"""Every element of a system contributes to its equations; each has a distinct coefficient."""
 
 import html
 import re
@@ -8,7 +8,7 @@ from lxml import etree
 
 from fmu import lagc
 
-# In an order that lets names come before what they stand for, where that is allowed.
+# Names are used before their definition wherever that is allowed.
 SYSTEM = """\
 <system name="Everything">
   <constant name="N" value="3"/>
@@ -57,7 +57,7 @@ def test_every_term_arrives(tmp_path):
     plain = lambda text: re.sub(r"(\w)\[(\d)\]", r"\1_\2", text).replace("der(v)", "acc").replace("^", "**")
     s = {name: sp.Symbol(name) for name in [*plain(NAMES).split(), *"x v u time acc".split()]}
     ours = sp.sympify(plain(left), locals=s) - sp.sympify(plain(right), locals=s)
-    # By hand: M a - Q + dU/dx
+    # By hand: M a - Q + dU/dx.
     expected = sp.sympify(
         """
         (m0*9 + m_1*(1 + 16) + m_2*(4 + 25) + m3*49 + m4*121 + h1 + h2)*acc
@@ -70,7 +70,9 @@ def test_every_term_arrives(tmp_path):
 
 
 def test_the_page_keeps_the_names_of_definitions(tmp_path):
-    """Formulas use them wherever their expressions occur as a whole; mere variables and numbers are shown as they are."""
+    """
+    Formulas use a definition's name wherever its whole expression occurs; definitions that are mere variables or numbers are expanded.
+    """
     (tmp_path / "system.xml").write_text(
         """<system name="Names"><parameter name="k" start="1"/><parameter name="l" start="1"/>
   <coordinate name="x" velocity="v"/>
@@ -92,7 +94,7 @@ def test_the_page_keeps_the_names_of_definitions(tmp_path):
 
 
 def test_the_page_of_a_large_system(tmp_path):
-    """A hundred equations and outputs are enough to read; the page says how many there are besides."""
+    """The page shows a hundred equations and outputs, and states the number of the others."""
     (tmp_path / "system.xml").write_text(
         """<system name="Many"><constant name="N" value="300"/>
   <for index="i" from="1" to="N">
@@ -113,8 +115,8 @@ def test_the_page_of_a_large_system(tmp_path):
 
 def test_dependencies_of_a_large_coupled_system(tmp_path):
     """
-    Inerters in a row couple all accelerations with each other: lists of what these depend on would grow as the square of
-    their number. Without a list, FMI assumes all knowns. An output has its list however long.
+    Inerters in a row couple all accelerations, so that dependency lists would grow as the square of their number. They are then omitted,
+    and FMI assumes all knowns. An output always has its list.
     """
     (tmp_path / "system.xml").write_text(
         """<system name="Row"><constant name="N" value="501"/><input name="F"/>
@@ -155,7 +157,7 @@ def equations(lines, folder):
 
 
 def test_the_order_of_definitions_is_free(tmp_path):
-    """Each uses the next one, by way of a position: from the last to the first, and the other way round."""
+    """Each definition uses the next one through a position, in forward and in reverse order."""
     lines = [
         '<coordinate name="x" velocity="v"/>', '<parameter name="k" start="1"/>', '<parameter name="m" start="1"/>',
         '<for index="i" from="1" to="3"><define name="a[i]">i*a[i+1] + sum(j, 1, i, b[j])</define></for>',
@@ -171,7 +173,7 @@ def test_the_order_of_definitions_is_free(tmp_path):
 
 
 def test_a_long_chain_of_definitions_backwards(tmp_path):
-    """Deeper than any stack of calls."""
+    """A chain of 20,000 definitions is deeper than the stack allows for recursion."""
     chain = [f'<define name="d{i}">d{i + 1} + x</define>' for i in range(20000)] + ['<define name="d20000">x</define>']
     text = "".join(['<system name="Chain"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic>', *chain, "<potential>d0</potential></system>"])
     (tmp_path / "system.xml").write_text(text)
@@ -180,7 +182,7 @@ def test_a_long_chain_of_definitions_backwards(tmp_path):
 
 
 def test_an_empty_sum_names_nothing(tmp_path):
-    """What neighbours have in common, with one mass and no neighbour: sum(i, 2, 1, ...) is 0, also of x[2]."""
+    """With one mass sum(i, 2, 1, ...) is 0, even where its term contains x[2]."""
     (tmp_path / "system.xml").write_text(
         '<system name="One"><constant name="N" value="1"/><for index="i" from="1" to="N"><coordinate name="x[i]" velocity="v[i]"/>'
         '<particle mass="1" x="x[i]"/></for><potential>x[1]^2 + sum(i, 2, N, (x[i] - x[i-1])^2)</potential></system>'

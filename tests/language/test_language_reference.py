@@ -1,4 +1,4 @@
-"""fmu/README.md: its systems are built and move as the closed forms say, and its messages are those of lagc."""
+"""fmu/README.md: its examples build and move by the closed forms, and its messages are those of lagc."""
 
 import re
 
@@ -26,7 +26,7 @@ def band_brake(t):
 
 
 def wall(t):
-    """Free to x = 0 at 0.5 s, half a period on the spring, and back."""
+    """Free flight to x = 0 at 0.5 s, half a period on the spring, and back."""
     rate, contact = 10.0, np.pi / 10
     if t < 0.5:
         return 1 - 2 * t
@@ -44,7 +44,7 @@ def damped(t):
 
 def stiff(t):
     root = np.sqrt(1e8 - 4e4)
-    slow, fast = -2e4 / (1e4 + root), -(1e4 + root) / 2  # the first one without cancellation
+    slow, fast = -2e4 / (1e4 + root), -(1e4 + root) / 2  # first root without cancellation
     return {"x": (slow * np.exp(fast * t) - fast * np.exp(slow * t)) / (slow - fast)}
 
 
@@ -108,7 +108,7 @@ def block(t):
 
 
 def cue_ball(t):
-    spin, velocity = 0.0286 * np.array([-10, -20]), np.array([1, 0])  # its velocity if it rolled so
+    spin, velocity = 0.0286 * np.array([-10, -20]), np.array([1, 0])  # peripheral velocity of rolling with this spin
     slip = velocity - spin
     size = np.linalg.norm(slip)
     slides = min(t, 2 * size / (7 * 0.2 * 9.81))
@@ -118,7 +118,7 @@ def cue_ball(t):
 
 
 def dropped_ball(t):
-    """Parabolas between bounces, each with half the velocity of the one before."""
+    """Parabolas between bounces; each bounce halves the velocity."""
     flight, velocity = 2 * np.sqrt(2 / 9.81), np.sqrt(2 * 9.81)
     t += flight / 2
     while t >= flight and flight > 1e-14:
@@ -128,7 +128,7 @@ def dropped_ball(t):
 
 
 def thermostat(t):
-    """rate = u/10 + (rate0 - u/10) exp(-10 s) from switch to switch, which bisection finds."""
+    """rate = u/10 + (rate0 - u/10) exp(-10 s) between switches; bisection finds the switching times."""
     T, rate, u, turns = 20.0, 0.0, 1.0, 0
     motion = lambda s: T + u / 10 * s + (rate - u / 10) * (1 - np.exp(-10 * s)) / 10
     while True:
@@ -163,12 +163,12 @@ def beam_on_three(t):
 
 
 def ball_on_slope(t):
-    """It rolls, and creeps by 0.2 mm/s."""
+    """Rolling without slip; the regularized friction creeps by 0.2 mm/s."""
     return {"x": 5 / 14 * 9.81 * np.sin(0.3) * t**2, "touch.force": 2 * 9.81 * np.cos(0.3)}
 
 
 def swing(t):
-    """Released as it hangs, where it stays; the limits are not reached."""
+    """The arm hangs at rest within its limits."""
     return {"hinge": 0, "tool_z": 1, "tool_x": 0, "hinge_beyond": 0}
 
 
@@ -188,7 +188,7 @@ def lagged_actuator(t):
 
 
 def limited_controller(t):
-    """At the limit up to first, and again from where the integral is (5/2 - 1)/2."""
+    """Saturated until `first`, and from then on with the integral (5/2 - 1)/2."""
     first, decay = -np.log(0.15) / 100, np.exp(-100 * t)
     integral = min(max(0, t - first), 0.75)
     return {"D": 1 - decay, "I": integral, "u": min(5, 2 * (1 + 2 * integral + 10 * decay))}
@@ -208,13 +208,13 @@ def cantilever(t):
 
 
 def sampled_shaft(t):
-    """Deadbeat: forth for one period, back for another, after one of waiting."""
+    """Deadbeat control: one period of delay, one of acceleration, one of deceleration."""
     s = t / 0.01 - 1
     phi = 0.0 if s < 0 else s**2 / 2 if s < 1 else 1 - (2 - s) ** 2 / 2 if s < 2 else 1.0
     return {"phi": 0.5 * phi}
 
 
-# What each example says, at any time: variables by name, and the largest error.
+# Closed form of each example at any time, by variable name, and the largest error.
 MOTIONS = {
     "Pendulum": (lambda t: {"theta": (angle := pendulum_angle(1, np.sqrt(9.81 / 0.5), t)), "height": 0.5 - 0.5 * np.cos(angle)}, 1e-6),
     "Rod": (lambda t: {"theta": pendulum_angle(1, np.sqrt(1.5 * 9.81 / 0.5), t), "J": 0.25 / 3, "w": np.sqrt(1.5 * 9.81 / 0.5)}, 1e-6),
@@ -282,7 +282,7 @@ def test_every_example_is_checked():
 
 
 def test_examples_are_plain_c11():
-    """Each for one compiler and, as they come, the other."""
+    """The sources compile as plain C11, alternately by gcc and clang."""
     for i, name in enumerate(EXAMPLES):
         source = fmu.unpacked(name) / "sources" / f"{name}.c"
         assert fmu.complaints_about(source, ["gcc", "clang"][i % 2]) == "", name
@@ -307,7 +307,7 @@ def test_limited_gain_at_its_limits(open_fmu):
 
 
 def test_robot_swings_from_elsewhere(open_fmu):
-    """J theta'' = tau - 1.5 g sin(theta), and where the tool is then."""
+    """J theta'' = tau - 1.5 g sin(theta), and the position of the tool."""
     instance = open_fmu("Swing").initialize({"hinge": 1.0, "hinge_torque": 2.0})
     assert instance.get("der(hinge_velocity)") == pytest.approx(2 - 1.5 * 9.81 * np.sin(1), rel=1e-14)
     assert instance.get("tool_x", "tool_z") == pytest.approx([np.sin(1), 2 - np.cos(1)])
@@ -334,7 +334,7 @@ def test_variables_that_come_out(open_fmu):
 
 
 def rows(title):
-    """Pairs of (line, message) of a table."""
+    """Pairs (line, message) of a table of the reference."""
     part = REFERENCE[REFERENCE.index(title) :]
     table = re.search(r"\| line \| message \|\n.*?\n((?:\|.*\n)+)", part).group(1)
     return [(line.replace("\\|", "|"), said.replace("\\|", "|")) for line, said in re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)]

@@ -1,4 +1,4 @@
-"""No file keeps lagc busy for long: what would is refused, with a message that says which limit it meets."""
+"""lagc bounds its work for any file: beyond a limit it stops with a message that names the limit."""
 
 import re
 import resource
@@ -58,7 +58,7 @@ REFUSED |= {
 }  # fmt: skip
 
 
-MOST_SECONDS = 8  # several times as many as it should take, for busy machines
+MOST_SECONDS = 8  # s; several times the usual time, for busy machines
 
 
 def seconds_of_children():
@@ -77,7 +77,7 @@ def test_refused(text, message, tmp_path):
 
 
 def test_derivatives_of_a_long_sum_in_a_loop(tmp_path):
-    """They are found once."""
+    """lagc computes the derivatives of a shared sum once."""
     text = '<define name="long">sum(j, 1, 30000, sin(j*x))</define>' + loops(("1", "10000"), content="<dissipation>i*der(long)</dissipation>")
     before = seconds_of_children()
     assert compile_with(text, tmp_path).returncode == 0
@@ -101,7 +101,7 @@ def test_entities(entities, tmp_path):
 
 
 def test_files_that_include_each_other_twice(tmp_path):
-    """2^40 systems in 40 short files."""
+    """40 short files stand for 2^40 systems."""
     for k in range(40):
         includes = "".join(f'<include file="tree{k + 1}.xml" as="{name}"/>' for name in "ab")
         (tmp_path / f"tree{k}.xml").write_text(f'<system name="Tree">{includes}</system>')
@@ -121,7 +121,7 @@ def test_files_that_include_each_other_in_a_row(tmp_path):
 
 
 def test_errors_without_end(tmp_path):
-    """Of 38,000 wrong elements a hundred are told, in a time that does not grow as their square; long texts are cut."""
+    """Of 38,000 wrong elements lagc reports a hundred, in less than quadratic time; it shortens long texts."""
     before = seconds_of_children()
     result = compile_with('<contact name="c" restitution="1">x</contact>\n' * 38000, tmp_path)
     lines = result.stderr.splitlines()

@@ -1,4 +1,4 @@
-"""Messages name the file and the line that the author wrote: of an attribute, a text, an included file, and beyond 65,535 lines."""
+"""Messages give the file and the line of the source: in attributes, texts, included files, and beyond line 65,535."""
 
 import re
 
@@ -10,7 +10,7 @@ import fmu
 from fmu import build_systems, lagc
 
 OSCILLATOR = '<system name="S">\n<coordinate name="x" velocity="v"/>\n<particle mass="1" x="x"/>\n{}\n</system>\n'
-# HERE begins the name that is unknown.
+# HERE marks the start of the unknown name.
 PLACES = {
     "attribute": '<parameter name="p"\n  description="a"\n  value="HERE"\n\n/>',
     "within an attribute": '<parameter name="p" value="1 +\n  2*\n  HERE\n"/>',
@@ -77,7 +77,7 @@ ORIGIN = " (included as 'cart' on line 3 of {}.xml)\n"
     ("<coordinate name='x' velocity='v'/><particle x='x' mass='1'/>\n<force coordinate='x'>\n\nlog(x)</force>", 5, "log(0)"),
 ])  # fmt: skip
 def test_messages_after_reading(inside, line, message, tmp_path):
-    """Of the equations, when all files have been read."""
+    """Messages about the equations, which appear after all files are read."""
     errors = errors_of(tmp_path, AROUND.format("Train"), "Train.xml", {"parts/cart.xml": f"<system name='P'>\n{inside}</system>"})
     lines = [said for said in errors.splitlines(True) if message in said]
     assert lines and all(said.startswith(f"parts/cart.xml:{line}: ") and said.endswith(ORIGIN.format("Train")) for said in lines), errors
@@ -99,7 +99,7 @@ def test_branches_name_the_own_file(tmp_path):
     assert '"sign", "Dry.xml", 8, ' in (tmp_path / "out" / "system.c").read_text()
     (tmp_path / "deep").mkdir()
     errors_of(tmp_path, DRY, "deep/Dry.xml")
-    assert '"sign", "Dry.xml", 8, ' in (tmp_path / "out" / "system.c").read_text()  # and no folder
+    assert '"sign", "Dry.xml", 8, ' in (tmp_path / "out" / "system.c").read_text()  # without the folder
 
 
 def test_motions_name_the_included_file():

@@ -1,4 +1,4 @@
-"""Lists of constants, units with roots, and the factors of units that are not SI."""
+"""Lists of constants, units with roots, and conversion factors of units that are not SI."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""<function>: expressions with arguments, against the same expressions written out, and its messages."""
+"""<function>: expressions with arguments, against the same expressions written out; and messages."""
 
 import pytest
 
@@ -17,7 +17,8 @@ BEADS = """<system name="{name}">{head}
   <output name="total" unit="m">{total}</output>
   <solver tolerance="1e-10"/>
 </system>"""
-# Functions of functions, before and behind what they use; an argument that hides a variable; one in a <for>, whose index it knows.
+# Nested functions, before and after the functions that they use; an argument that shadows a variable; and a function that uses the index of
+# a <for>.
 BY_FUNCTIONS = BEADS.format(
     name="FunctionBeads", head=HEAD, functions="""<function name="hang" arguments="a b">bend(a, 0)*(1 + bend(b, a)/L)</function>
   <function name="bend" arguments="q t2" unit="m">share*(q - t2)*cos(q/L)</function>
@@ -85,7 +86,7 @@ def test_messages(tmp_path, content, message):
 
 
 def test_functions_that_grow_come_to_a_limit(tmp_path):
-    """Each doubles what the one before has."""
+    """Each function doubles the size of the previous one, so that lagc reports a system that is too large."""
     text = "".join(f'<function name="f{i}" arguments="s">f{i + 1}(s + 1) + f{i + 1}(2*s)</function>' for i in range(60))
     assert "the system is too large" in complaints(tmp_path, text + '<function name="f60" arguments="s">s</function><output name="p">f0(l)</output>')
 

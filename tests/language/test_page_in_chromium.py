@@ -1,4 +1,4 @@
-"""The page in each FMU as a browser lays it out: all of it is seen, at a desk and on a telephone."""
+"""Layout of an FMU's page in a browser: everything is visible at desktop and phone widths."""
 
 import re
 import subprocess
@@ -21,14 +21,14 @@ def test_all_is_seen(pages, tmp_path):
 
 
 def test_nothing_is_loaded(pages):
-    """Each is one file: what it refers to is in itself."""
+    """Each page is self-contained: it refers to nothing outside itself."""
     for name, page in pages.items():
         references = re.findall(r'\b(?:src|href)="([^"]*)"|url\(([^)]*)\)', page.read_text())
         assert all(reference.startswith("#") for pair in references for reference in pair if reference), name
 
 
 def test_the_search(pages, tmp_path):
-    """Of DoublePendulum, two states are angles, and the upper rod is named with one of them and with its length."""
+    """In DoublePendulum two states are angles; the upper rod is named in one of them and in its length."""
     rows = """view => ["", "angle state", "UPPER ROD", "nothing like that"].map(words => {
       const search = view.document.getElementById("search");
       search.value = words;
@@ -42,7 +42,7 @@ def test_the_search(pages, tmp_path):
 
 
 def test_the_contents(pages, tmp_path):
-    """Every heading is in the contents, and every line of these leads to one."""
+    """The table of contents has every heading, and each entry leads to its heading."""
     script = """view => [[...view.document.querySelectorAll("nav a")].map(link => view.document.querySelector(link.hash).textContent),
       [...view.document.querySelectorAll("h2")].map(heading => heading.textContent)]"""
     for contents, headings in look_at(list(pages.values()), tmp_path, [1200], script).values():
@@ -63,7 +63,7 @@ LONG = """<system name="Wide">
 
 
 def test_wide_formulas_of_every_form(tmp_path):
-    """Powers, quotients, roots and arguments that are wider than a telephone are broken too."""
+    """Powers, quotients, roots and arguments wider than a phone are broken into lines."""
     terms = " + ".join(f"sin(thetaCrank + {i}*k)" for i in range(1, 8))
     (tmp_path / "system.xml").write_text(LONG.replace("SUM > 0", "SUM &gt; 0").replace("SUM", terms))
     result = subprocess.run([fmu.LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""Parameters of the types Integer and Boolean, and lists of values, against a fall with closed form."""
+"""Integer and Boolean parameters and lists of values, against the closed form of a fall."""
 
 import pytest
 from fmpy import simulate_fmu
@@ -8,7 +8,7 @@ from fmpy.validation import validate_fmu
 import fmu
 from fmu import DISCARD, ERROR, OK, lagc
 
-# x'' = (f - g m[3] n)/(n m[1] + m[2]) with f where it is on; x starts at n/10.
+# x'' = (f - g m[3] n)/(n m[1] + m[2]), with f only if `on` is true; x starts at n/10.
 FALL = """<system name="{name}">
   <parameter name="n" type="Integer" start="3" min="1" max="9" description="how many of the first"/>
   <parameter name="on" type="Boolean" start="true"/>
@@ -138,7 +138,7 @@ def test_given_in_an_include(tmp_path):
   <parameter name="n" start="4"/><parameter name="off" start="true"/><parameter name="m[2]" start="20"/><parameter name="m[1]" value="a"/>
 </include><parameter name="a" start="5" unit="kg"/></system>""")
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 1 and "'part.m[1]'" not in result.stdout  # m[1] is one of a list, see below
+    assert result.returncode == 1 and "'part.m[1]'" not in result.stdout  # m[1] is an element of a list, see below
     (tmp_path / "system.xml").write_text((tmp_path / "system.xml").read_text().replace('<parameter name="m[1]" value="a"/>', ""))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == OK and result.stderr == "", result.stderr

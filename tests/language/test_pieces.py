@@ -1,4 +1,6 @@
-"""abs, if, tables and the like wherever an expression may stand: in constraints, outputs that forces use, displacements."""
+"""
+abs, if, tables and other piecewise functions wherever expressions may stand: in constraints, displacements, and outputs that forces use.
+"""
 
 import itertools
 import subprocess
@@ -17,13 +19,13 @@ METHODS = ["taylor", "erk", "radau", "bdf", "auto"]
 
 
 def by_turns(cases):
-    """Each case with two of the methods, each method with its share of the cases."""
+    """Pair each case with two of the methods, so that the methods share the cases equally."""
     return [(case, METHODS[(2 * i + k) % len(METHODS)]) for i, case in enumerate(cases) for k in (0, 1)]
 
 
 G = 9.81
 
-# A bead on a curve y = f(x) that begins to curve at x = 0, at a speed of 2 from x = -1 on.
+# A bead on a curve y = f(x) that is straight up to x = 0, released at x = -1 with speed 2.
 BEAD = """
 <system name="{name}">
   <coordinate name="x" velocity="v" start="-1" velocityStart="{speed}"/>
@@ -38,7 +40,7 @@ BEAD = """
 CURVES = {"Max": "y - max(x, 0)^3", "If": "y - if(x &gt; 0, x^3, 0)", "Defined": "hidden"}
 KNOTS = [(-3, 1.5), (-1.5, 0.3), (-0.6, 0.1), (0.2, 0), (1, 0.7), (3, 2.5)]
 CAM = "<table name='cam' interpolation='spline'>" + "\n".join(f"{x} {y}" for x, y in KNOTS) + "</table>"
-# What does not go on smoothly.
+# Constraint functions that are not smooth.
 KINKS = {
     "Fold": ("y - abs(x)", 1, "abs, line"),
     "Step": ("y - if(x &gt; 0, 1, 0)", 0, "a condition, line"),
@@ -48,7 +50,7 @@ KINKS = {
 }
 RAIL = "<table name='rail' interpolation='linear'>\n-5 0\n0 0\n5 0.01</table>"
 
-# A push of 1 towards 0 by way of an output; parabolas in time, with the period 4 sqrt(2 x0).
+# A force of 1 towards 0 through an output: parabolas in time, with the period 4 sqrt(2 x0).
 PUSHED = """
 <system name="{name}">
   <coordinate name="x" velocity="v" start="0.7"/>
@@ -60,7 +62,7 @@ PUSHED = """
 """
 PUSHES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
 
-# A displacement of what turns and has knots.
+# A displacement in piecewise functions with kinks and table knots.
 STRETCHED = """
 <system name="Stretched">
   <parameter name="k" start="2"/>
@@ -73,7 +75,7 @@ STRETCHED = """
 </system>
 """
 
-# A slide in a slot, pressed to one side and to the other.
+# A slider in a slot, pressed to alternate sides.
 PRESSED = """
 <system name="Pressed{method}">
   <coordinate name="x" velocity="v"/>
@@ -87,7 +89,7 @@ PRESSED = """
 </system>
 """
 
-# What begins to push at t = 0.5.
+# A force that starts at t = 0.5.
 LATE = """
 <system name="Late{method}">
   <coordinate name="x" velocity="v" start="-1" velocityStart="2"/>
@@ -124,13 +126,13 @@ def built():
 
 
 def along_curve(height, slope, curvature, x, speed, end):
-    """The bead's x and its rate at the end, by the equation in x alone, from the height of the curve and its derivatives."""
+    """x and its rate of the bead at `end`, by the equation in x alone, from the height of the curve and its derivatives."""
 
     def rate(_, state):
         f, d = slope(state[0]), curvature(state[0])
         return [state[1], -f * (d * state[1] ** 2 + G) / (1 + f * f)]
 
-    x_rate = speed / (1 + slope(x) ** 2)  # the part of the velocity (speed, 0) that is along the curve
+    x_rate = speed / (1 + slope(x) ** 2)  # projection of the velocity (speed, 0) onto the curve
     return solve_ivp(rate, [0, end], [x, x_rate], rtol=1e-12, atol=1e-13, max_step=1e-3).y[:, -1]
 
 
@@ -159,7 +161,7 @@ def test_a_constraint_has_pieces_in_model_exchange(bead_at_the_end, curve, metho
 
 
 def test_a_follower_runs_over_a_cam(open_fmu):
-    """The curve is that of SciPy."""
+    """The bead follows SciPy's spline."""
     spline = CubicSpline(*zip(*KNOTS))
     instance = open_fmu("Cam").initialize({"x": -1, "y": float(spline(-1)), "v": 3, "w": 3 * float(spline(-1, 1))})
     assert instance.get("v") == pytest.approx(3, abs=1e-12)
@@ -173,7 +175,7 @@ def test_a_follower_runs_over_a_cam(open_fmu):
 
 @pytest.mark.parametrize("kink, method", by_turns(KINKS))
 def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
-    """Velocities would have to jump, and by no law that the system tells."""
+    """A kink in a constraint would make velocities jump, by no law that the system states."""
     instance = open_fmu(f"{kink}{method.title()}").initialize()
     with instance.fails(DISCARD, KINKS[kink][2] + r" \d+ of system.xml, turns or jumps there in the constraint 'curve'"):
         for _ in range(12):
@@ -221,7 +223,7 @@ def speed_in_slot(end):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_friction_by_the_size_of_a_force(open_fmu, method):
-    """The force that abs turns is an unknown of the equations, and no function of the state."""
+    """The argument of abs is a reaction force, an unknown of the equations that is no function of the state alone."""
     instance = open_fmu(f"Pressed{method}").initialize(tolerance=1e-9)
     while instance.time < 2.9:
         instance.step(0.17)
@@ -237,7 +239,7 @@ def test_friction_by_the_size_of_a_force_in_model_exchange():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_an_event_next_to_a_communication_point(open_fmu, method):
-    """However little time is left behind an event, the step comes to its end."""
+    """A step reaches its end however soon it follows an event."""
     instance = open_fmu(f"Late{method}")
     for ulps in [0, 1, 2, 5, 8, 30, 100, 1000, -1, -2, -5, -300]:
         instance.reset().initialize()
@@ -247,7 +249,7 @@ def test_an_event_next_to_a_communication_point(open_fmu, method):
         assert instance.get("totalEnergy") == pytest.approx(2, abs=1e-8)
 
 
-# --- Every function in every place ---
+# --- Every function in every position ---
 
 PLACES = {
     "kinetic": "<kinetic>(1 + {})*v^2/2</kinetic>",
@@ -304,7 +306,10 @@ THIRDS = [0, pytest.param(1, marks=pytest.mark.release), pytest.param(2, marks=p
 @pytest.mark.parametrize("third", THIRDS)
 @pytest.mark.parametrize("place", PLACES)
 def test_what_is_taken_compiles(tmp_path, place, third):
-    """lagc refuses or writes C that a compiler takes, for all combinations; a third of them for each place on every day, other ones for the next place."""
+    """
+    lagc reports an error or writes C that compiles, for all combinations. Each run takes a third of them, a different third for each
+    position.
+    """
     taken = 0
     combinations = list(itertools.product(FUNCTIONS, OPERANDS))
     for i, (function, operand) in list(enumerate(combinations))[(third + list(PLACES).index(place)) % 3 :: 3]:
@@ -328,7 +333,7 @@ def test_what_is_taken_compiles(tmp_path, place, third):
     ("byForce", "force", "forces of reaction"), ("byDisplacement", "friction", "displacements"), ("byInput", "force", None),
 ])  # fmt: skip
 def test_what_decides_on_a_piece_counts(tmp_path, name, place, kind):
-    """A velocity cannot come into a position by way of a name whose sign it decides on."""
+    """A position must not depend on a velocity, even through the condition of a piecewise function."""
     (tmp_path / "system.xml").write_text(PLACED.format(element=PLACES[place].format(name)))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     if kind is None:

@@ -1,4 +1,4 @@
-"""gauss and uniform: published vectors of Philox4x32-10, moments, and the same bits after rollbacks, in all forms and lanes."""
+"""gauss and uniform: published vectors of Philox4x32-10, moments, and identical bits after rollbacks, in all forms and lanes."""
 
 import subprocess
 
@@ -42,7 +42,7 @@ def built():
 
 
 def philox(k, seed, domain):
-    """As the paper has it, in whole numbers of Python."""
+    """Philox4x32-10 as published, in Python integers."""
     c, key = [k & 0xFFFFFFFF, k >> 32 & 0xFFFFFFFF, domain, 0], [seed & 0xFFFFFFFF, seed >> 32 & 0xFFFFFFFF]
     for _ in range(10):
         low, high = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]
@@ -74,7 +74,7 @@ def test_published_vectors_and_moments(tmp_path):
     u, g = numbers[:count].T
     assert u[:50].tolist() == [uniform(7, k) for k in range(50)]
     np.testing.assert_allclose(g[:50], [gauss(7, k) for k in range(50)], rtol=1e-13)
-    for power in (1, 2, 3, 4):  # within 5 standard deviations
+    for power in (1, 2, 3, 4):  # raw moments, within 5 standard deviations
         assert abs(np.mean(u**power) - 1 / (power + 1)) < 5 * np.sqrt((1 / (2 * power + 1) - 1 / (power + 1) ** 2) / count)
     for power, mean, variance in [(1, 0, 1), (2, 1, 2), (3, 0, 15), (4, 3, 96)]:
         assert abs(np.mean(g**power) - mean) < 5 * np.sqrt(variance / count)
@@ -85,14 +85,14 @@ def test_published_vectors_and_moments(tmp_path):
 
 
 def test_the_same_bits_by_any_compiler(tmp_path):
-    """Also where products and sums may be joined."""
+    """Compilers and flags do not change the bits, even where they may fuse products and sums."""
     expected = printed(tmp_path, "gcc", "-O0", "-std=c11")
     for words in (["gcc", "-O3", "-std=gnu11", "-mfma", "-ffp-contract=fast"], ["clang", "-O3", "-mfma", "-ffp-contract=fast"]):
         assert printed(tmp_path, *words) == expected
 
 
 def noisy(t, seed=3):
-    """x'' = f - 10 x between the instants at which one of the two numbers changes, f by numbers of Python."""
+    """x'' = f - 10 x in closed form between the instants at which either random number changes, with f from Python's numbers."""
     x, v, now, w = 0.0, 0.0, 0.0, np.sqrt(10)
     edges = sorted({*np.arange(1, 200) * 0.1, *(np.arange(200) * 0.1 + 0.05)})
     for end in [*(e for e in edges if e < t), t]:
@@ -128,7 +128,7 @@ def test_rollbacks_repeat_it_bit_for_bit(built, open_fmu):
 
 
 def test_lanes_have_the_same_noise(built):
-    """Each run of a sweep has its own seed; those of one seed are one run."""
+    """Each run of a sweep has its own seed; runs with the same seed are identical."""
     rows = np.array([[0.0], [1.0], [3.0], [3.0], [-7.0], [1e9]])
     for lanes in NUMBERS:
         values, is_left = ensemble("Noise", ["seed"], ["x", "v", "o"], [0, 1.7], lanes).run(rows)

@@ -1,4 +1,4 @@
-"""What an author gives for whoever opens the FMU: units to show values in, and who made it on what terms."""
+"""Attributes for users of the FMU: display units, author, and license."""
 
 import math
 import xml.etree.ElementTree as ElementTree

@@ -1,4 +1,4 @@
-"""Start values that are expressions of parameters, against parabolas and derivatives by hand."""
+"""Start values given as expressions of parameters, against parabolas and derivatives by hand."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from fmpy.validation import validate_fmu
 import fmu
 from fmu import DISCARD, ERROR, lagc
 
-# A throw at the angle alpha and the speed v, from the height 2 r; h is calculated, w a definition.
+# A throw at the angle alpha and the speed v, from the height 2 r; h is a calculated parameter, w a definition.
 THROW = """<system name="{name}">
   <coordinate name="x" velocity="vx" unit="m" velocityStart="v*cos(alpha)"/>
   <coordinate name="y" velocity="vy" unit="m" start="h" velocityStart="w"/>
@@ -24,7 +24,7 @@ THROW = """<system name="{name}">
   <output name="top" unit="m">y + r</output>
 </system>
 """
-# Let go at a height; without a length there is no angle.
+# A pendulum released at a height; without a length its angle is undefined.
 PENDULUM = """<system name="StartPendulum">
   <parameter name="l" start="0.5" unit="m"/>
   <parameter name="s" start="0.1" unit="m" description="way along the arc"/>
@@ -102,13 +102,13 @@ def test_parameters_change_no_state_later(open_fmu):
 
 
 @BOTH_KINDS
-@pytest.mark.parametrize("own", [7.0, 10 * np.cos(np.pi / 6)])  # the second one is what the parameters say anyway
+@pytest.mark.parametrize("own", [7.0, 10 * np.cos(np.pi / 6)])  # the second value is the one that the parameters give anyway
 def test_what_is_set_stays(own, kind, open_fmu):
     instance = open_fmu("StartThrow", **kind)
     in_initialization(instance, {"vx": own})
     instance.set(alpha=1.0)
     check(instance, alpha=1.0, vx=own)
-    instance.set(y=-3.0, r=5.0)  # both at once
+    instance.set(y=-3.0, r=5.0)  # in one call
     assert instance.get("y", "vy") == [-3.0, pytest.approx(10 * np.sin(1.0))]
     instance.reset()
     check(in_initialization(instance, {"alpha": 0.2}), alpha=0.2)

@@ -1,4 +1,4 @@
-"""<state>: first-order states, beside coordinates and alone, with all methods, against closed forms and SciPy."""
+"""<state>: first-order states, with coordinates and alone, with all methods, against closed forms and SciPy."""
 
 import re
 
@@ -53,7 +53,7 @@ ROD = """<system name="Rod"><coordinate name="x" velocity="vx" start="1"/><coord
 <particle name="bob" mass="m" x="x" y="y"/><potential>m*9.81*y</potential><constraint name="rod">(x^2 + y^2 - 1)/2</constraint>
 <state name="pull" rate="rod.force"/><state name="lag" rate="(der(vx) - lag)/0.1"/><force coordinate="x">-0.3*lag</force>
 <output name="felt">pull + der(lag)</output>{solver}</system>"""
-# A mass matrix that is factored at run time.
+# The mass matrix is factored at run time.
 COUPLED = """<system name="Coupled">{coordinates}
 <kinetic>(va^2 + vb^2 + vc^2 + vd^2 + ve^2 + (va + vb + vc + vd + ve)^2*(1 + sin(a)^2))/2</kinetic>
 <potential>a^2 + b^2 + c^2 + d^2 + e^2 + a*b*c</potential>
@@ -85,7 +85,7 @@ def systems():
 
 @pytest.mark.parametrize("method", [*METHODS, "exact"])
 def test_linear_states(systems, open_fmu, method):
-    """An actuator with lag and an integral of the error: the matrix exponential of the equations by hand."""
+    """An actuator with lag and an integral of the error follows the matrix exponential of the equations by hand."""
     m, k, T, kp, ref = 2, 8, 0.5, 3, 1
     a = np.array([[0, 1, 0, 0, 0], [-k / m, 0, 1 / m, 0, 0], [-kp / T, 0, -1 / T, 0, kp / T * ref], [-1, 0, 0, 0, ref], [0, 0, 0, 0, 0]])
     instance = open_fmu(f"Lag_{method}").initialize()
@@ -175,7 +175,7 @@ def test_rates_of_accelerations_of_a_large_block(systems, open_fmu):
 
 
 def test_events_set_states(systems, open_fmu):
-    """The ball rests from t0 + 2 t0 on, t0 = sqrt(2/g), and its weight is felt from then on; z is reset at 1 s."""
+    """The ball rests from 3 t0 on, t0 = sqrt(2/g), and its weight acts from then on; an event resets z at 1 s."""
     instance = open_fmu("Ball").initialize()
     instance.run(2, 0.01)
     rest = 3 * np.sqrt(2 / 9.81)
@@ -185,7 +185,7 @@ def test_events_set_states(systems, open_fmu):
 
 
 def test_heat_of_friction(systems, open_fmu):
-    """All of the kinetic energy of 4 J, while it slides to rest in 4/3 s; from 3.5 s on it slides by the force."""
+    """The block's kinetic energy of 4 J becomes heat while it slides to rest in 4/3 s; from 3.5 s on the force moves it."""
     instance = open_fmu("Block").initialize()
     instance.run(1.5, 0.1)
     assert abs(instance.get("heat") - 4) < 1e-9
@@ -194,7 +194,7 @@ def test_heat_of_friction(systems, open_fmu):
 
 
 def test_a_brake_that_fades(systems, open_fmu):
-    """Its heat is its work, which <work/> counts too, by the force of a contact."""
+    """The heat of the brake equals the work that <work/> counts, with the normal force of a contact."""
     def rates(t, y):
         force = 0.5 * 2 * 9.81 / (1 + y[1])
         return [-force / 2, force * y[0] / 500]
@@ -254,7 +254,7 @@ def test_a_saved_state_goes_on_with_the_same_bits(systems, open_fmu, name):
 
 @pytest.mark.parametrize("name", ["Filter_auto", "Block", "Pid", "Rod"])
 def test_model_exchange(systems, name):
-    """By CVode of FMPy, in both versions, and by co-simulation of FMI 3."""
+    """FMPy's CVode in both versions of FMI, and co-simulation of FMI 3.0, agree with co-simulation of FMI 2.0."""
     asked = states(name)
     exact = alone(name, {}, asked, 2)[-1]
     for archive in (fmu.archive(name), fmi3.archive(name)):
@@ -265,7 +265,7 @@ def test_model_exchange(systems, name):
 
 
 def test_derivatives_of_the_motion(open_fmu):
-    """--along: the derivatives of all states by a parameter, as states of their own, against differences of runs."""
+    """--along adds the derivatives of all states by a parameter as states; they agree with differences of runs."""
     build_systems("states-along", {"Filter_along": PENDULUM.format(name="Filter_along", method="taylor", T=0.3)}, "--along", "T", "--along", "tau")
     instance, h = open_fmu("Filter_along").initialize(), 1e-4
     instance.run(2, 0.5)

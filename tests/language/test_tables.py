@@ -1,4 +1,4 @@
-"""Tables, against SciPy's curves of the same points, and motions in them against the law of energy and closed forms."""
+"""Tables against SciPy's curves of the same points; motions against energy conservation and closed forms."""
 
 import functools
 
@@ -11,7 +11,7 @@ import fmu
 from building import build_by_cmake
 from fmu import lagc
 
-# Steep, flat and turning pieces of different widths; one point at 0.
+# Steep, flat and turning intervals of different widths; one point at 0.
 X = np.array([-2.0, -1.2, -1.0, 0.0, 0.3, 1.5, 4.0])
 Y = np.array([3.0, 1.0, 1.0, 2.0, 4.0, -1.0, -1.5])
 POINTS = "".join(f'<point x="{x}" y="{y}"/>' for x, y in zip(X, Y))
@@ -50,7 +50,7 @@ CURVES = """<system name="{name}">
   <output name="pairAtU">pair(u)</output>
 </system>
 """
-# In the potential of a curve, started on a point of it, left- or rightwards; and in a part.
+# A mass in the potential of a curve, started at a knot towards either side; the table may stand in an included part.
 HILL = """<system name="{name}">
   <parameter name="m" start="2" unit="kg"/><parameter name="g" start="10" unit="m/s2"/>
   <table name="height" unit="m" argumentUnit="m" interpolation="{interpolation}">{points}</table>
@@ -67,13 +67,13 @@ HILLS = [("HillMonotone", "monotone", "taylor"), ("HillSpline", "spline", "auto"
 
 
 def outside(curve, u):
-    """Beyond the ends with the slopes there."""
+    """Extrapolate linearly with the slopes at the ends."""
     inside = np.clip(u, X[0], X[-1])
     return curve(inside) + curve(inside, 1) * (u - inside)
 
 
 def straight_on(u):
-    """From point to point, and on beyond the ends."""
+    """Piecewise linear, extrapolated beyond the ends."""
     slopes = np.diff(Y) / np.diff(X)
     return np.interp(u, X, Y) + slopes[0] * min(u - X[0], 0) + slopes[-1] * max(u - X[-1], 0)
 
@@ -84,7 +84,7 @@ def slope_outside(curve, u):
 
 FILE = "argument,force\n" + LINES
 MONOTONE, SPLINE = PchipInterpolator(X, Y), CubicSpline(X, Y)
-# Whose slopes at the left end are a parabola's, and three times the secant, as far as that may be.
+# The slopes at the left end are that of a parabola, and three times the secant, the bound for monotonicity.
 BENT, BOUNDED = PchipInterpolator([0, 1, 4], [0, 2, 3]), PchipInterpolator([0, 1, 2], [0, 2, -8])
 ARGUMENTS = sorted([*X, *np.linspace(-3, 5, 57)])
 

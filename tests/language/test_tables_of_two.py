@@ -1,4 +1,4 @@
-"""Tables of two arguments, against SciPy's surfaces of the same values, and motions in them against the law of energy."""
+"""Tables of two arguments against SciPy's surfaces of the same values; motions in them against energy conservation."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ SURFACES = """<system name="{name}">
   <output name="twisted">twoByTwo(u, w)</output>
 </system>
 """
-# A particle in the potential of the table, of x and y, far from its kinks at the border and across it.
+# A particle in the potential of the table of x and y, in the interior and beyond the border, where the table has kinks.
 HOLLOW = """<system name="{name}">
   <parameter name="m" start="2"/>
   <table name="U" arguments="2" interpolation="{kind}">
@@ -71,7 +71,7 @@ BOTH = (slopes(Y, ALONG_X.T).T + slopes(X, ALONG_Y)) / 2
 
 
 def monotone(x, y, dx=0, dy=0):
-    """Hermite's bicubic of values and slopes that are PCHIP's along the lines of the grid."""
+    """Bicubic Hermite interpolation of values and PCHIP slopes along the grid lines."""
     i, j = (int(np.clip(np.searchsorted(k, v, "right") - 1, 0, len(k) - 2)) for k, v in ((X, x), (Y, y)))
     h, k = X[i + 1] - X[i], Y[j + 1] - Y[j]
     hermite = np.array([[1, 0, -3, 2], [0, 0, 3, -2], [0, 1, -2, 1], [0, 0, -1, 1]], float)
@@ -93,7 +93,7 @@ def spline(x, y, dx=0, dy=0):
 
 
 def beyond(surface, x, y):
-    """Goes on with the slopes of the border, in each argument by itself."""
+    """Extrapolate with the slopes at the border, in each argument separately."""
     a, b = np.clip(x, X[0], X[-1]), np.clip(y, Y[0], Y[-1])
     s, t = x - a, y - b
     return surface(a, b) + s * surface(a, b, 1, 0) + t * surface(a, b, 0, 1) + (s * t * surface(a, b, 1, 1) if s * t else 0)
@@ -119,7 +119,7 @@ def test_values_and_derivatives(name, open_fmu):
 
 
 def test_it_is_monotone_on_its_lines(open_fmu):
-    """Between two knots of a line no value lies outside of theirs."""
+    """Between two knots of a grid line the value stays between theirs."""
     instance = open_fmu("Surfaces").initialize()
     for j, y in enumerate(Y):
         for i in range(len(X) - 1):

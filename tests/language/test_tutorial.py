@@ -1,4 +1,4 @@
-"""fmu/TUTORIAL.md: every file on it is built, every command can be typed, and every number is that of a closed form and of the FMU."""
+"""fmu/TUTORIAL.md: every file builds, every command runs, and every number is that of a closed form and of the FMU."""
 
 import re
 
@@ -12,7 +12,7 @@ from fmu import ROOT, build_systems, lagc
 
 TUTORIAL = (ROOT / "fmu" / "TUTORIAL.md").read_text()
 SYSTEMS = {re.search(r' name="(\w+)"', text).group(1): text for text in re.findall(r"```xml\n(<system .*?)```", TUTORIAL, re.S)}
-STEPS = re.split(r"^## \d\. .*$", TUTORIAL, flags=re.M)  # the first one is what stands before step 1
+STEPS = re.split(r"^## \d\. .*$", TUTORIAL, flags=re.M)  # the first part precedes step 1
 G, L = 9.81, 0.5
 RATE = np.sqrt(G / L)
 
@@ -23,18 +23,18 @@ def systems():
 
 
 def check_numbers(step, *expected):
-    """The bold numbers of a step are these, to the digits that are shown."""
+    """Check that the bold numbers of a step are these, to the digits shown."""
     shown = re.findall(r"\*\*(-?\d+\.?\d*) (?:s|m|rad|rad/s|N)\*\*", STEPS[step])
     assert shown == [f"{value:.{len(text.partition('.')[2])}f}" for text, value in zip(shown, expected, strict=True)]
 
 
 def settings_of(command):
-    """VARIABLE=VALUE of a line such as `lagrange-fmu run Arm.xml help=1`."""
+    """The settings VARIABLE=VALUE of a line such as `lagrange-fmu run Arm.xml help=1`."""
     return {name: float(value) for name, value in re.findall(r"(\S+)=(\S+)", command)}
 
 
 def moved(open_fmu, step, command=0, until=None):
-    """The system of a step as the command asks for, at a time or at the end of its experiment."""
+    """The system of a step started by its command, at a time or at the end of its experiment."""
     name, settings = re.findall(r"lagrange-fmu run (\w+)\.xml *([^`\n]*)", STEPS[step])[command]
     instance = open_fmu(name).initialize(settings_of(settings))
     instance.step(until or float(re.search(r'stopTime="(.*?)"', SYSTEMS[name]).group(1)))
@@ -90,7 +90,7 @@ def test_two_bodies(open_fmu):
     period = 2 * np.pi / np.sqrt((2 - np.sqrt(2)) * RATE**2)
     check_numbers(4, period)
     end = moved(open_fmu, 4, 1, period)
-    # Beyond small swings, the period grows by a share of the angle's square.
+    # Beyond small oscillations the period grows in proportion to the square of the angle.
     assert end.get("theta1", "theta2") == pytest.approx([0.01, 0.01 * np.sqrt(2)], rel=1e-4)
     half = moved(open_fmu, 4, 1, period / 3)
     assert half.get("theta2") == pytest.approx(np.sqrt(2) * half.get("theta1"), rel=1e-3)
@@ -113,13 +113,13 @@ def test_closed_loop(open_fmu):
     assert moved(open_fmu, 6, until=0.2).get("x") == pytest.approx(piston(2), abs=1e-9)
     start = open_fmu("SliderCrank").initialize({})
     assert start.get("omegaRod") == pytest.approx(-10 / 3, rel=1e-9)
-    # The motor's power is the growth of the kinetic energy.
+    # The motor's power equals the rate of the kinetic energy.
     before, at, behind = (moved(open_fmu, 6, until=time).get("kineticEnergy") for time in (0.2 - 1e-4, 0.2, 0.2 + 1e-4))
     assert at > 0 and moved(open_fmu, 6, until=0.2).get("torque") * 10 == pytest.approx((behind - before) / 2e-4, rel=1e-4)
 
 
 def weight(q):
-    """The torques of gravity at the joints: of the forearm, at its middle, and of the upper arm and the elbow."""
+    """Torques of gravity at the joints, from the middle of the forearm, and from the upper arm and the elbow."""
     forearm = 1 * G * 0.2 * np.cos(q[0] + q[1])
     return np.array([(2 * 0.25 + 1 * 0.5) * G * np.cos(q[0]) + forearm, forearm])
 
@@ -139,7 +139,7 @@ def test_arm(open_fmu):
 
 
 def test_arm_at_window(open_fmu):
-    """At rest the motors' torques hold the pane's force, whose lever is the tip's height over each joint."""
+    """At rest the motors' torques balance the force of the pane, whose moment arms are the heights of the tip over the joints."""
 
     def unbalanced(unknowns):
         q, force = unknowns[:2], unknowns[2]
