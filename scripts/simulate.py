@@ -1,4 +1,4 @@
-"""Simulates an FMU with FMPy and leaves a CSV, a plot and an animation: simulate.py FMU [VARIABLE=VALUE ...]"""
+"""Simulates an FMU with FMPy and leaves a CSV, a plot and an animation: simulate.py FMU [NAME=VALUE ...]"""
 
 import argparse
 import sys
@@ -6,13 +6,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from scripts.problem import Problem
-from scripts.simulation import print_results, simulate, start_value, write_motion
+from scripts.quantities import assignment
+from scripts.simulation import print_results, simulate, write_motion
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("fmu", type=Path)
-    parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE")
+    parser.add_argument("start", nargs="*", type=assignment, metavar="NAME=VALUE")
     arguments = parser.parse_args()
     try:
         print_results(write_motion(lambda: simulate(arguments.fmu, dict(arguments.start)), Path("build/results")))

@@ -1,6 +1,5 @@
 """Simulating an FMU with FMPy; a CSV, a plot and an animation of its motion. Also a module of the wheel."""
 
-import argparse
 import inspect
 import io
 import math
@@ -25,7 +24,7 @@ from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem, Unfinished
 from .signals import signals_of
-from .variables import check_start, elements, instead, known, names_of, near_file, start_values
+from .variables import checked_start, elements, instead, known, names_of, near_file, start_values, units_of
 from .whole_files import write_whole
 
 
@@ -50,16 +49,6 @@ class Motion:
     start: dict  # the start values of all that have one
     outputs: np.ndarray  # structured: time and the outputs
     values: np.ndarray  # likewise, with where the elements are, energies, and the number of events where there may be some
-
-
-def start_value(text):
-    name, separator, value = text.partition("=")
-    if not separator:
-        raise argparse.ArgumentTypeError(f"'{text}' is not VARIABLE=VALUE")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{value}' for '{name}' is not a number") from None
 
 
 def print_problem(*words):
@@ -130,7 +119,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
         raise Problem(f"{fmu} is of FMI {description.fmiVersion}; expected an FMU of FMI 2.0 or 3.0")
     is_own = fmi_type == "CoSimulation"
     _check_options(options, OPTIONS if is_own else FMPY)
-    check_start(start, description)
+    start = checked_start(start, description)
     names = [variable.name for variable in description.modelVariables]
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
     outputs = outputs if output is None else [name for name in known(names_of(output, "output"), ["time", *names], description) if name != "time"]
@@ -165,10 +154,6 @@ def crowds_of(names):
     of = {name: re.sub(r"\[[^]]*\]", "[]", name) for name in names}
     members = Counter(of.values())
     return {name: crowd if members[crowd] > MOST_NAMES + 1 else "" for name, crowd in of.items()}
-
-
-def units_of(description):
-    return {name: v.unit or "1" for v in description.modelVariables for name in (v.name, *elements(v.name, v.shape))}
 
 
 def scalars(values):

@@ -5,17 +5,17 @@ from pathlib import Path
 
 
 def variation(text):
-    """NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,..."""
+    """NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,...; the values as they are written."""
     name, separator, values = text.partition("=")
     try:
         if not separator:
             raise ValueError
         if ":" not in values:
-            return name, [float(value) for value in values.split(",")]
+            return name, values.split(",")
         first, last, *count = values.split(":")
         if len(count) > 1 or (count and int(count[0]) < 1):
             raise ValueError
-        return name, (float(first), float(last), int(count[0]) if count else None)
+        return name, (first, last, int(count[0]) if count else None)
     except ValueError:
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
 

@@ -24,9 +24,10 @@ from . import sweep_worker
 from .ensembles import Ensemble, lanes_here, source_of
 from .problem import Problem
 from .progress import Progress
+from .quantities import number_of
 from .simulation import described
 from .sweep_records import VALUE, records_of, times_of
-from .variables import settable, why_not
+from .variables import settable, units_of, why_not
 from .whole_files import replace
 
 try:
@@ -50,6 +51,13 @@ def known_name(name, description):
         return name[:-1]
     what = f"'{name}' has no start value in {description.modelName}{why_not(name, description)}"
     raise Problem(f"{what}; these have one: {', '.join(names)}")
+
+
+def in_unit(name, values, unit):
+    """Values of sweep_words.py as numbers."""
+    if isinstance(values, tuple):
+        return (*(number_of(name, end, unit) for end in values[:2]), values[2])
+    return [number_of(name, value, unit) for value in values]
 
 
 def points(variations, random, seed):
@@ -295,7 +303,8 @@ def sweep(path, folder, words, runner, compile_ensemble):
     names = [known_name(name, description) for name, _ in words.vary]
     if len(set(names)) < len(names):
         raise Problem("a variable varies twice")
-    rows = points(words.vary, words.random, words.seed)
+    units = units_of(description)
+    rows = points([(name, in_unit(name, values, units[name])) for name, (_, values) in zip(names, words.vary)], words.random, words.seed)
     experiment = description.defaultExperiment
     stop = words.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
     records = records_of(words.record, description, stop)

@@ -9,6 +9,7 @@ from numbers import Real
 from pathlib import Path
 
 from .problem import Problem
+from .quantities import numbers_of
 
 LIKE = 0.65  # difflib's ratio of a word and the one that was meant, at least
 
@@ -65,6 +66,11 @@ def near_file(path):
     return f"; did you mean '{path.with_name(beside[near])}'?" if near else ""
 
 
+def units_of(description):
+    """By name; "1" of what has none."""
+    return {name: v.unit or "1" for v in description.modelVariables for name in (v.name, *elements(v.name, v.shape))}
+
+
 def _is_finite(value):
     """True of a number, and of an array of some."""
     if isinstance(value, Iterable) and not isinstance(value, (str, bytes)) and getattr(value, "shape", (1,)):
@@ -73,12 +79,12 @@ def _is_finite(value):
 
 
 def numbers_by_name(given, what="start_values"):
-    """Those of a dict, or of nothing; arrays of them too."""
+    """Those of a dict, or of nothing; arrays of them too, and texts, which quantities.py reads."""
     if given is not None and not isinstance(given, Mapping):
         raise Problem(f"{what} is a {type(given).__name__}; expected a dict of numbers by name, such as {{'theta': 1.0}}")
     for name, value in (given or {}).items():
-        if not _is_finite(value):
-            raise Problem(f"{what} has {value!r} for '{name}'; expected a finite number")
+        if not isinstance(value, str) and not _is_finite(value):
+            raise Problem(f"{what} has {value!r} for '{name}'; expected a finite number, or a text such as '30deg'")
     return dict(given or {})
 
 
@@ -101,11 +107,12 @@ def known(names, among, description, what="is not a variable"):
     return list(names)
 
 
-def check_start(start, description):
-    """That start values are of variables that take them."""
+def checked_start(start, description):
+    """Start values as numbers; all of them are of variables that take them."""
     names, free = [variable.name for variable in description.modelVariables], settable(description)
     for name in start:
         if name in names and name not in free:
             raise Problem(f"'{name}' of {description.modelName} cannot be set{why_not(name, description)}; these can be: {', '.join(free)}")
         if name not in free:
             raise Problem(f"'{name}' is not a variable of {description.modelName}; {instead(name, free, 'these can be')}")
+    return numbers_of(start, units_of(description))

@@ -16,6 +16,7 @@
 #include "program/program.h"
 #include "read/names/words.h"
 #include "read/reader.h"
+#include "read/values.h"
 #include "read/variations.h"
 #include "read/xml/schema.h"
 
@@ -23,6 +24,7 @@ static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--arrays]\n"
     "            [--along NAME ...] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
+    "       lagc --value NAME=VALUE --unit UNIT\n"
     "       lagc --words | --version\n"
     "\n"
     "Writes system.c, modelDescription.xml, what FMI 3.0 has in its place (fmi3/), and\n"
@@ -44,10 +46,11 @@ static const char usage[] =
     "X.by.NAME,\n"
     "                   by the variational equations\n"
     "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
+    "  --value VALUE    prints the number that 30deg, 20cm, pi/2, ... is in the UNIT\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
 struct Arguments {
-  const char *system, *directory, *solver;
+  const char *system, *directory, *solver, *value, *unit;
   const char **definitions;
   size_t definition_count;
   const char **along;
@@ -81,12 +84,15 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   for (int i = 1; i < count; i++) {
     const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
     bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
-                       strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0 || strcmp(word, "--along") == 0;
+                       strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0 || strcmp(word, "--along") == 0 ||
+                       strcmp(word, "--value") == 0 || strcmp(word, "--unit") == 0;
     if (takes_value && i + 1 == count) return false;
     if (takes_value) i++;
     if (strcmp(word, "-o") == 0) arguments->directory = next;
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
     else if (strcmp(word, "--along") == 0) arguments->along[arguments->along_count++] = next;
+    else if (strcmp(word, "--value") == 0) arguments->value = next;
+    else if (strcmp(word, "--unit") == 0) arguments->unit = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
     else if (strcmp(word, "--pull") == 0) arguments->pull = true;
@@ -102,6 +108,7 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else arguments->system = word;
   }
   if (arguments->help || arguments->words || arguments->version) return true;
+  if (arguments->value != NULL) return arguments->unit != NULL && strchr(arguments->value, '=') != NULL;
   bool consistent = arguments->linearize ? arguments->directory == NULL && arguments->solver == NULL
                                          : arguments->directory != NULL && arguments->point_count == 0;
   return arguments->system != NULL && consistent;
@@ -158,6 +165,15 @@ static bool print_words(void) {
   return fflush(stdout) == 0 && ferror(stdout) == 0;
 }
 
+/* Prints the number of NAME=VALUE in this unit; returns the status of the process. */
+static int print_value(const char *text, const char *unit) {
+  const char *value = strchr(text, '=');
+  char *name = format_text("%.*s", (int)(value - text), text);
+  struct Diagnostics diagnostics = {.file = name};
+  double number;
+  return !value_read(value + 1, unit, &diagnostics, &number) || printf("%.17g\n", number) < 0;
+}
+
 /* Memory limit in bytes; systems within the other limits hardly reach it. */
 enum { MEMORY_LIMIT = 640 << 20 };
 
@@ -183,6 +199,7 @@ int main(int count, char **words) {
   else if (arguments.help) status = fprintf(stdout, usage, methods) < 0;
   else if (arguments.words) status = !print_words();
   else if (arguments.version) status = puts("lagc " LAGC_VERSION) < 0;
+  else if (arguments.value != NULL) status = print_value(arguments.value, arguments.unit);
   else status = run(&arguments);
   xmlCleanupParser();
   return status;

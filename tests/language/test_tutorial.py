@@ -29,7 +29,7 @@ def check_numbers(step, *expected):
 
 
 def settings_of(command):
-    """The settings VARIABLE=VALUE of a line such as `lagrange-fmu run Arm.xml help=1`."""
+    """The settings NAME=VALUE of a line such as `lagrange-fmu run Arm.xml help=1`."""
     return {name: float(value) for name, value in re.findall(r"(\S+)=(\S+)", command)}
 
 

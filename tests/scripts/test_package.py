@@ -425,7 +425,7 @@ SENTENCES = [
     "'start' is not an option of this simulation; expected one of these: start_values, output, input, ",
     "'stop_tmie' is not an option of this simulation; did you mean 'stop_time'?",
     "start_values is a list; expected a dict of numbers by name",
-    "start_values has 'much' for 'theta'; expected a finite number",
+    "theta: the value: unknown name 'much'; expected a number, perhaps with its unit",
     "the input is a int; expected the path of a CSV",
     "the type 'Cosimulation' is not known; did you mean 'CoSimulation'?",
     "the simulation is from 0 s to -1 s by ",

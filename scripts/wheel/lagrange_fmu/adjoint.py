@@ -15,6 +15,7 @@ import numpy as np
 from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
+from .quantities import numbers_of
 from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 from .stepping import Steps
 
@@ -200,7 +201,7 @@ def gradient(system, of, by, stop_time, data, integral, noise, start_values, tol
     """See lagrange_fmu.gradient."""
     check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
-        aim = _aim(point, of, data, stop_time, integral, noise)
+        aim = _aim(point, of, data, stop_time, integral, numbers_of(noise, point.units))
         check_names(point, aim.of, by)
         acting = acting_of(point, by)
         start, slopes = start_slopes(point, by, {})

@@ -18,6 +18,7 @@ from .building import system_file
 from .experiment import Experiment, check_noise
 from .fit_result import Fit
 from .problem import Problem
+from .quantities import number_of, numbers_of
 from .running import is_fmu
 from .sensitivity import check_names, check_once  # first, since it raises Problem if SciPy is missing
 from .variational import DifferencedMotion, followed, motion, stepped
@@ -168,6 +169,8 @@ def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
         raise Problem(f"the loss '{loss}' counts what is beyond the noise, which is not given; expected the noise of what was measured")
     with ExitStack() as stack:
         point = stack.enter_context(followed(system, dict(start_values), [*vary, *each]))
+        noise = numbers_of(noise, point.units)
+        bounds = {name: tuple(number_of(name, end, point.units.get(name, "1"), is_limit=True) for end in ends) for name, ends in bounds.items()}
         steppers = []
 
         def stepper():

@@ -10,8 +10,8 @@ from fmpy.fmi1 import FMICallException
 from .models import Model2, Model3, Slave2, Slave3
 from .problem import Problem
 from .running import fmu_of, is_fmu
-from .simulation import check_start, described, units_of
-from .variables import settable
+from .simulation import described
+from .variables import checked_start, settable, units_of
 
 ADJOINT = ("--adjoint",)  # argument of lagc
 RESTS = {".closed": 1, ".sliding": 0}  # suffixes of mode variables, and the value at which the mode constrains the motion
@@ -183,7 +183,7 @@ def opened(system, values, method=None, what="be linearized there", adjoint=Fals
         description = described(fmu)
         if not (stops_at_events or in_steps):
             _check_abilities(fmu, description, adjoint)
-        check_start(values, description)
+        values = checked_start(values, description)
         with _opened(fmu, description, in_steps or bool(by), messages) as model:
             try:
                 yield Point(model, description, values, by, messages)

@@ -8,8 +8,8 @@ from pathlib import Path
 from .building import build_with
 from .input_file import read_input
 from .problem import Problem
-from .simulation import described, simulate, units_of, write_motion
-from .variables import numbers_by_name
+from .simulation import described, simulate, write_motion
+from .variables import numbers_by_name, units_of
 
 
 def is_fmu(path):

@@ -86,16 +86,16 @@ def sweep_by_words(system, words):
 def variation(name, values, random):
     """Check a range or values; return (name, values) as sweep_words.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
     try:
-        numbers = [] if isinstance(values, str) else [float(value) for value in values]
+        numbers = [] if isinstance(values, str) else [value if isinstance(value, str) else float(value) for value in values]
     except (TypeError, ValueError):
         numbers = []
-    if not numbers or not all(map(math.isfinite, numbers)):
+    if not numbers or not all(isinstance(number, str) or math.isfinite(number) for number in numbers):
         raise Problem(f"vary has {values!r} for '{name}'; expected (FROM, TO, COUNT), or a list of finite numbers")
     if not isinstance(values, tuple):
         return name, numbers
     if len(numbers) == 2 and random is not None:
         return name, (*numbers, None)
-    if len(numbers) != 3 or numbers[2] < 1 or numbers[2] % 1 != 0:
+    if len(numbers) != 3 or isinstance(numbers[2], str) or numbers[2] < 1 or numbers[2] % 1 != 0:
         raise Problem(f"vary has {values!r} for '{name}'; expected (FROM, TO, COUNT), (FROM, TO) with random=RUNS, or a list of values")
     return name, (*numbers[:2], int(numbers[2]))
 

@@ -5,17 +5,15 @@ import sys
 import warnings
 from pathlib import Path
 
-from .run import start_value
+from ..quantities import assignment
 from .words_of_systems import SYSTEM_OR_FMU
 
 
 def bounds(text):
     name, _, ends = text.partition("=")
-    try:
-        low, high = map(float, ends.split(":"))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW:HIGH with two numbers") from None
-    return name, (low, high)
+    if ends.count(":") != 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW:HIGH with two values")
+    return name, tuple(ends.split(":"))
 
 
 def arguments(parser):
@@ -24,8 +22,8 @@ def arguments(parser):
     parser.add_argument("--vary", nargs="+", default=[], metavar="NAME", help="parameters and start values to be found")
     parser.add_argument("--each", nargs="+", default=[], metavar="NAME", help="start values and the like that each experiment has of its own, to be found too")
     parser.add_argument("--bounds", nargs="+", action="extend", default=[], type=bounds, metavar="NAME=LOW:HIGH", help="in place of the variables' min and max")
-    parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="values to begin with, or to keep")
-    parser.add_argument("--noise", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="standard deviations of measured variables")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="values to begin with, or to keep")
+    parser.add_argument("--noise", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="standard deviations of measured variables")
     parser.add_argument("--loss", default="linear", metavar="LOSS", help="soft_l1, huber or cauchy for data with outliers, in place of squares")
     parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="for NAME-fit.html and NAME-fit.xml")
 

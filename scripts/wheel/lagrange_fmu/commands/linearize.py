@@ -1,13 +1,13 @@
 """Prints the matrices A, B, C, D of a system to first order at a point, and the eigenvalues of A; where there are constraints, in as many states as are independent."""
 
-from .run import start_value
+from ..quantities import assignment
 from .words_of_systems import SYSTEM_OR_FMU
 
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("--at", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="coordinates, velocities and inputs at the point; else their start values")
-    parser.add_argument("--set", nargs="+", action="extend", default=[], type=start_value, metavar="NAME=VALUE", help="parameters")
+    parser.add_argument("--at", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="coordinates, velocities and inputs at the point; else their start values")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="parameters")
 
 
 def table(name, matrix, rows, columns):

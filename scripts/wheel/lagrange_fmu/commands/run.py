@@ -3,13 +3,8 @@
 import argparse
 import math
 
+from ..quantities import assignment
 from .words_of_systems import SYSTEM_OR_FMU
-
-
-def start_value(text):
-    from ..simulation import start_value
-
-    return start_value(text)
 
 
 def positive(text):
@@ -24,7 +19,7 @@ def positive(text):
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("start", nargs="*", type=start_value, metavar="VARIABLE=VALUE", help="start values and parameters")
+    parser.add_argument("start", nargs="*", type=assignment, metavar="NAME=VALUE", help="start values and parameters, such as l=0.5, l=20cm or theta=pi/2")
     parser.add_argument("--stop-time", type=positive, metavar="S", help="when it ends; else as the system's <experiment> says")
     parser.add_argument("--step", type=positive, metavar="S", help="the communication step, at whose ends the CSV has rows; else as the experiment says")
     parser.add_argument("--tolerance", type=positive, help="the relative tolerance; else as the system's <solver> says")

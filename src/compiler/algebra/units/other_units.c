@@ -153,10 +153,13 @@ bool display_unit_parse(const char *text, struct Dimension *dimension, double *f
   return is_known && isnormal(*factor);
 }
 
+bool is_celsius(const char *text) {
+  static const char sign[] = {'\xc2', '\xb0', 'C', '\0'};
+  return strcmp(text, "degC") == 0 || strcmp(text, sign) == 0;
+}
+
 char *unit_remedy(const char *text) {
-  if (strcmp(text, "degC") == 0 || strcmp(text, "\xc2\xb0"
-                                                "C") == 0)
-    return copy_text("expected K, and the value plus 273.15");
+  if (is_celsius(text)) return format_text("expected K, and the value plus %g", CELSIUS_ZERO);
   struct Translation translation;
   char *si = translation_of(text, &translation);
   struct Dimension dimension;

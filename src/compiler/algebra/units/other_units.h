@@ -3,6 +3,11 @@
 
 #include "algebra/units/units.h"
 
+#define CELSIUS_ZERO 273.15 /* K */
+
+/* True of the degree Celsius, which has a zero of its own. */
+bool is_celsius(const char *text);
+
 /*
  * Returns the remedy for a unit that unit_parse() rejects, such as "expected kg/m3, and the value times 1e3" for
  * "g/cm3"; NULL if there is none.

@@ -1,0 +1,51 @@
+"""Values of variables as texts, such as "30deg", "pi/2" and "20cm", which lagc converts to a variable's unit. Also a module of the wheel."""
+
+import argparse
+import functools
+import math
+import os
+import subprocess
+from pathlib import Path
+
+from .problem import Problem
+
+HERE = Path(__file__).resolve().parent
+NAME = "lagc.exe" if os.name == "nt" else "lagc"
+PLACES = (HERE / "bin" / NAME, HERE.parent / "build" / "bin" / NAME)  # in the wheel, and in a clone
+
+
+@functools.cache
+def _converted(name, text, unit):
+    lagc = next((path for path in PLACES if path.exists()), None)
+    if lagc is None:
+        raise Problem(f"{name}: '{text}' is not a number; expected one in {unit}")
+    result = subprocess.run([lagc, "--value", f"{name}={text}", "--unit", unit], capture_output=True, text=True)
+    if result.returncode != 0:
+        raise Problem(result.stderr.strip() or f"{name}: '{text}' has no finite value")
+    return float(result.stdout)
+
+
+def number_of(name, value, unit, is_limit=False):
+    """The number in this unit of a value, which may be one already; limits may be infinite."""
+    if not isinstance(value, str):
+        return value
+    try:
+        number = float(value)
+    except ValueError:
+        number = _converted(name, value, unit)
+    if math.isnan(number) or math.isinf(number) and not is_limit:
+        raise Problem(f"{name}: '{value}' is not finite; expected a finite number in {unit}")
+    return number
+
+
+def numbers_of(values, units):
+    """Of a dict by name; units: likewise, of those that have some."""
+    return {name: number_of(name, value, units.get(name, "1")) for name, value in values.items()}
+
+
+def assignment(text):
+    """NAME=VALUE on a command line: the name, and the value as it is written."""
+    name, separator, value = text.partition("=")
+    if not separator or not name or not value.strip():
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE")
+    return name, value

@@ -1,0 +1,66 @@
+#include "read/values.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "algebra/units/other_units.h"
+#include "read/expressions/parser.h"
+#include "read/names/words.h"
+
+/* One of the unit is factor times the coherent unit of its dimension, and its zero is there at the offset. */
+struct Scale {
+  struct Dimension dimension;
+  double factor, offset;
+};
+
+static bool scale_of(const char *unit, struct Scale *scale) {
+  const char *problem;
+  *scale = (struct Scale){.factor = 1};
+  if (is_celsius(unit)) {
+    scale->offset = CELSIUS_ZERO;
+    unit = "K";
+  }
+  return unit_parse(unit, &scale->dimension, &problem) || display_unit_parse(unit, &scale->dimension, &scale->factor);
+}
+
+/* The unit behind the number at the beginning; NULL where there is none of either. */
+static const char *unit_behind(const char *text, double *number) {
+  char *end;
+  *number = strtod(text, &end);
+  if (end == text || strpbrk(text, "xX") == text + 1) return NULL;
+  while (isspace((unsigned char)*end)) end++;
+  return isalpha((unsigned char)*end) || *end == '%' || *end == '\xc2' ? end : NULL;
+}
+
+/* Cycles are no radians: 1 Hz is 2 pi rad/s, which nobody can see in the dimensions. */
+static bool is_cycle_for_angle(const char *unit, struct Scale own, struct Scale expected) {
+  return strstr(unit, "Hz") != NULL && own.dimension.exponent[RADIAN] != expected.dimension.exponent[RADIAN];
+}
+
+bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value) {
+  struct Scale own, expected;
+  double number;
+  const char *behind = unit_behind(text, &number);
+  if (behind == NULL) {
+    struct Scope *scope = scope_create(graph_create(), diagnostics);
+    define_language(scope);
+    return parse_number(scope, text, (struct Place){.what = "the value"}, value);
+  }
+  if (strcmp(behind, unit) == 0) {
+    *value = number;
+    return isfinite(number);
+  }
+  if (!scale_of(behind, &own)) {
+    report_error(diagnostics, 0, "the unit '%s' of '%s' is not known; expected a value in %s", behind, text, unit);
+    return false;
+  }
+  bool is_known = scale_of(unit, &expected);
+  if (!is_known || !dimension_agrees(own.dimension, expected.dimension) || is_cycle_for_angle(behind, own, expected)) {
+    report_error(diagnostics, 0, "'%s' is in %s; expected a value in %s", text, behind, unit);
+    return false;
+  }
+  *value = (number * own.factor + own.offset - expected.offset) / expected.factor;
+  return true;
+}
