@@ -3,5 +3,5 @@
  * of compensated sums.
  */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "-ffast-math makes results wrong without a word; compile without it, and without -Ofast and -ffinite-math-only"
+#error "these sources need IEEE 754 arithmetic; remove -ffast-math, -Ofast and -ffinite-math-only"
 #endif

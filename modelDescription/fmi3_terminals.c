@@ -16,7 +16,8 @@ struct Flange {
 
 static const struct Flange flanges[] = {
     {"m", "s", "v", "f", "Modelica.Mechanics.Translational.Interfaces.Flange_a", "mechanical flange that is shifted"},
-    {"rad", "phi", "w", "tau", "Modelica.Mechanics.Rotational.Interfaces.Flange_a", "mechanical flange that is turned"},
+    {"rad", "phi", "w", "tau", "Modelica.Mechanics.Rotational.Interfaces.Flange_a",
+     "mechanical flange that is rotated"},
 };
 
 static const struct Flange *flange_of(const struct Variable *coordinate) {

@@ -27,18 +27,18 @@ static void write_solver(struct Page *page) {
   } else if (method->series == FIRST_TERMS)
     page_element(
         page, "p",
-        "Each step is so short that no function in the equations can hide a narrow hill, wall or pulse, as far as "
-        "the first three terms of their Taylor series tell; maxStep in system.xml bounds the steps further.");
+        "Each step is so short that it skips no narrow peak, jump or pulse of a function in the equations, as far as "
+        "the first three terms of their Taylor series show; maxStep in system.xml bounds the steps further.");
 }
 
 /* Writes whether equations are compiled or interpreted, see program.h. */
 static void write_form(struct Page *page) {
   const struct Program *program = page->program;
   bool only_series = program->is_table && program->series != NULL && !program->series_is_table;
-  const char *form = only_series ? "those of the Taylor series as compiled C code, the others in tables, which the "
-                                   "FMU carries out"
-                     : program->is_table ? "in tables, which the FMU carries out: a C compiler would take long for them"
-                                         : "as compiled C code";
+  const char *form =
+      only_series ? "those of the Taylor series as compiled C code, the others in tables, which the FMU interprets"
+      : program->is_table ? "in tables, which the FMU interprets: a C compiler would take long for them"
+                          : "as compiled C code";
   char *text = format_text("The equations are %zu instructions, %s.", instruction_count(program), form);
   page_heading(page, "Code");
   page_element(page, "p", text);

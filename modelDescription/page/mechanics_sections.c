@@ -3,8 +3,8 @@
 /* Returns the balance of energy that totalEnergy obeys, see energies.h. */
 static const char *balance_of(const struct Model *model, bool autonomous) {
   if (model->given.constraint != NULL)
-    return "A constraint moves in a given way: its force does work, so that totalEnergy is not constant even without "
-           "other forces.";
+    return "A constraint depends on time or inputs: its force does work, so that totalEnergy is not constant even "
+           "without other forces.";
   if (!model->energies.driven && autonomous)
     return model->forces.any
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
@@ -41,7 +41,8 @@ static void write_energies(struct Page *page) {
       "sum of both.");
   page_element(page, "p", balance_of(page->model, summary->is_autonomous));
   if (page->model->switches.contact_count + page->model->switches.event_count > 0)
-    page_element(page, "p", "So it is between events: impacts, and what events set, may change totalEnergy at once.");
+    page_element(page, "p",
+                 "This holds between events: impacts, and values that events set, may change totalEnergy at once.");
 }
 
 static void write_constraints(struct Page *page) {
@@ -53,9 +54,9 @@ static void write_constraints(struct Page *page) {
   page_rest(page, constraints->count, shown, "constraints");
   page_element(
       page, "p",
-      "Each is 0 at all times. Its force F stands on the left of the equations of motion with the derivatives of the "
-      "constraint by the coordinates, or of one with velocities by these: it is a tension where the constraint is a "
-      "distance less a length. After each step of the solver the state is brought back to the constraints.");
+      "Each is 0 at all times. Its force F stands on the left of the equations of motion, times the derivatives of the "
+      "constraint by the coordinates, or by the velocities if it has any: it is a tension where the constraint is a "
+      "distance less a length. After each step of the solver the state is projected onto the constraints.");
 }
 
 static void write_reactions(struct Page *page) {
@@ -65,11 +66,10 @@ static void write_reactions(struct Page *page) {
   for (size_t i = 0; i < page->summary->reaction_count; i++)
     page_equation(page, reactions->items[i].name, page->summary->reactions[i]);
   page_rest(page, reactions->count, page->summary->reaction_count, "forces");
-  page_element(
-      page, "p",
-      "The force along a displacement is what the system pushes with against what holds it, from Lagrange's "
-      "equation of the displacement with the displacement at 0: the tension of a rod that it makes longer. The "
-      "force of what drives a coordinate is what the drive pushes with, from Lagrange's equation of the coordinate.");
+  page_element(page, "p",
+               "The force along a displacement is that of the system against the support that keeps the displacement "
+               "at 0, from Lagrange's equation of the displacement: the tension of a rod that it makes longer. The "
+               "force of a prescribed motion is that on its coordinate, from Lagrange's equation of the coordinate.");
 }
 
 void write_mechanics(struct Page *page) {
@@ -86,9 +86,8 @@ void write_mechanics(struct Page *page) {
   if (!page->model->forces.any) return;
   page_heading(page, "Power of the non-conservative forces");
   page_equation(page, "P", summary->power);
-  page_element(
-      page, "p",
-      "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . dr/dt "
-      "over the Cartesian forces, where dr/dt is the whole velocity of the point they act on; also of what drives "
-      "coordinates and of what moves the points that depend on inputs.");
+  page_element(page, "p",
+               "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . "
+               "dr/dt over the Cartesian forces, where dr/dt is the whole velocity of the point they act on. The "
+               "forces of prescribed motions count too, also of points that depend on inputs.");
 }

@@ -34,7 +34,7 @@ void write_starts(struct Page *page) {
     for (size_t i = 0; i < lists[list]->count; i++) {
       const struct Variable *state = &lists[list]->items[i];
       if (!start_follows(page->model, state)) continue;
-      if (count++ == 0) page_heading(page, "Start values, of what is not set before the simulation");
+      if (count++ == 0) page_heading(page, "Start values of variables that are not set before the simulation");
       if (count <= SHOWN_LIMIT) page_equation(page, state->name, state->start_expression);
     }
   page_rest(page, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");

@@ -44,5 +44,5 @@ def test_a_formula_that_is_cut_off_is_shown_as_text(tmp_path):
 
 
 def test_a_law_of_energy_ends_at_impacts():
-    tells = {name: "So it is between events" in (fmu.unpacked(name) / "documentation" / "index.html").read_text() for name in ("BouncingBall", "SimplePendulum")}
+    tells = {name: "This holds between events" in (fmu.unpacked(name) / "documentation" / "index.html").read_text() for name in ("BouncingBall", "SimplePendulum")}
     assert tells == {"BouncingBall": True, "SimplePendulum": False}

@@ -125,7 +125,7 @@ def test_errors_without_end(tmp_path):
     before = seconds_of_children()
     result = compile_with('<contact name="c" restitution="1">x</contact>\n' * 38000, tmp_path)
     lines = result.stderr.splitlines()
-    assert result.returncode == 1 and len(lines) == 101 and "there are more mistakes" in lines[-1]
+    assert result.returncode == 1 and len(lines) == 101 and "more errors follow" in lines[-1]
     result = compile_with("<potential>" + ".".join("q" * 5000) + "</potential>", tmp_path)
     assert result.returncode == 1 and "q ... " in result.stderr and len(result.stderr) < 1500
     assert seconds_of_children() - before < MOST_SECONDS

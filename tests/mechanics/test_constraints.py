@@ -513,7 +513,7 @@ def test_linearization():
     result = fmu.lagc("--linearize", system, "--at", "y=-1")
     assert result.returncode == 0 and "[-9.81, 0, 0, 0]\n  [0, 0, 0, 0]" in result.stdout
     wrong = fmu.lagc("--linearize", system, "--at", "y=-2")
-    assert wrong.returncode == 1 and "the point does not fulfil the constraint 'rod': it is 1 there" in wrong.stderr
+    assert wrong.returncode == 1 and "the operating point does not fulfil the constraint 'rod': it is 1 at the parameters' start values" in wrong.stderr
 
 
 MISTAKES = [

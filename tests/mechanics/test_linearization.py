@@ -84,7 +84,7 @@ def warnings_at(point, folder):
     )
     result = lagc("--linearize", "system.xml", "--at", point, cwd=folder)
     assert result.returncode == 0
-    return re.findall(r"warning: the point is not an equilibrium: v = (\S+), der\(v\) = (\S+) there", result.stderr)
+    return re.findall(r"warning: the operating point is not an equilibrium: v = (\S+), der\(v\) = (\S+); expected 0 for both", result.stderr)
 
 
 def test_how_near_to_an_equilibrium(tmp_path):

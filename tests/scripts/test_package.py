@@ -115,7 +115,7 @@ def test_a_bicycle_keeps_its_energy(bicycle, open_fmu):
 
 
 def test_what_is_no_equilibrium(command, tmp_path):
-    assert "the point is not an equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
+    assert "the operating point is not an equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
 
 
 # A block that its friction holds against a spring, with a pendulum on it.

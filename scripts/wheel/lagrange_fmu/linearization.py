@@ -118,7 +118,7 @@ def _linearization(point):
     derivatives = dict(zip(point.derivatives, point.read(point.derivatives)))
     moving = [f"{name} = {value:.6g}" for name, value in derivatives.items() if abs(value) > 1e-6]
     if moving:
-        warnings.warn(f"the point is not an equilibrium: {', '.join(moving)}", stacklevel=4)
+        warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=4)
     rates = [point.derivatives[i] for i in chosen]
     return Linearization(
         point.jacobian(rates, point.states) @ basis,

@@ -70,6 +70,8 @@ void graph_work(const struct Graph *graph, size_t steps) {
   graph->cone->work += steps;
 }
 
+_Static_assert(NODE_LIMIT == 4000000 && WORK_LIMIT == 100000000, "the texts of graph_limit() name the limits");
+
 const char *graph_limit(const struct Graph *graph) {
   if (graph->overflow) return "more than 4000000 operations";
   return graph->cone->work > WORK_LIMIT ? "more than 100000000 steps to read and derive it" : NULL;

@@ -79,7 +79,7 @@ void report_error_of(struct Diagnostics *diagnostics, long line, const char *for
   char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", place.file, place.line, text);
   if (note_told(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&place, "", text);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
-    fprintf(stderr, "%s: there are more mistakes; correct these first\n", diagnostics->file);
+    fprintf(stderr, "%s: more errors follow; correct these first\n", diagnostics->file);
 }
 
 static void report_kind(const struct Diagnostics *diagnostics, long line, const char *kind, const char *format,

@@ -35,7 +35,7 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
   for (size_t i = 0; i < model->reactions.count; i++)
     if (!are_finite(model->graph, &equations->reactions[i], 1))
       report_error(diagnostics, model->reactions.items[i].line,
-                   "%s has a coefficient that is not finite; expected positions that are smooth there",
+                   "%s is not finite; expected positions that are smooth where the displacement is 0",
                    model->reactions.items[i].name);
   if (are_finite(model->graph, equations->residual, row_count(equations))) return;
   while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;
@@ -48,9 +48,9 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
     return;
   }
   report_error(diagnostics, model->velocities.items[wrong].line,
-               "the equation of der(%s) has a coefficient that is not finite; expected numbers below 1e308, and no "
-               "point at a pole",
-               model->velocities.items[wrong].name);
+               "the equation of der(%s) has a coefficient that is not finite; expected %s",
+               model->velocities.items[wrong].name,
+               model->linearized ? "an operating point away from poles" : "numbers below 1e308");
 }
 
 bool is_looped(const struct Equations *equations, size_t row) {

@@ -93,13 +93,14 @@ static void warn_without_equilibrium(const struct Model *model, const Node *acce
     double velocity = values[point_of(model, model->velocities.items[i].node)];
     double acceleration = values[accelerations[i]];
     if (fabs(velocity) > 1e-9 || !(fabs(acceleration) < 1e-9))
-      report_warning(diagnostics, 0, "the point is not an equilibrium: %s = %g, der(%s) = %g there",
+      report_warning(diagnostics, 0,
+                     "the operating point is not an equilibrium: %s = %g, der(%s) = %g; expected 0 for both",
                      model->velocities.items[i].name, velocity, model->velocities.items[i].name, acceleration);
   }
   for (size_t i = 0; i < model->states.count; i++)
     if (!(fabs(values[rates[i]]) < 1e-9))
-      report_warning(diagnostics, 0, "the point is not an equilibrium: der(%s) = %g there", model->states.items[i].name,
-                     values[rates[i]]);
+      report_warning(diagnostics, 0, "the operating point is not an equilibrium: der(%s) = %g; expected 0",
+                     model->states.items[i].name, values[rates[i]]);
 }
 
 /*
@@ -180,11 +181,10 @@ static bool can_be_linearized(const struct Model *model, const struct Equations 
   for (size_t i = 0; i < equations->rates.count; i++)
     depends_on_time |= graph_depends_on(model->graph, equations->rates.nodes[i], TIME);
   if (depends_on_time)
-    report_error(diagnostics, 0, "the equations of motion depend on time; expected an autonomous system to linearise");
-  else if (is_motionless(model))
     report_error(diagnostics, 0,
-                 "the system has neither coordinates nor states, and nothing to linearise; expected a <coordinate> or "
-                 "a <state>");
+                 "the equations of motion depend on time; expected a system without explicit time to linearize");
+  else if (is_motionless(model))
+    report_error(diagnostics, 0, "the system has no states to linearize; expected a <coordinate> or a <state>");
   return !depends_on_time && !is_motionless(model);
 }
 
@@ -193,7 +193,7 @@ static bool is_singular(const struct Model *model, const struct Inertia *inertia
   for (size_t i = 0; i < inertia->coordinate_count; i++) {
     if (inertia_element(inertia, i, i) != ZERO) continue;
     report_error(diagnostics, 0,
-                 "the mass matrix is singular in coordinate '%s' at this point; expected a point where it is not",
+                 "the mass matrix is singular in coordinate '%s' at the operating point; expected another point",
                  model->coordinates.items[i].name);
     singular = true;
   }
@@ -223,11 +223,11 @@ static bool fulfils_constraints(const struct Expansion *expansion, const struct 
   size_t wrong = 0;
   while (wrong < 2 * constraints->count && fabs(values[levels[wrong]]) < 1e-9) wrong++;
   if (wrong < 2 * constraints->count)
-    report_error(
-        diagnostics, 0,
-        "the point does not fulfil the constraint '%s': %s is %g there at the parameters' start values; expected "
-        "a point where it is 0",
-        model->constraints.items[wrong / 2].name, wrong % 2 == 0 ? "it" : "its time derivative", values[levels[wrong]]);
+    report_error(diagnostics, 0,
+                 "the operating point does not fulfil the constraint '%s': %s is %g at the parameters' start values; "
+                 "expected a point where it is 0",
+                 model->constraints.items[wrong / 2].name, wrong % 2 == 0 ? "it" : "its time derivative",
+                 values[levels[wrong]]);
   return wrong == 2 * constraints->count;
 }
 

@@ -8,13 +8,12 @@
 static const struct Method methods[] = {
     {.name = "taylor",
      .solver = "taylor",
-     .sentence =
-         "Co-simulation integrates with Taylor series of the motion, of an order that follows from the tolerance; a "
-         "step depends only on the state that the FMU saves, so that a repeated step gives the same bits. Each step is "
-         "held against the equations of motion at its end, and is so short that no function in them (exp, tanh, "
-         "powers, quotients, ...) can hide a hill, a wall or a pulse from the series, however narrow. abs, min, max "
-         "and sign are followed piece by piece. A point where the equations have no solution and a stiff system end in "
-         "fmi2Discard with a message that names them.",
+     .sentence = "Co-simulation integrates with Taylor series of the motion, of an order that follows from the "
+                 "tolerance; a step depends only on the state that the FMU saves, so that a repeated step gives the "
+                 "same bits. Each step is checked by its residual in the equations of motion, and is so short that it "
+                 "skips no peak, jump or pulse of a function in them (exp, tanh, powers, quotients, ...), however "
+                 "narrow. abs, min, max and sign are followed piece by piece. A point where the equations have no "
+                 "solution and a stiff system end in fmi2Discard with a message that names them.",
      .evaluations = "series of the equations of motion",
      .sources = {"methods/taylor_reach.c", "support/series_limit.c"},
      .series = ALL_TERMS},
@@ -31,7 +30,7 @@ static const struct Method methods[] = {
      .solver = "bdf",
      .sparse_solver = "bdf_sparse",
      .sentence = "Co-simulation integrates with backward differentiation formulas of variable order; they keep a "
-                 "history, so that a restored state goes on within the tolerance, not to the same bits.",
+                 "history, so that a step from a restored state agrees within the tolerance, not bit by bit.",
      .evaluations = "evaluations of the equations of motion",
      .sources = {"methods/sundials/bdf_support.c", "methods/sundials/sundials_support.c",
                  "methods/sundials/sundials_memory.c", "methods/first_terms.c", "support/series_limit.c"},
@@ -52,13 +51,11 @@ static const struct Method methods[] = {
     {.name = "auto",
      .solver = "auto",
      .sentence =
-         "Co-simulation integrates with Taylor series of the motion as long as their steps follow from the accuracy "
-         "that is asked for, and with Radau IIA methods of order 5, 9 or 13 where steps of the series would have to be "
-         "short only to keep fast modes that died away from growing, as in stiff systems. A step depends only on the "
-         "state that the FMU saves, so that a repeated step gives the same bits. The series are held against the "
-         "equations of motion at the end of each step, and steps are so short that no function in them (exp, tanh, "
-         "powers, quotients, ...) can hide a hill, a wall or a pulse, however narrow. A point where the equations have "
-         "no solution ends in fmi2Discard with a message that names it.",
+         "Co-simulation integrates with Taylor series of the motion and, where the system is stiff, with Radau IIA "
+         "methods of order 5, 9 or 13. A step depends only on the state that the FMU saves, so that a repeated step "
+         "gives the same bits. Each step is checked by its residual in the equations of motion, and is so short that "
+         "it skips no peak, jump or pulse of a function in them (exp, tanh, powers, quotients, ...), however narrow. A "
+         "point where the equations have no solution ends in fmi2Discard with a message that names it.",
      .evaluations = "series of the equations of motion, and evaluations of them",
      .sources = {"methods/stiffness.c", "methods/taylor.c", "methods/taylor_reach.c", "methods/radau.c",
                  "methods/radau_systems.c", "methods/first_terms.c", "support/series_limit.c"},

@@ -113,7 +113,7 @@ static struct Dimension read_factor(struct UnitReader *reader) {
     memcpy(unit.exponent, table[i].exponent, sizeof unit.exponent);
     double exponent = unit_exponent(&reader->next);
     if (fabs(exponent) <= 20) return dimension_multiply(dimension_one, unit, exponent);
-    reader->problem = "an exponent is larger than 20";
+    reader->problem = "an exponent is out of range; expected one from -20 to 20";
     return dimension_unknown;
   }
   if (reader->problem == NULL) reader->problem = problem_of_name(reader->next);

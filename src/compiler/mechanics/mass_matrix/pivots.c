@@ -115,11 +115,10 @@ bool pivots_check(const struct Model *model, const struct Inertia *inertia, stru
     if (found >= 0 && found < regular) singular = found;
   }
   if (found == regular || singular < 0) return is_positive_at_start(model, inertia, diagnostics);
-  report_error(
-      diagnostics, model->coordinates.items[singular].line,
-      "the mass matrix is structurally singular: the motion along '%s' is not independent of the other "
-      "coordinates; expected one coordinate for each degree of freedom, or constraints that determine its motion",
-      model->coordinates.items[singular].name);
+  report_error(diagnostics, model->coordinates.items[singular].line,
+               "the mass matrix is singular: the velocity of '%s' is not independent of the others; expected one "
+               "coordinate for each degree of freedom, or constraints that determine its motion",
+               model->velocities.items[singular].name);
   return false;
 }
 

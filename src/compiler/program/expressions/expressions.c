@@ -201,14 +201,12 @@ static void create_linear(struct Expressions *expressions, struct Diagnostics *d
                  isnan(model->solver.max_step) ? "s" : "");
   if (expressions->equations->constraints->count > 0)
     report_error(diagnostics, model->solver.line,
-                 "the method 'exact' does not keep constraints; expected another method, or a <linearization>");
+                 "the method 'exact' does not support constraints; expected another method, or a <linearization>");
   const struct SwitchingExpressions *switching = expressions->equations->switching;
   size_t samples = switching != NULL ? switching->sample_count : 0;
   if (switching != NULL && (switching->indicator_count > samples || model->switches.event_count > samples))
-    report_error(
-        diagnostics, model->solver.line,
-        "the method 'exact' cannot have events but those of <sample>; expected another method for a system that "
-        "switches");
+    report_error(diagnostics, model->solver.line,
+                 "the method 'exact' supports no events but those of <sample>; expected another method");
   expressions->linear = linear_system_of(model, expressions->equations, diagnostics);
 }
 
@@ -236,7 +234,7 @@ static void create_series(struct Expressions *expressions, struct Diagnostics *d
   if (kink == NULL || !is_taylor) expressions->series = series_plan_of_motion(model->graph, equations);
   else
     report_error(diagnostics, model->solver.line,
-                 "%s has a kink, where a Taylor series ends; expected the method 'erk' for such a system", kink);
+                 "%s has a kink, where a Taylor series ends; expected the method 'erk'", kink);
 }
 
 static void create_output_series(struct Expressions *expressions) {
