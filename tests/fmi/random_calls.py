@@ -1,7 +1,7 @@
 """
-Random sequences of FMI calls, right and wrong ones, on every FMU: random_calls.py NUMBER [SEED]. Prints how many calls
-were made; the same seed makes the same ones, that of the tests where none is given. The life cycle is followed beside the FMU; a call that the standard's table forbids must be refused, values
-must be finite, and all memory of the caller's functions must come back.
+Random sequences of valid and invalid FMI calls on every FMU: random_calls.py NUMBER [SEED]. Prints the number of calls; equal seeds give
+equal calls, by default those of the tests. A model of the life cycle runs beside the FMU: a call that the standard's table forbids must
+return an error, values must be finite, and all allocated memory must be freed.
 """
 
 import ctypes
@@ -22,7 +22,7 @@ STEPS_OF_AN_EXAMPLE = 60
 
 calls = 0
 
-# Right ones are more frequent than wrong ones, so that sequences get anywhere.
+# Valid calls are more frequent than invalid ones, so that sequences reach all states.
 right_values = st.floats(-3, 3)
 wrong_values = st.sampled_from([1e-9, 1e6, -1e300, math.nan, math.inf, -math.inf, 5e-324])
 values = st.one_of(*[right_values] * 6, wrong_values, st.floats())
@@ -47,7 +47,7 @@ class Calls(RuleBasedStateMachine):
         assert status in (OK, WARNING, DISCARD, ERROR) and category.startswith(b"log") and message
 
     def call(self, function, *words):
-        """Calls, checks the status against the table, and follows errors."""
+        """Make the call, check its status against the table, and follow errors in the model."""
         global calls
         calls += 1
         self.count += 1
@@ -92,7 +92,7 @@ class Calls(RuleBasedStateMachine):
     @precondition(lambda self: self.state in ("instantiated", "error", "terminated"))
     @rule()
     def start_anew(self):
-        """The straight way to where things happen, so that they do."""
+        """Reset and go straight to stepping, so that most sequences get there."""
         self.go("fmi2Reset", "instantiated")
         self.call("fmi2SetupExperiment", 1, c_double(1e-4), c_double(0.0), 0, c_double(0.0))
         self.experiment, self.time = True, 0.0
@@ -131,7 +131,7 @@ class Calls(RuleBasedStateMachine):
     @precondition(lambda self: self.state == "step complete")
     @rule(count=st.integers(1, 5), size=st.floats(1e-4, 0.02), slope=right_values, order=st.integers(1, 3))
     def steps(self, count, size, slope, order):
-        """Right steps, with inputs that change over them, and outputs read at their ends."""
+        """Valid steps, with inputs that change during them, and outputs read at their ends."""
         inputs = [v.name for v in self.instance.description.modelVariables if v.causality == "input"]
         outputs = [v.name for v in self.instance.description.modelVariables if v.causality == "output"]
         for _ in range(count):
@@ -178,7 +178,7 @@ class Calls(RuleBasedStateMachine):
 
     @rule(data=st.data())
     def set_inputs(self, data):
-        """Inputs and tunable parameters that are in range, so that the motion changes."""
+        """Set inputs and tunable parameters within their ranges, so that the motion changes."""
         names = [
             v.name
             for v in self.instance.description.modelVariables
@@ -303,7 +303,7 @@ class Calls(RuleBasedStateMachine):
 
 def main():
     wanted, seed_number = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1
-    # Held open, so that a report of a leak at the end can name the FMU.
+    # Kept open, so that a leak report at the end can name the FMU.
     libraries = [ctypes.CDLL(fmu.library(name)) for name in fmu.small_names()]
     run_state_machine_as_test(
         seed(seed_number)(Calls),

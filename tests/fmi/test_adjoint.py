@@ -1,4 +1,6 @@
-"""Adjoint derivatives by a reverse sweep (lagc --adjoint): against directional ones, whose derivation is another, and against what they cost."""
+"""
+Adjoint derivatives by a reverse sweep (lagc --adjoint), against directional derivatives, which are derived separately; and their cost.
+"""
 
 import time
 
@@ -11,7 +13,7 @@ from building import build_systems
 from fmu import ROOT
 from linked import linked_members
 
-# Pieces that are off and whose base has no logarithm, powers, work, dissipation, a force that acts at a point, outputs with accelerations.
+# Covers inactive pieces whose base has no logarithm, powers, work, dissipation, a force on a point, and outputs with accelerations.
 MIXED = """<system name="Mixed"><parameter name="m" start="0.3" unit="kg"/><parameter name="l" start="0.7" unit="m"/>
   <parameter name="b" start="0.2" unit="N.m.s/rad"/><parameter name="k" start="12" unit="N/m"/><parameter name="n" start="1.5" unit="1"/>
   <parameter name="c" start="3" unit="N.s/m"/><parameter name="s" start="2" unit="m/s"/><parameter name="w" start="0.9" unit="1/s"/>
@@ -21,7 +23,7 @@ MIXED = """<system name="Mixed"><parameter name="m" start="0.3" unit="kg"/><para
   <potential>k*x^2/2 + k*x^4/l^2 + if(x &gt; 0, k*(1 + x/l)^n*l^2, 0)</potential><dissipation>b*omega^2/2 + abs(v)^3*c/s</dissipation>
   <force coordinate="x">F*exp(-w*time)</force><work/>
   <output name="push" unit="N">m*der(v) + k*x*tanh(F/(k*l))</output><output name="lean" unit="1">tanh(theta)*l/s*w</output></system>"""
-# Under names of their own, as other tests have them otherwise.
+# Systems of fmu/ under other names, since other tests build the originals without --adjoint.
 HELD = {f"Adjoint{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'name="{name}"', f'name="Adjoint{name}"') for name in ("FourBar", "ChainPendulum")}
 HELD["AdjointBranchedArm"] = (ROOT / "tests" / "support" / "branched_arm.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
 
@@ -32,7 +34,7 @@ def built():
 
 
 def model(name):
-    """In continuous time, with the names of its unknowns and knowns."""
+    """An instance in continuous-time mode, with the names of its unknowns and knowns."""
     instance = fmi3.Instance(name, kind=fmpy.fmi3.FMU3Model)
     variables = instance.description.modelVariables
     unknowns = [u.variable.name for u in instance.description.derivatives] + [v.name for v in variables if v.causality == "output"]
@@ -46,7 +48,10 @@ def model(name):
 
 @pytest.mark.parametrize("name", ["Mixed", *HELD])
 def test_they_are_transposed_directional_ones(name):
-    """By each known, of a sum of all unknowns: small blocks of M, one that is factored at run time, a closed loop, and a tree of joints."""
+    """
+    Adjoint derivatives of a sum of all unknowns agree by each known, for small blocks of M, a block factored at run time, a closed loop,
+    and a tree of joints.
+    """
     instance, unknowns, knowns = model(name)
     across = np.random.default_rng(1).standard_normal(len(unknowns))
     adjoint = instance.partial("Adjoint", unknowns, knowns, across)
@@ -69,7 +74,7 @@ def test_they_are_refused_like_directional_ones():
 
 
 def test_the_sweep_costs_the_same_for_all_knowns():
-    """One of ten links, by one parameter and by all states and parameters."""
+    """The sweep of a chain of ten links costs the same for one parameter as for all states and parameters."""
     instance, unknowns, knowns = model("AdjointChainPendulum")
     across = np.ones(len(unknowns))
 

@@ -1,4 +1,4 @@
-"""Bad values through FMI: a clear error, no NaN, and the instance works again after a reset."""
+"""Invalid values through FMI give a clear error and no NaN, and the instance works again after a reset."""
 
 import math
 import re
@@ -11,7 +11,7 @@ from fmu import DISCARD, ERROR
 
 
 def works_again(instance, name):
-    """After a reset the instance simulates as a new one does, bit by bit."""
+    """Check that after a reset the instance simulates like a new one, bit by bit."""
     states = fmu.states_of(name)
     instance.reset().initialize()
     with_history = instance.run(0.1, 0.05, *states)
@@ -47,7 +47,7 @@ MASSES = [
 
 @pytest.mark.parametrize("name, parameter", MASSES)
 def test_no_inertia(name, parameter, open_fmu):
-    """A mass or a length of zero leaves some coordinate without inertia."""
+    """A mass or a length of zero leaves a coordinate without inertia, which is an error."""
     instance = open_fmu(name)
     instance.fmu.setupExperiment()
     states = fmu.states_of(name)
@@ -94,7 +94,7 @@ def test_no_value_is_set_where_one_is_wrong(open_fmu):
     instance = open_fmu("SimplePendulum")
     with instance.fails(DISCARD, "'l'"):
         instance.set(m=7, l=-1)
-    instance.initialize()  # the call changed nothing, and the instance goes on
+    instance.initialize()  # the call changed nothing, and the instance continues
     assert instance.get("m") == 1
 
 
@@ -110,7 +110,7 @@ def test_bad_steps(name, step, open_fmu):
 @pytest.mark.parametrize("time", [math.nan, math.inf])
 @pytest.mark.parametrize("name", ["SimplePendulum", "StateFeedback"])
 def test_a_time_that_is_no_number(name, time, open_fmu):
-    """The time is to blame, not the step."""
+    """The message names the time, not the step."""
     instance = open_fmu(name).initialize()
     with instance.fails(ERROR, f"currentCommunicationPoint is {time}; expected a finite time"):
         instance.fmu.doStep(time, 0.1)
@@ -151,7 +151,7 @@ POLES = [
 
 @pytest.mark.parametrize("name, values, lost, cause", POLES)
 def test_singular_coordinates(name, values, lost, cause, open_fmu):
-    """At a pole the azimuth has no inertia: the start there is refused, and no call returns NaN."""
+    """At a pole the azimuth has no inertia: initialization fails there, and no call returns NaN."""
     instance = open_fmu(name)
     states = fmu.states_of(name)
 
@@ -163,7 +163,7 @@ def test_singular_coordinates(name, values, lost, cause, open_fmu):
 
     for state in states[len(states) // 2 :]:
         start()
-        with instance.fails(ERROR, f"'{lost}'.*{cause}"):  # FMI 2.0.4, 2.1.3 lists no Discard there
+        with instance.fails(ERROR, f"'{lost}'.*{cause}"):  # FMI 2.0.4, section 2.1.3 lists no Discard for this call
             instance.get(f"der({state})")
     start()
     with instance.fails(ERROR, f"'{lost}'.*{cause}"):
@@ -173,7 +173,7 @@ def test_singular_coordinates(name, values, lost, cause, open_fmu):
 
 
 def test_throw_through_the_axis(open_fmu):
-    """Straight through the axis the azimuth does not turn, phi changes its sign, and the motion stays right."""
+    """Straight through the axis the azimuth stays constant, phi changes its sign, and the motion stays uniform."""
     instance = open_fmu("ParticleSpherical").initialize(dict(r=1, phi=0.5, theta=0, omegaPhi=-1, omegaTheta=0, g=0))
     x, z, vx, vz = math.sin(0.5), math.cos(0.5), -math.cos(0.5), math.sin(0.5)
     for t, *position in instance.run(3, 0.1, "particle.x", "particle.y", "particle.z"):

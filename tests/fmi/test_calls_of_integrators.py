@@ -1,4 +1,4 @@
-"""What an integrator may ask for: trial states that are not finite, times before the start, event mode with events that are due."""
+"""Calls that an integrator may make: nonfinite trial states, times before the start, event mode while events are due."""
 
 from ctypes import c_double
 
@@ -15,7 +15,7 @@ def array(*values):
 
 
 def falling_ball(open_fmu):
-    """In continuous-time mode."""
+    """BouncingBall in continuous-time mode."""
     ball = open_fmu("BouncingBall", kind=FMU2Model).initialize()
     ball.fmu.newDiscreteStates()
     ball.fmu.enterContinuousTimeMode()
@@ -24,7 +24,7 @@ def falling_ball(open_fmu):
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_states_that_are_not_finite(value, open_fmu):
-    """An integrator may try a shorter step: Discard (FMI 2.0.4, section 2.1.3), and nothing has changed."""
+    """A nonfinite trial state is discarded, so that the integrator can try a shorter step (FMI 2.0.4, section 2.1.3); nothing changes."""
     ball = falling_ball(open_fmu)
     before = ball.get("h", "v")
     with ball.fails(DISCARD, "expected a finite number"):
@@ -49,7 +49,7 @@ def test_an_event_is_not_passed_over(open_fmu):
     """Event mode cannot end while a bounce is due for which the discrete states were not updated (FMI 2.0.4, section 3.2.2)."""
     ball = falling_ball(open_fmu)
     ball.fmu.enterEventMode()
-    ball.fmu.enterContinuousTimeMode()  # nothing is due
+    ball.fmu.enterContinuousTimeMode()  # no event is due
     ball.fmu.setContinuousStates(*array(-1e-6, -1.0))
     ball.fmu.enterEventMode()
     with ball.fails(ERROR, "an event is due; expected an update of the discrete states"):
@@ -66,7 +66,7 @@ def test_an_event_is_not_passed_over(open_fmu):
 
 @pytest.mark.parametrize("order", [4, 20, 100])
 def test_input_derivatives_of_high_order(order, open_fmu):
-    """An input is a cubic over a step. Higher derivatives are ignored with a warning: the motion is that without them."""
+    """Inputs are at most cubic over a step. Higher derivatives give a warning, and the motion without them."""
     ends = []
     for orders in ([1], [1, order]):
         particle = open_fmu("ParticleCartesian").initialize({"x": 0.0, "vx": 0.0})
@@ -78,7 +78,7 @@ def test_input_derivatives_of_high_order(order, open_fmu):
 
 
 def integrate(name, end, tolerance):
-    """CVode (BDF), step by step: the steps, the events, and the states at the end."""
+    """Integrate by CVode (BDF), step by step; return the numbers of steps and events, and the states at the end."""
     from ctypes import byref
 
     from fmpy.sundials import CVode, CVodeSolver, realtype
@@ -118,7 +118,10 @@ def integrate(name, end, tolerance):
 
 @pytest.mark.parametrize("name, others", [("PendulumCartesian", "SimplePendulum"), ("FreeBody", None), ("FourBar", None), ("RollingDisk", None), ("KnifeEdge", None)])
 def test_few_events_bring_back_to_the_constraints(name, others):
-    """At most 10 a second; a pendulum in Cartesian coordinates takes at most three times the steps of that in its angle."""
+    """
+    Projection causes at most 10 events a second. A pendulum in Cartesian coordinates takes at most three times the steps of one by its
+    angle.
+    """
     end, tolerance = 10.0, 1e-9
     steps, events, state = integrate(name, end, tolerance)
     assert events <= 10 * end
@@ -129,7 +132,10 @@ def test_few_events_bring_back_to_the_constraints(name, others):
 
 
 def test_the_drift_costs_no_more_than_the_steps():
-    """A pendulum that starts at rest on the level of its pivot: against the period by the elliptic integral."""
+    """
+    The drift of a pendulum released from the level of its pivot stays within the tolerance times the steps, against the period by the
+    elliptic integral.
+    """
     from scipy.special import ellipk
 
     period = 4 * ellipk(0.5) * np.sqrt(1.0 / 9.81)

@@ -1,4 +1,4 @@
-"""Directional derivatives, derivatives of inputs and of outputs."""
+"""Directional derivatives, and derivatives of inputs and of outputs."""
 
 import numpy as np
 import pytest
@@ -9,12 +9,12 @@ import fmu
 from fmu import ERROR
 from systems_in_sympy import DEFINITIONS, system
 
-# min, max, abs and sign have kinks.
+# Functions has kinks: min, max, abs and sign.
 SMOOTH = [name for name in DEFINITIONS if name != "Functions"]
 
 
 def set_up(name, instance, random):
-    """The instance in step-complete mode at random values, which are returned."""
+    """Initialize the instance at random values; return these."""
     definition = system(name)
     values = {symbol: random.uniform(0.3, 1.2) for symbol in definition.arguments}
     instance.reset()
@@ -26,7 +26,7 @@ def set_up(name, instance, random):
 
 
 def derivative_of_accelerations(evaluate, values, direction, held):
-    """By a complex step of M a - f at the accelerations that are held, which has no error but rounding."""
+    """Derivative of M a - f at fixed accelerations by a complex step, which has no truncation or cancellation error."""
     step = 1e-30
     mass, terms = evaluate(*(value + 1j * step * direction.get(symbol, 0) for symbol, value in values.items()))
     residual = np.array(mass) @ held - np.array([sum(row) for row in terms])
@@ -53,7 +53,7 @@ def test_directional_derivatives_of_accelerations(name, kind, open_fmu):
 
 @pytest.mark.parametrize("name", [*fmu.all_names(), "Functions", "Actuator", "Network"])
 def test_directional_derivatives_by_differences(name, open_fmu):
-    """Every unknown by every known, against difference quotients: finds wrong pairs and forgotten terms."""
+    """Derivatives of every unknown by every known agree with difference quotients, which finds wrong pairs and missing terms."""
     is_constrained = fmu.is_constrained(name)
     instance = open_fmu(name, kind=FMU2Model) if is_constrained else open_fmu(name)
     every = {v.name: v for v in instance.description.modelVariables}
@@ -67,7 +67,7 @@ def test_directional_derivatives_by_differences(name, open_fmu):
         start |= dict(lMin=0.1, lMax=10.0, track=5.0)  # between its stops
 
     def values_at(point):
-        if is_constrained:  # without moving the state to the constraints
+        if is_constrained:  # which leaves the state off the constraints
             instance.put(point)
         else:
             instance.reset().initialize(point)
@@ -94,7 +94,7 @@ def test_directional_derivative_refuses(open_fmu):
         instance.reset().initialize()
 
 
-# A torque-free rotor whose input is integrated twice: inertia, and what else must be set to leave it alone.
+# Systems that integrate an input twice: the inertia, and the settings that remove other forces.
 INTEGRATORS = [
     ("ParticleCartesian", "Fx", "x", dict(m=0.5, kx=0, x=0), 0.5, 1e-13),
     ("DampedPendulum", "tau", "theta", dict(m=0.5, l=2, g=0, b=0, theta=0), 2.0, 1e-9),
@@ -117,14 +117,14 @@ def test_inputs_are_polynomials(name, force, position, values, inertia, accuracy
         )
         instance.step(size)
     if inertia is None:
-        # The rod swings back; what the force moves is the centre of mass.
+        # The rod swings; the force accelerates the centre of mass.
         theta, x = instance.get("theta", "x")
         M, m, l = values["M"], values["m"], values["l"]
         centre = (M * x + m * (x + l * np.sin(theta))) / (M + m)
         assert centre == pytest.approx(1 / factorial(order + 2) / (M + m), abs=accuracy)
     else:
         assert instance.get(position) == pytest.approx(1 / factorial(order + 2) / inertia, abs=accuracy)
-    # The input itself has arrived at the end of its polynomial.
+    # The input itself is at the end of its polynomial.
     assert instance.get(force) == pytest.approx(1 / factorial(order), abs=1e-13)
 
 
@@ -139,7 +139,7 @@ def test_input_derivatives_hold_for_one_step(open_fmu):
 
 @pytest.mark.parametrize("order", [0, -1])
 def test_input_derivative_orders(order, open_fmu):
-    """Rule 12: order 0 is no derivative."""
+    """Order 0 and other orders out of range are errors."""
     instance = open_fmu("ParticleCartesian").initialize()
     with instance.fails(ERROR, f"order {order} for 'Fx' is out of range"):
         instance.fmu.setRealInputDerivatives(instance.vr("Fx"), [order], [1.0])
@@ -150,9 +150,9 @@ def test_input_derivative_orders(order, open_fmu):
 
 @pytest.mark.parametrize("name", fmu.moving_names())
 def test_output_derivatives(name, open_fmu):
-    """At the end of a step: those of coordinates and velocities are what der(...) says."""
+    """At the end of a step, output derivatives of coordinates and velocities equal the values of der(...)."""
     instance = open_fmu(name).initialize()
-    instance.step(0.01 if name == "Motor" else 0.1)  # later its voltages cancel each other
+    instance.step(0.01 if name == "Motor" else 0.1)  # later its voltages nearly cancel
     states = [state for state in fmu.states_of(name) if state in fmu.names_of(name, "output")]
     derivatives = instance.fmu.getRealOutputDerivatives(instance.vr(*states), [1] * len(states))
     expected = instance.fmu.getReal(instance.vr(*[f"der({state})" for state in states]))
@@ -168,7 +168,7 @@ def test_output_derivative_of_an_expression(open_fmu):
 
 
 def test_output_derivatives_follow_the_inputs(open_fmu):
-    """A spring between two moving ends: the force changes as the ends move."""
+    """The force of a spring between two moving ends changes as the ends move."""
     instance = open_fmu("SpringDamper").initialize(dict(k=7, c=3, l0=0))
     instance.fmu.setRealInputDerivatives(instance.vr("x1", "x2", "v2"), [1, 1, 1], [0.2, 0.5, -1.0])
     instance.step(0.1)

@@ -1,4 +1,4 @@
-"""FMUs of FMI 3.0: descriptions, simulation beside FMI 2.0, arrays, derivatives, states, and steps with all that is told of them."""
+"""FMUs of FMI 3.0: descriptions, simulation in comparison with FMI 2.0, arrays, derivatives, states, and the results of steps."""
 
 import ctypes
 import re
@@ -103,7 +103,10 @@ def test_descriptions_are_valid(name):
 
 
 def test_the_same_variables_as_in_fmi2(name):
-    """Each scalar of FMI 2.0 is a scalar or an element of FMI 3.0, with its start, and its value reference one further; and there are time and event indicators."""
+    """
+    Each scalar of FMI 2.0 is a scalar or an array element of FMI 3.0, with the same start value and a value reference one higher. FMI 3.0
+    adds time and event indicators.
+    """
     ours = {}
     for variable in fmi3.description(name).modelVariables:
         count = int(np.prod(variable.shape)) if variable.shape else 0
@@ -122,7 +125,7 @@ def test_the_same_variables_as_in_fmi2(name):
 
 
 def columns(result, names):
-    """Of scalars and arrays, by the names of FMI 2.0."""
+    """Columns of scalars and arrays, by the names of FMI 2.0."""
     found = {}
     for column in result.dtype.names:
         values = result[column]
@@ -153,7 +156,7 @@ def test_model_exchange_agrees(name, own_systems):
 
 @pytest.mark.parametrize("name", ["BouncingBall", "StickSlip", "NewtonsCradle"])
 def test_model_exchange_of_what_switches_has_the_bits_of_fmi2(name):
-    """Importers go by the variables that modelDescription.xml lists as event indicators."""
+    """Importers use the variables that modelDescription.xml lists as event indicators."""
     words = dict(stop_time=2.0, output_interval=0.05, fmi_type="ModelExchange")
     names = fmu.names_of(name, "output")
     second, third = (fmpy.simulate_fmu(str(module.unpacked(name)), **words) for module in (fmu, fmi3))
@@ -162,7 +165,7 @@ def test_model_exchange_of_what_switches_has_the_bits_of_fmi2(name):
 
 
 def test_event_indicators(opened):
-    """A ball in the air: its indicator is the gap, then that of the rest on the ground the force, m g."""
+    """The indicator of a ball in the air is its gap; that of the ball at rest on the ground is the force, m g."""
     ball = opened("BouncingBall", kind=FMU3Model).initialize({"h": 0.5})
     for height in (0.5, -0.1):
         ball.fmu.enterContinuousTimeMode()
@@ -180,7 +183,7 @@ def test_event_indicators(opened):
 
 
 def test_intermediate_update_at_an_event(opened):
-    """The state behind the bounce, at its time."""
+    """Intermediate update reports the state after the bounce, at its time."""
     importer = Importer()
     ball = observed(opened, "BouncingBall", importer, ["h", "v"]).initialize()
     ball.step(0.6)
@@ -243,7 +246,7 @@ def test_sources_are_plain_c11_with_names_of_the_fmu(compiler, tmp_path):
 
 
 def test_arrays(types, opened):
-    """Elements that follow each other are one array; where two coordinates take turns, they are scalars."""
+    """Consecutive elements form one array; elements of two interleaved coordinates are scalars."""
     shapes = {v.name: v.shape for v in fmi3.description(types).modelVariables}
     for array in ("k", "F", "a", "va"):
         assert shapes[array] == (3,) and f"{array}[1]" not in shapes
@@ -291,7 +294,7 @@ def test_types(types, opened):
 @pytest.mark.parametrize("name", ["ArrayChainPendulum", "ChainPendulum", "FourBar", "DampedPendulum"])
 @pytest.mark.parametrize("kind", [FMU3Slave, FMU3Model])
 def test_partial_derivatives(name, kind, opened, own_systems):
-    """Directional ones against difference quotients; adjoint ones have the same scalar products."""
+    """Directional derivatives agree with difference quotients; adjoint ones have the same scalar products."""
     instance = opened(name, kind=kind)
     model = fmi3.description(name)
     states = [u.variable.derivative.name for u in model.derivatives]
@@ -305,7 +308,7 @@ def test_partial_derivatives(name, kind, opened, own_systems):
     adjoint = instance.partial("Adjoint", unknowns, knowns, across)
     assert across @ directional == pytest.approx(adjoint @ along, rel=1e-12)
     if name == "FourBar":
-        return  # moved states would leave the constraints
+        return  # moved states would violate the constraints
     base, h, values = {known: instance.get(known) for known in knowns}, 1e-6, []
     for sign in (1, -1):
         place = 0
@@ -318,7 +321,7 @@ def test_partial_derivatives(name, kind, opened, own_systems):
 
 
 def test_output_derivatives(opened, own_systems):
-    """One order for a whole array, and another for the next."""
+    """One order applies to a whole array, another order to the next array."""
     instance = opened("ArrayChainPendulum").initialize()
     instance.step(0.3)
     references, values = (c_uint32 * 2)(*instance.vr("theta", "omega")), (c_double * 20)()
@@ -329,7 +332,7 @@ def test_output_derivatives(opened, own_systems):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "DampedPendulum", "ParticleCartesian", "FourBar"])
 def test_states(name, opened):
-    """Back to a state, and on in another instance: the same bits."""
+    """A restored state, and one restored in another instance, gives the same bits."""
     outputs = [v.name for v in fmi3.description(name).modelVariables if v.causality == "output"]
     first, second = opened(name).initialize(), opened(name)
     first.step(0.3)
@@ -357,7 +360,7 @@ def test_states(name, opened):
      ("FourBar", ["theta", "der(omega)"]), ("ParticleCartesian", ["x", "vx"]), ("StateFeedback", ["F"])],
 )  # fmt: skip
 def test_intermediate_update(name, variables, opened):
-    """What is read is on the way from one end to the other, and reading it leaves no trace."""
+    """Intermediate values lie between those at both ends of the step, and reading them changes nothing."""
     importer = Importer()
     watched, alone = observed(opened, name, importer, variables).initialize(), opened(name).initialize()
     for step in (0.5, 0.01, 1.0):
@@ -378,7 +381,7 @@ def test_intermediate_update(name, variables, opened):
 
 
 def test_intermediate_guides(own_systems, opened):
-    """An input that moves a constraint goes on by its derivatives, and the state with it."""
+    """An input that prescribes a motion continues by its derivatives during the step, and the state follows."""
     importer = Importer()
     hand = observed(opened, "MovedHand", importer, ["x", "v", "der(v)", "where"])
     hand.initialize({"u": 0.1, "der(u)": 0.3, "der(der(u))": -0.8})
@@ -394,7 +397,7 @@ def test_early_return(opened):
     instance = observed(opened, "DampedPendulum", importer, ["theta"], earlyReturnAllowed=True).initialize()
     event, terminate, early, last = instance.step(1.0)
     assert (event, terminate, early) == (False, False, True) and last == max(0.437, importer.calls[0][0])
-    importer.end_at = 5.0  # beyond the step, which ends as it would
+    importer.end_at = 5.0  # beyond the step, which ends as usual
     assert instance.step(1.0 - last) == (False, False, False, 1.0)
     assert [can_return for _, can_return, _ in importer.calls[-2:]] == [True, False] and importer.calls[-1][0] == 1.0
     straight = opened("DampedPendulum").initialize()
@@ -417,7 +420,7 @@ def test_errors_in_the_callback_end_the_step(opened):
 
 
 def test_a_discarded_step_changes_nothing(opened):
-    """Also where the importer knows early returns: one would hide that the motion ends (FMI 3.0.2, sections 2.2.3 and 4.2.1)."""
+    """This also holds with early return, which would hide that the motion ends (FMI 3.0.2, sections 2.2.3 and 4.2.1)."""
     falling = dict(omega=0.0)
     strict, early = opened("ParticlePolar").initialize(falling), opened("ParticlePolar", earlyReturnAllowed=True).initialize(falling)
     before = strict.get("r", "theta", "vr")
@@ -459,14 +462,14 @@ def test_log(opened):
     refused(ERROR, loud.step, -1.0)
     assert loud.messages[-1][:2] == (ERROR, "logStatusError")
     loud.fmu.reset()
-    loud.fmu.setDebugLogging(True, [])  # all of them
+    loud.fmu.setDebugLogging(True, [])  # all categories
     count = len(loud.messages)
     loud.initialize()
     assert [category for _, category, _ in loud.messages[count:]] == ["logEvents"]
 
 
 def test_terminals_are_drawn():
-    """Beside one another on the right edge, by pictures that are there; where there is no terminal there are none."""
+    """Terminals have icons side by side on the right edge, from existing pictures; without terminals there are none."""
     folder = fmi3.unpacked("ParticleCartesian") / "terminalsAndIcons"
     places = [{name: float(value) for name, value in place.items() if name[0] in "xy"} for place in etree.parse(folder / "terminalsAndIcons.xml").iter("TerminalGraphicalRepresentation")]
     assert len(places) == 3 and all(place["x1"] < 100 < place["x2"] for place in places)
@@ -477,7 +480,7 @@ def test_terminals_are_drawn():
 
 
 def test_terminals(own_systems):
-    """A flange where one input is the force along a coordinate, with the names of Modelica's connectors."""
+    """An input that is the force along a coordinate makes a flange, with the member names of Modelica's connectors."""
     members, kinds = {}, {}
     for name in ("InvertedPendulumCart", "DampedPendulum", "SimplePendulum", "ParticleCartesian", "RobotArm", "ArrayRobotArm", "Levers"):
         root = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "terminalsAndIcons.xml")

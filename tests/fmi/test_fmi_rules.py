@@ -1,4 +1,4 @@
-"""Rules of FMI 2.0 that exporters get wrong, and the log (section 2.1.5)."""
+"""Rules of FMI 2.0 that exporters often violate, and the log (section 2.1.5)."""
 
 import ctypes
 import math
@@ -21,7 +21,7 @@ CATEGORIES = ["logEvents", "logStatusWarning", "logStatusDiscard", "logStatusErr
 
 
 def test_functions_of_the_other_interface_return_an_error(open_fmu):
-    """Rule 1: all functions are there."""
+    """Both interfaces export all functions; those of the other interface return an error."""
     slave = open_fmu("SimplePendulum").initialize()
     slave.fmu.dll.fmi2EnterContinuousTimeMode.restype = ctypes.c_int
     with_model = slave.fmu.dll.fmi2EnterContinuousTimeMode(ctypes.c_void_p(slave.fmu.component))
@@ -30,7 +30,10 @@ def test_functions_of_the_other_interface_return_an_error(open_fmu):
 
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_reading_in_initialization_mode(name, open_fmu):
-    """Rule 2: outputs and InitialUnknowns can be read then. The rest can too, without a word, as libcosim reads all variables then."""
+    """
+    Outputs and InitialUnknowns are readable in initialization mode. So are all other variables, without a message, since libcosim reads
+    them.
+    """
     instance = open_fmu(name)
     with instance.fails(ERROR, "not allowed in the state 'instantiated'"):
         instance.fmu.getReal([0])
@@ -49,7 +52,7 @@ def test_reading_in_initialization_mode(name, open_fmu):
 
 
 def test_setting_by_state(open_fmu):
-    """Rule 3: what can be set when."""
+    """A variable is settable in the states that its causality and variability allow."""
     name = "DampedPendulum"
     instance = open_fmu(name)
     allowed = {"tau": "isc", "theta": "is", "omega": "is", "b": "isc", "der(omega)": "", "kineticEnergy": "", "bob.x": ""}
@@ -78,7 +81,7 @@ def test_parameters_of_model_exchange_wait_for_an_event(open_fmu):
 
 
 def test_setup_is_required(open_fmu):
-    """Rule 4."""
+    """fmi2EnterInitializationMode requires fmi2SetupExperiment."""
     instance = open_fmu("SimplePendulum")
     with instance.fails(ERROR, "fmi2SetupExperiment"):
         instance.fmu.enterInitializationMode()
@@ -112,7 +115,7 @@ def test_what_is_not_defined_is_not_looked_at(open_fmu):
 
 
 def test_steps_end_where_they_say(name, open_fmu):
-    """Rule 5: no drift, no rounding to a grid, and the caller's time counts."""
+    """Steps end at the time that the caller gives, without drift or rounding to a grid."""
     instance = open_fmu(name).initialize(start_time=0.25)
     with instance.fails(ERROR, "currentCommunicationPoint is 0; expected 0.25"):
         instance.fmu.doStep(0.0, 0.1)
@@ -124,7 +127,7 @@ def test_steps_end_where_they_say(name, open_fmu):
         time += size
         assert instance.fmu.getRealStatus(2) == time
         if i == 100:
-            time = math.nextafter(time, 10)  # a caller that rounds otherwise
+            time = math.nextafter(time, 10)  # a caller with other rounding
     with instance.fails(ERROR, "currentCommunicationPoint"):
         instance.fmu.doStep(time + 1e-5, 0.1)
 
@@ -136,9 +139,9 @@ def test_step_that_is_too_short_for_the_time(name, open_fmu):
 
 
 def test_states_are_those_of_the_end(name, open_fmu):
-    """Many uneven steps come to where one step does, and not to where the last but one ends."""
+    """Many uneven steps reach the state of one long step, not that before the last step."""
     states, sizes = fmu.states_of(name), [0.003 * (1 + i % 3) for i in range(60)]
-    start = {"BristleFriction": {"v": 1.0}, "DigitalServo": {"kp": 0.3}}.get(name, {})  # which stick at first, or have come to rest
+    start = {"BristleFriction": {"v": 1.0}, "DigitalServo": {"kp": 0.3}}.get(name, {})  # these would stick at first, or come to rest
     many, one, early = (open_fmu(name).initialize(start, tolerance=1e-8) for _ in range(3))
     for size in sizes:
         many.step(size)
@@ -162,7 +165,7 @@ def test_every_end_is_on_the_closed_form(name, open_fmu):
 
 
 def test_the_tolerance_of_the_communication_point(open_fmu):
-    """Rule 5: rounding is tolerated, a part of a step is not."""
+    """The communication point may differ by rounding, not by a fraction of a step."""
     instance = open_fmu("SimplePendulum")
     for share, message in ((0.5, "expected 0.25"), (-0.5, "expected 0.25"), (1e-5, "expected 0.25")):
         instance.reset().initialize(start_time=0.25)
@@ -176,7 +179,7 @@ def test_the_tolerance_of_the_communication_point(open_fmu):
 @pytest.mark.parametrize("size", [0.1, 0.01, 0.001])
 @pytest.mark.parametrize("count", [10, 1000, 10**5, 10**6, 10**7])
 def test_a_sum_of_steps_ends_at_the_stop_time(count, size, name, open_fmu):
-    """Rule 6: t += h, rounded at each of the steps, may miss the stop time by far more than one rounding."""
+    """Rounding in t += h accumulates, so that the last step may miss the stop time by far more than one rounding error; it is accepted."""
     start = 3.0
     times = np.add.accumulate(np.concatenate([[start], np.full(count, size)]))
     stop = start + count * size
@@ -194,7 +197,7 @@ def test_a_sum_of_steps_ends_at_the_stop_time(count, size, name, open_fmu):
 
 
 def test_the_last_step_is_as_long_as_it_says(open_fmu):
-    """The state belongs to the stop time, where the sum of the steps leads past it."""
+    """The state is that at the stop time even if the sum of the steps leads past it."""
     size, count = 0.01, 10**6
     before = float(np.add.accumulate(np.full(count - 1, size))[-1])
     stop = before + 0.9 * size
@@ -209,7 +212,7 @@ def test_the_last_step_is_as_long_as_it_says(open_fmu):
 
 
 def test_steps_past_the_end(name, open_fmu):
-    """Rule 6: an error past a stop time; without one there is none."""
+    """A step past the stop time is an error; without a stop time there is no limit."""
     instance = open_fmu(name).initialize(stop_time=0.3)
     for i in range(3):
         instance.fmu.doStep(i * 0.1, 0.1)  # 0.1 * 3 is not 0.3 in binary
@@ -220,7 +223,7 @@ def test_steps_past_the_end(name, open_fmu):
 
 
 def test_discard_tells_how_far_it_came(open_fmu):
-    """Rule 7."""
+    """fmi2GetRealStatus returns the time reached by a discarded step, and the state belongs to that time."""
     instance = open_fmu("ParticlePolar").initialize(dict(omega=0))
     instance.step(1.0)
     with instance.fails(DISCARD, "stopped at time 1.1"):
@@ -234,7 +237,7 @@ def test_discard_tells_how_far_it_came(open_fmu):
 
 
 def test_after_an_error(open_fmu):
-    """Rule 8: neither steps nor the end; reset and a saved state recover."""
+    """After an error neither steps nor fmi2Terminate are allowed; a reset or a saved state recovers."""
     instance = open_fmu("SimplePendulum").initialize()
     state = instance.fmu.getFMUstate()
     for recover in (lambda: instance.fmu.setFMUstate(state), lambda: instance.reset().initialize()):
@@ -252,7 +255,7 @@ def test_after_an_error(open_fmu):
 
 
 def test_guid_must_match(capsys):
-    """Rule 13: a failed instantiation says why, also with logging off."""
+    """A failed instantiation logs the cause, even with logging off."""
     messages = []
     callbacks = fmu.callbacks_of(lambda *words: messages.append(words[4].decode()))
     with pytest.raises(Exception, match="Failed to instantiate"):
@@ -265,7 +268,7 @@ def test_guid_must_match(capsys):
 
 
 def test_callbacks_are_copied(open_fmu):
-    """Rule 13: the structure and the strings are valid during the call alone."""
+    """The structure of callbacks and the strings are valid during the call only, so that the FMU must copy them."""
     instance = open_fmu("DampedPendulum")
     ctypes.memset(byref(instance.callbacks), 0xAB, ctypes.sizeof(instance.callbacks))
     instance.initialize()
@@ -276,13 +279,12 @@ def test_callbacks_are_copied(open_fmu):
 
 
 def test_versions(open_fmu):
-    """Rule 14."""
     instance = open_fmu("SimplePendulum")
     assert instance.fmu.getTypesPlatform() == "default" and instance.fmu.getVersion() == "2.0"
 
 
 def test_resources_may_come_in_any_form(open_fmu):
-    """Rule 22: no FMU needs its resources."""
+    """FMUs accept any resource location, since none needs resources."""
     instance = open_fmu("SimplePendulum")
     instantiate = instance.fmu.dll.fmi2Instantiate
     instantiate.restype = ctypes.c_void_p
@@ -293,12 +295,15 @@ def test_resources_may_come_in_any_form(open_fmu):
 
 
 def test_velocities_are_read_where_there_are_no_accelerations(open_fmu):
-    """Where an explicit method of an importer diverges: der(theta) is the finite omega, and the log has one line."""
+    """
+    An explicit method of an importer may reach a state without accelerations: der(theta) is then the finite omega, and the log has one
+    line.
+    """
     name, speed = "ParticleSpherical", 3.0
     instance = open_fmu(name, kind=FMU2Model).initialize()
     instance.fmu.enterContinuousTimeMode()
     states = fmu.states_of(name)
-    values = dict.fromkeys(states, 1.0) | {states[0]: 0.0, states[3]: speed}  # at the centre: no accelerations
+    values = dict.fromkeys(states, 1.0) | {states[0]: 0.0, states[3]: speed}  # at the centre, where accelerations are undefined
     instance.fmu.setContinuousStates((ctypes.c_double * 6)(*values.values()), 6)
     count = len(instance.messages)
     assert instance.get(f"der({states[0]})") == speed
@@ -320,7 +325,7 @@ def test_velocities_are_read_where_there_are_no_accelerations(open_fmu):
 
 
 def provoke(instance):
-    """Something for every category."""
+    """Provoke messages of every category."""
     instance.initialize(dict(omega=0))
     with pytest.raises(FMICallException):
         instance.step(5.0)  # discarded
@@ -329,12 +334,12 @@ def provoke(instance):
     instance.reset()
     instance.fmu.setupExperiment()
     instance.fmu.enterInitializationMode()
-    instance.fmu.setRealInputDerivatives(instance.vr("Fr"), [4], [1.0])  # a warning: it is ignored
+    instance.fmu.setRealInputDerivatives(instance.vr("Fr"), [4], [1.0])  # a warning: the FMU ignores it
     instance.reset()
 
 
 def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
-    """loggingOn is for debug messages: without it events are left out, and nothing else."""
+    """Without loggingOn only the debug messages about events are omitted."""
     everything = open_fmu("ParticlePolar")
     provoke(everything)
     instance = open_fmu("ParticlePolar", logging=False)
@@ -354,7 +359,7 @@ def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
 
 
 def test_a_simulation_that_cannot_start_tells_why():
-    """FMPy's short form leaves debug logging off and prints what the logger gets."""
+    """FMPy's short form leaves debug logging off and prints the log."""
     call = f"import fmpy; fmpy.simulate_fmu({str(fmu.archive('SimplePendulum'))!r}, start_values={{'l': 0}})"
     result = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True)
     assert result.returncode != 0 and "mass matrix is singular" in result.stdout
@@ -362,7 +367,7 @@ def test_a_simulation_that_cannot_start_tells_why():
 
 @pytest.mark.parametrize("category", CATEGORIES)
 def test_only_what_is_enabled(category, open_fmu):
-    """Rule 15: a category alone, and logAll for all of them."""
+    """Logging can be enabled for one category, and for all by logAll."""
     everything = open_fmu("ParticlePolar")
     provoke(everything)
     found = {entry[1] for entry in everything.messages}
@@ -372,7 +377,7 @@ def test_only_what_is_enabled(category, open_fmu):
     provoke(instance)
     expected = [entry for entry in everything.messages if category in (entry[1], "logAll")]
     if category in ("logEvents", "logAll"):
-        expected = expected[1:]  # that it was instantiated was before
+        expected = expected[1:]  # without the message about instantiation, which comes first
     assert instance.messages == expected
     instance.fmu.setDebugLogging(False, [category])
     before = len(instance.messages)
@@ -387,7 +392,7 @@ def test_unknown_category(open_fmu):
 
 
 def test_messages_are_formats_and_lines(open_fmu):
-    """Rule 15: no end of line, '%' and '#' doubled, the status and its category agree."""
+    """Messages end without a newline, have '%' and '#' doubled, and a category that fits the status."""
     instance = open_fmu("ParticlePolar")
     provoke(instance)
     for status, category, text in instance.messages:
@@ -402,12 +407,12 @@ def test_escapes_in_messages():
     callbacks = fmu.callbacks_of(lambda *words: messages.append(words[4].decode()))
     with pytest.raises(Exception, match="Failed to instantiate"):
         fmu.Instance("SimplePendulum", guid="100%s #r1#", callbacks=callbacks)
-    # FMPy's proxy has printed the format, so that '%%' is '%' again; '##' stays for the importer to read.
+    # FMPy's proxy prints the format, which turns '%%' into '%'; '##' remains for the importer to decode.
     assert "'100%s ##r1##'" in messages[0] or "'100%%s ##r1##'" in messages[0]
 
 
 def test_null_logger():
-    """A NULL logger is no crash, whatever goes wrong."""
+    """A NULL logger causes no crash, whatever fails."""
     callbacks = fmu.callbacks_of(None)
     instance = fmu.Instance("ParticlePolar", callbacks=callbacks)
     provoke(instance)
@@ -416,11 +421,11 @@ def test_null_logger():
         fmu.Instance("ParticlePolar", guid="{other}", callbacks=callbacks)
 
 
-# --- Memory (rule 16) ---
+# --- Memory ---
 
 
 def test_memory_of_the_caller(name):
-    """All of it comes from the caller's functions and goes back (tests/c/out_of_memory.c: when it runs out)."""
+    """All memory comes from the caller's functions and is freed (for failing allocations see tests/c/out_of_memory.c)."""
     memory = fmu.Memory()
     instance = fmu.Instance(name, callbacks=fmu.callbacks_of(None, memory.allocate, memory.release)).initialize()
     instance.step(0.1)
@@ -437,7 +442,7 @@ def test_steps_allocate_nothing(name):
 
 @pytest.mark.parametrize("kind", [FMU2Slave, FMU2Model])
 def test_names_of_instances_are_passed_on(kind):
-    """The logger gets the instance's name and the environment."""
+    """The logger receives the instance's name and the environment."""
     seen = []
     callbacks = fmu.callbacks_of(lambda environment, name, *rest: seen.append((environment, name)), environment=1234)
     instance = fmu.Instance("SimplePendulum", kind=kind, callbacks=callbacks, instance_name="pendulum 7").initialize()

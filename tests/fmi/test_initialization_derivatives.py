@@ -1,4 +1,4 @@
-"""Derivatives in initialization mode are those of the start, which is moved onto the constraints: against differences of Set and Get."""
+"""Derivatives in initialization mode include the projection of the start onto the constraints: against differences of Set and Get."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def values(instance, names):
 
 
 def difference(instance, unknowns, known):
-    """By Set and Get in initialization mode: central, of fourth order."""
+    """Central difference of fourth order, by Set and Get in initialization mode."""
     start, result = values(instance, [known])[0], 0.0
     original = instance.start_of[known]
     for at, weight in ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12)):
@@ -56,7 +56,7 @@ def difference(instance, unknowns, known):
     [("PendulumCartesian", {"x": -0.9, "y": 0.2, "vx": 0.3, "vy": 0.1, "l": 1.0}), ("FourBar", {"theta": 1.2, "phi": 0.6, "omega": 0.4})],
 )
 def test_derivatives_of_the_start(name, knowns, open_in_initialization):
-    """A projected start follows every state and parameter: d x / d x is not 1, and d y / d x not 0."""
+    """A projected start depends on every state and parameter: d x / d x is not 1, and d y / d x is not 0."""
     instance = open_in_initialization(name)
     knowns = {known: value for known, value in knowns.items() if known in {v.name for v in instance.description.modelVariables}}
     instance.start_of = knowns
@@ -69,7 +69,7 @@ def test_derivatives_of_the_start(name, knowns, open_in_initialization):
 
 
 def test_a_radial_displacement_of_the_start(open_in_initialization):
-    """The start is the nearest point of the circle: at (-a, b) its x changes with a by -b^2/r^3, its y by -a b/r^3, for l = 1."""
+    """The start is the nearest point of the circle: at (-a, b) the derivatives by a are -b^2/r^3 for x and -a b/r^3 for y, for l = 1."""
     instance = open_in_initialization("PendulumCartesian")
     x, y = -0.9, 0.2
     instance.set({"x": x, "y": y, "vx": 0.0, "vy": 0.0})

@@ -1,4 +1,6 @@
-"""What is read in initialization mode is that of the start: constraints fulfilled, modes found, events at the start behind it."""
+"""
+Values in initialization mode are those after it: constraints are satisfied, modes are determined, and events at the start have occurred.
+"""
 
 from ctypes import c_double
 
@@ -12,12 +14,12 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 import fmu
 
 KINDS = {2: (FMU2Slave, FMU2Model), 3: (FMU3Slave, FMU3Model)}
-# Balls that touch would stand in one another: no simulation starts there.
+# Displaced balls that touch would overlap, so that no simulation starts there.
 WITHOUT_START_BESIDE = {"NewtonsCradle"}
 
 
 def instances(name):
-    """Of each version and kind, in initialization mode."""
+    """Yield an instance of each version and kind, in initialization mode."""
     for version, kinds in KINDS.items():
         for kind in kinds:
             instance = (fmu if version == 2 else fmi3).Instance(name, kind=kind)
@@ -35,7 +37,7 @@ def array_of(function, count):
 
 
 def read_directional(version, instance, unknowns, knowns):
-    """Along one direction of the states and inputs; or the status without."""
+    """Derivatives along one direction of the states and inputs; or the status of the failed call."""
     seed = [np.cos(i + 1.0) for i in range(sum(size_of(v) for v in knowns))]
     try:
         if version == 3:
@@ -54,18 +56,21 @@ def states_of(instance):
 
 
 def has_constraints(name):
-    """Those of a quaternion's norm too."""
+    """True if the system has constraints, including that of a quaternion's norm."""
     text = (fmu.ROOT / "fmu" / name / "system.xml").read_text()
     return "<constraint" in text or "quaternion=" in text
 
 
 def without_derivatives(values, name):
-    """Of a start that constraints move they are those of the move too, see test_initialization_derivatives.py; behind it, the states are the knowns."""
+    """
+    Omit directional derivatives of constrained systems. In initialization mode they include the projection
+    (test_initialization_derivatives.py); afterwards the states themselves are the knowns.
+    """
     return repr([value for value in values if not (has_constraints(name) and isinstance(value, list))])
 
 
 def read_all(version, kind, instance):
-    """Every variable, and what belongs to the kind."""
+    """Values of every variable, and of the functions of the kind."""
     result = []
     for types, getter in ((("Real", "Float64"), "Float64" if version == 3 else "Real"), (("Integer", "Int32"), "Int32" if version == 3 else "Integer"),
                           (("Boolean",), "Boolean"), (("Int64",), "Int64")):  # fmt: skip
@@ -88,7 +93,7 @@ def read_all(version, kind, instance):
 
 
 def set_beside(instance, share):
-    """Each state off its start value, so that constraints do not hold."""
+    """Displace each state from its start value, so that constraints are violated."""
     values = {}
     for i, variable in enumerate(states_of(instance)):
         start = np.array([float(word) for word in str(variable.start).split()])
@@ -103,7 +108,7 @@ def warnings_of(instance):
 
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_read_before_as_behind(name):
-    """Bit by bit; and reading leaves no trace in what is set later."""
+    """Values agree bit by bit before and after the end of initialization mode, and reading does not affect later settings."""
     for version, kind, instance in instances(name):
         before = read_all(version, kind, instance)
         set_beside(instance, 2e-3)
@@ -133,7 +138,7 @@ def test_start_beside_the_constraints(name):
 
 @pytest.mark.parametrize("version", KINDS)
 def test_values_of_the_start(version):
-    """The linkage closes; the block is dragged along by the belt."""
+    """The linkage closes; the belt drags the block along."""
     for _, _, instance in (one for one in instances("StickSlip") if one[0] == version):
         instance.set(v=0.0)
         assert instance.get("der(v)") == 0.5
@@ -149,7 +154,7 @@ def test_values_of_the_start(version):
 
 
 def test_without_a_start(open_fmu):
-    """The values as they were set, and one warning; what is set later is taken."""
+    """Without a consistent start, values stay as set, with one warning; later settings are accepted."""
     instance = open_fmu("FourBar")
     instance.fmu.setupExperiment()
     instance.set(phi=0.7)

@@ -53,7 +53,7 @@ def wave(t):
 
 
 def forced(t):
-    """x'' + 4 x = sin(5 t) from x = 1 at rest: its sine part is -sin(5 t)/21."""
+    """Solution of x'' + 4 x = sin(5 t) from x = 1 at rest; its particular part is -sin(5 t)/21."""
     return np.cos(2 * t) + 5 / 42 * np.sin(2 * t) - np.sin(5 * t) / 21
 
 
@@ -70,14 +70,14 @@ def error_of(opened, h):
 
 
 def test_motion_is_of_sixth_order(opened):
-    """At h = 0.05 a force that is held errs by 8e-4; a cubic through Lobatto's nodes by less than 1e-10."""
+    """At h = 0.05 a constant force gives an error of 8e-4; a cubic through Lobatto nodes gives less than 1e-10."""
     errors = [error_of(opened, h) for h in (0.2, 0.1, 0.05)]
     assert errors[2] < 1e-10
     assert np.allclose(np.log2(np.divide(errors[:-1], errors[1:])), 6.0, atol=0.3)
 
 
 def test_outputs_that_depend_on_inputs_directly(opened):
-    """At the end of a step the input is what was set for it, without lag: F = -kx x is that of the present x."""
+    """At the end of a step the input has the value set for that time, without lag: F = -kx x for the present x."""
     controller = supplied(opened, "StateFeedback", Supplier({"x": wave}), ["x"]).initialize({"kx": 2.0, "umax": 100.0})
     before = controller.get("F")[0]
     controller.step(0.1)
@@ -94,7 +94,7 @@ def test_nodes(opened):
 
 @pytest.mark.parametrize("name, given", [("ParticleCartesian", "Fx"), ("ElasticPendulum", None), ("InvertedPendulumCart", "F")])
 def test_without_values_nothing_changes(name, given, opened):
-    """An importer that sets no input in the callback, or the same one, has the bits of one without a callback."""
+    """An importer that sets no input in the callback, or sets the same value, obtains the bits of one without a callback."""
     inputs = [v.name for v in fmi3.description(name).modelVariables if v.causality == "input"]
     supplier = Supplier({given: lambda t: 0.3} if given else {})
     asked, alone = supplied(opened, name, supplier, inputs), opened(name)
@@ -114,7 +114,7 @@ def test_no_request_without_inputs_among_the_variables(opened):
 
 
 def test_what_is_not_set_keeps_its_last_value(opened):
-    """Set at the first node alone, the input is constant; beside it another one is not."""
+    """An input set at the first node alone stays constant, while another one varies."""
     supplier = Supplier({}, lambda spring: spring.set(Fx=7.0) if len(supplier.times) == 1 else spring.set(Fy=wave(supplier.times[-1])))
     spring = supplied(opened, "ParticleCartesian", supplier, ["Fx", "Fy"]).initialize(SPRING, tolerance=1e-12)
     spring.step(0.3)
@@ -153,7 +153,7 @@ def test_inputs_that_change_beyond_all_numbers(opened):
 
 
 def test_inputs_are_set_in_requests_alone(opened):
-    """Not while values are read, where intermediateVariableSetRequested is false."""
+    """Inputs cannot be set while values are read, where intermediateVariableSetRequested is false."""
     importer = Importer()
     spring = observed(opened, "DampedPendulum", importer, ["theta"]).initialize()
     importer.instance = type("", (), {"get": lambda *names: spring.set(tau=1.0)})
@@ -163,7 +163,7 @@ def test_inputs_are_set_in_requests_alone(opened):
 
 
 def test_a_discarded_step_gives_inputs_back(opened):
-    """The state behind it is that before the call: also the inputs."""
+    """A discarded step restores the state before the call, including the inputs."""
     falling = supplied(opened, "ParticlePolar", Supplier({"Ftheta": lambda t: 1e-9 * t}), ["Ftheta"]).initialize(dict(omega=0.0))
     with pytest.raises(FMICallException) as raised:
         falling.step(2.0)
@@ -172,7 +172,7 @@ def test_a_discarded_step_gives_inputs_back(opened):
 
 
 def test_saved_states(opened):
-    """A step that is repeated asks again, and gives the same bits."""
+    """A repeated step requests inputs again and gives the same bits."""
     spring = supplied(opened, "ParticleCartesian", Supplier({"Fx": wave}), ["Fx"]).initialize(SPRING)
     run(spring, 0.1, 0.5)
     state = spring.fmu.getFMUState()
@@ -186,7 +186,7 @@ def test_saved_states(opened):
 
 
 def test_constraints_follow(own_systems, opened):
-    """What an input guides is where the importer said, with a velocity of third order."""
+    """A coordinate that an input prescribes is at the importer's value; its velocity converges with third order."""
     errors = []
     for h in (0.1, 0.05):
         hand = supplied(opened, "GuidedHand", Supplier({"u": lambda t: 0.1 + wave(t)}), ["u"])
@@ -200,7 +200,7 @@ def test_constraints_follow(own_systems, opened):
 
 @pytest.mark.parametrize("early", [True, False])
 def test_through_events(early, own_systems, opened):
-    """A block that F = 6 t pushes from rest is at t^3 until it meets the stop at 0.1, and leaves it with half of its velocity."""
+    """A block pushed from rest by F = 6 t follows t^3 until it meets the stop at 0.1, and leaves it with half of its speed."""
     block = supplied(opened, "PushedBlock", Supplier({"F": lambda t: 6 * t}), ["F"], eventModeUsed=early, earlyReturnAllowed=early)
     block.initialize()
     if early:

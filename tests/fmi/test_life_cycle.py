@@ -1,4 +1,4 @@
-"""Which call is allowed in which state: the tables of FMI 2.0.4, sections 3.2.3 and 4.2.4, typed here once more."""
+"""Allowed calls by state: the tables of FMI 2.0.4, sections 3.2.3 and 4.2.4, typed again."""
 
 import re
 from ctypes import byref, c_double, c_int, c_size_t, c_void_p
@@ -99,7 +99,7 @@ ME = {
 
 
 def arguments(instance, function):
-    """Arguments that are right wherever the call is allowed."""
+    """Valid arguments for each function, wherever the call is allowed."""
     vr = lambda name: (c_int * 1)(*instance.vr(name))
     real = lambda value=0.0: (c_double * 1)(value)
     states = lambda: (c_double * 4)(0.9, 0.2, 0.3, 0.4)
@@ -138,7 +138,7 @@ def arguments(instance, function):
 
 
 def call(instance, function, *words):
-    """The status of a call, straight to the library: FMPy binds only the functions of one interface."""
+    """Call the library directly and return the status; FMPy binds only the functions of one interface."""
     raw = instance.fmu.dll[function]
     raw.restype = c_int
     return raw(c_void_p(instance.fmu.component), *words)
@@ -171,12 +171,12 @@ def bring_to(instance, state):
 def check(instance, function, state, allowed):
     bring_to(instance, state)
     if function == "fmi2EnterInitializationMode" and state == "instantiated":
-        instance.fmu.setupExperiment()  # rule 4: required before
+        instance.fmu.setupExperiment()  # required first
     before = len(instance.messages)
     status = call(instance, function, *arguments(instance, function))
     refused = [text for _, _, text in instance.messages[before:] if "is not allowed in the state" in text]
     if allowed == "x":
-        # What is allowed works, but for statuses that the FMU does not know and a NULL state.
+        # Allowed calls succeed, except for unknown kinds of status and a NULL state.
         unknown = function in ("fmi2GetStatus", "fmi2GetIntegerStatus", "fmi2GetStringStatus")
         null = function == "fmi2SerializedFMUstateSize"
         assert not refused
@@ -207,7 +207,7 @@ def test_tables_are_complete(open_fmu):
 
 @pytest.mark.parametrize("kind", [FMU2Slave, FMU2Model])
 def test_every_function_survives_null(kind, open_fmu):
-    """A NULL instance, or NULL where an array is expected, is an error and no crash."""
+    """A NULL instance, or NULL in place of an array, is an error and causes no crash."""
     instance = open_fmu(NAME, kind=kind)
     for function in COMMON_CS:
         raw = instance.fmu.dll[function]

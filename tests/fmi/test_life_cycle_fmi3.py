@@ -1,4 +1,4 @@
-"""Which call of FMI 3.0 is allowed in which state: sections 2.3, 3.2 and 4.2 of the standard, typed here once more."""
+"""Allowed calls of FMI 3.0 by state: sections 2.3, 3.2 and 4.2 of the standard, typed again."""
 
 from ctypes import POINTER, byref, c_bool, c_double, c_int, c_int32, c_size_t, c_uint32, c_void_p
 
@@ -11,7 +11,7 @@ from fmu import ERROR
 from test_fmi3 import FUNCTIONS
 
 NAME = "ParticlePolar"
-# While the importer sets inputs at times within a step.
+# Allowed while the FMU requests inputs at times within a step.
 REQUEST = {"fmi3SetDebugLogging", "fmi3SetFloat64", "fmi3SetFloat32"}
 CS_STATES = ["instantiated", "initialization", "step", "intermediate", "terminated", "error"]
 ME_STATES = ["instantiated", "initialization", "event", "continuous", "terminated", "error"]
@@ -48,7 +48,7 @@ TABLE = {
     "fmi3GetNumberOfEventIndicators": {"CS": "-    -    -    -    -    -", "ME": "x    x    x    x    x    x"},
     "fmi3GetOutputDerivatives":       {"CS": "-    -    x    x    x    x", "ME": "-    -    -    -    -    -"},
     "fmi3DoStep":                     {"CS": "-    -    x    -    -    -", "ME": "-    -    -    -    -    -"},
-    # What the FMU does not declare: structural parameters, clocks, event mode of co-simulation, model partitions.
+    # Features that the FMU does not declare: structural parameters, clocks, event mode of co-simulation, model partitions.
     **{f"fmi3{name}": NEVER for name in (
         "EnterConfigurationMode", "ExitConfigurationMode", "EvaluateDiscreteStates", "EnterStepMode", "ActivateModelPartition",
         "GetClock", "SetClock", "GetIntervalDecimal", "GetIntervalFraction", "SetIntervalDecimal", "SetIntervalFraction",
@@ -62,7 +62,7 @@ WITHOUT_TABLE = {
 
 
 def arguments(instance, function):
-    """Arguments that are right wherever the call is allowed."""
+    """Valid arguments for each function, wherever the call is allowed."""
     vr = lambda name: (c_uint32 * 1)(*instance.vr(name))
     one, real, flag = c_size_t(1), lambda value=0.0: (c_double * 1)(value), lambda: byref(c_bool())
     states = lambda: (c_double * 4)(0.9, 0.2, 0.3, 0.4)
@@ -95,14 +95,14 @@ def arguments(instance, function):
 
 
 def call(instance, function, *words):
-    """The status of a call, straight to the library."""
+    """Call the library directly and return the status."""
     raw = instance.fmu.dll[function]
     raw.restype, raw.argtypes = c_int, None
     return raw(c_void_p(instance.fmu.component), *words)
 
 
 class Caller:
-    """Calls a function from inside a step: while inputs are asked for, or values can be read."""
+    """Callback that calls a function within a step, while the FMU requests inputs or offers values."""
 
     def __init__(self, function=None, requested=False):
         self.function, self.requested = function, requested
@@ -179,7 +179,7 @@ def test_table_is_complete():
 
 @pytest.mark.parametrize("kind", [FMU3Slave, FMU3Model])
 def test_every_function_survives_null(kind):
-    """A NULL instance, or NULL where an array is expected, is an error and no crash."""
+    """A NULL instance, or NULL in place of an array, is an error and causes no crash."""
     instance = fmi3.Instance(NAME, kind=kind)
     for function in sorted(TABLE):
         raw = instance.fmu.dll[function]

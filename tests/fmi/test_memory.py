@@ -1,4 +1,4 @@
-"""Every FMU under sanitizers and under valgrind: no leak, no undefined behaviour, no race between threads."""
+"""Every FMU under sanitizers and valgrind: no leak, no undefined behaviour, no data race."""
 
 import os
 import re
@@ -17,7 +17,7 @@ CLEAN = {"ASAN_OPTIONS": "detect_leaks=1", "UBSAN_OPTIONS": "print_stacktrace=1"
 def words_for(name, build):
     description = fmu.description(name)
     types = [variable.type for variable in description.modelVariables]
-    reals = next((i for i, kind in enumerate(types) if kind != "Real"), len(types))  # those before the first of another type
+    reals = next((i for i, kind in enumerate(types) if kind != "Real"), len(types))  # the variables before the first one of another type
     library = build / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     return [build / "bin" / "drive", library, description.guid, str(reals), str(len(fmu.states_of(name)))]
 
@@ -30,7 +30,7 @@ def run(words, **environment):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "ChainPendulum", "ElasticPendulum", "ParticleCartesian", "TwoCarts"])
 def test_threads(name):
-    """8 threads with 8 instances each, under ThreadSanitizer, for each method and the loops of a large mass matrix."""
+    """8 threads with 8 instances each run under ThreadSanitizer, for each method and the loops of a large mass matrix."""
     words = words_for(name, BUILD / "threads")
     run([BUILD / "threads" / "bin" / "threads", words[1], words[2]])
 
@@ -53,7 +53,7 @@ def words_for_refusals(name, build, library):
 
 @pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.small_names()))
 def test_every_allocation_is_refused(name):
-    """The caller's functions refuse each allocation in turn: a message, no leak, and the instance works after a reset."""
+    """Each allocation fails in turn: the FMU logs a message, leaks nothing, and works after a reset."""
     library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
     assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 5
@@ -66,7 +66,7 @@ ROW_OF_SPRINGS = """<system name="{name}">
   <potential>q[1]^2</potential>
   <solver method="{method}"/>
 </system>"""
-# How many masses and, in the code, the solver: KLU allocates during steps, too.
+# Number of masses and name of the solver in the code; KLU also allocates during steps.
 WITH_SUNDIALS = {"erk": (2, "solver_erk"), "bdf": (2, "solver_bdf"), "bdf_sparse": (40, "solver_bdf_sparse")}
 
 
@@ -107,7 +107,7 @@ BROKEN = [
 STRANGE = [
     "<system name='A'><coordinate name='q' velocity='v'/><particle mass='1' x='q^0.5^q'/>"
     "<force coordinate='q'>sum(i, 1, 30, der(q)^i)</force></system>",
-    # Symbols of branches come after lists of the symbols were made.
+    # Symbols of branches arise after the lists of symbols exist.
     "<system name='A'><coordinate name='q' velocity='v'/><particle mass='1' x='q'/><potential>abs(q - 1)</potential>"
     "<output name='y'>der(abs(q)) + der(max(q^3, v))</output></system>",
     "<system name='A'><coordinate name='q' velocity='v'/><displacement name='s'/><particle mass='1' x='q + s'/>"

@@ -31,7 +31,7 @@ def value_of(variable):
 
 
 def unknowns(name, section):
-    """(index, dependencies, dependenciesKind) of each Unknown; None where an attribute is missing."""
+    """(index, dependencies, dependenciesKind) of each Unknown; None for a missing attribute."""
     result = []
     for unknown in document(name).findall(f"ModelStructure/{section}/Unknown"):
         dependencies, kinds = unknown.get("dependencies"), unknown.get("dependenciesKind")
@@ -52,7 +52,7 @@ def test_fmpy_finds_no_problem(name):
 
 @pytest.mark.parametrize("name", ALL_NAMES)
 def test_model_structure(name):
-    """Rule 17: what Outputs, Derivatives and InitialUnknowns list, and in which order."""
+    """Outputs, Derivatives and InitialUnknowns list the variables that the standard requires, in its order."""
     listed = variables(name)
     outputs = [i for i, v in enumerate(listed, 1) if v.get("causality") == "output"]
     assert [index for index, _, _ in unknowns(name, "Outputs")] == outputs
@@ -68,7 +68,7 @@ def test_model_structure(name):
     assert [index for index, _, _ in unknowns(name, "InitialUnknowns")] == initial
     for section in ("Outputs", "Derivatives", "InitialUnknowns"):
         for index, dependencies, kinds in unknowns(name, section):
-            if dependencies is None:  # on all knowns
+            if dependencies is None:  # depends on all knowns
                 assert section == "InitialUnknowns" and fmu.is_constrained(name)
                 continue
             assert dependencies == sorted(set(dependencies))
@@ -79,13 +79,13 @@ def test_model_structure(name):
                 assert len(kinds) == len(dependencies) and set(kinds) <= allowed
 
 
-# But GantryCrane, whose random states are beyond its random stops.
+# Without GantryCrane, whose random states would lie beyond its random stops.
 @pytest.mark.parametrize("name", [name for name in [*fmu.small_names(), *fmu.further_names()] if name != "GantryCrane"])
 def test_dependencies_are_true(name, open_fmu):
     """
-    A listed dependency changes the unknown at some random point; one that is not listed never does. What an unknown
-    may depend on: states and inputs, and for InitialUnknowns parameters and start values too, but for those of states that
-    follow from parameters. In initialization mode constraints and modes are those of the start, on which all states have a part.
+    A listed dependency changes the unknown at some random point; one that is not listed never does. Knowns are states and inputs; for
+    InitialUnknowns also parameters and start values, except states that follow from parameters. In initialization mode constraints and
+    modes are those of the start, so that all states matter.
     """
     listed = variables(name)
     reals = [v.get("name") for v in listed]
@@ -132,7 +132,7 @@ def test_dependencies_are_true(name, open_fmu):
         for index, dependencies, _ in rows:
             if dependencies is None:
                 continue
-            if fmu.is_constrained(name) or name in ("RobotArm", "PidController", "HalfCar"):  # what is solved for at run time, symmetric, or at a limit, may cancel
+            if fmu.is_constrained(name) or name in ("RobotArm", "PidController", "HalfCar"):  # run-time solutions, symmetry and saturation may cancel a dependency
                 assert set(dependencies) >= changed[index], reals[index - 1]
             else:
                 assert set(dependencies) == changed[index], reals[index - 1]
@@ -166,7 +166,7 @@ def test_every_quantity_has_a_unit(name):
 
 @pytest.mark.parametrize("name", ALL_NAMES)
 def test_rules_that_checkers_miss(name):
-    """Rule 19."""
+    """Names, value references, ranges of start values, the experiment, identifiers and log categories are consistent."""
     root = document(name)
     references = [v.get("valueReference") for v in variables(name)]
     assert len(set(references)) == len(references)
@@ -191,7 +191,7 @@ def test_rules_that_checkers_miss(name):
     }
 
 
-# Causality and variability to initial, and whether a start value must be there (FMI 2.0.4, page 51).
+# Allowed `initial` by causality and variability, and whether a start value is required (FMI 2.0.4, page 51).
 INITIAL = {
     ("parameter", "tunable"): {"exact": True},
     ("calculatedParameter", "tunable"): {"calculated": False},
@@ -211,7 +211,7 @@ def test_initial_and_start(name):
         assert (value_of(variable).get("start") is not None) == allowed[variable.get("initial")], variable.get("name")
 
 
-# The names that the design fixes: coordinates, velocities, inputs, parameters, further outputs.
+# Fixed names of variables: coordinates, velocities, inputs, parameters, further outputs.
 NAMES = {
     "ParticleCartesian": ("x y z", "vx vy vz", "Fx Fy Fz", "m kx ky kz g", ""),
     "ParticlePolar": ("r theta", "vr omega", "Fr Ftheta", "m mu", ""),
@@ -258,7 +258,7 @@ def test_names_of_the_design(name):
 
 
 def test_the_archive(name):
-    """Rule 21: deflated or stored members with forward slashes, none of them a link."""
+    """Members are deflated or stored, with forward slashes, and none is a link."""
     with zipfile.ZipFile(fmu.archive(name)) as archive:
         members = {info.filename: info for info in archive.infolist() if not info.is_dir()}
     assert {member for member in members if not member.startswith("sources/")} == {
@@ -271,7 +271,7 @@ def test_the_archive(name):
 
 
 def test_the_documentation_page(name):
-    """The page shows energies, equations, and every variable with its unit; of very many, it says how many are left out."""
+    """The page shows energies, equations, and every variable with its unit; for very many variables it states how many it omits."""
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
     etree.HTML(page)
     hidden = sum(f">{variable.get('name')}<" not in page for variable in variables(name))
@@ -284,7 +284,10 @@ def test_the_documentation_page(name):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_types(version):
-    """Each declared type has the unit of its variables, one unit has one type, and all that stand there are used; torque and energy are told apart."""
+    """
+    Each declared type has the unit of its variables, each unit has one type, and all types are used. Torque and energy have different
+    types.
+    """
     types = {}
     for name in fmu.all_names():
         description = fmu.description(name) if version == 2 else fmpy.read_model_description(fmu.ROOT / "build" / "fmi3" / f"{name}.fmu")

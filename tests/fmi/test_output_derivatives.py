@@ -1,4 +1,4 @@
-"""Derivatives of outputs of high order, against 50-digit series and closed forms."""
+"""High-order derivatives of outputs, against 50-digit series and closed forms."""
 
 import mpmath
 import numpy as np
@@ -63,7 +63,7 @@ def test_expression_of_accelerations(open_fmu):
 
 
 def test_at_the_end_of_a_step(open_fmu):
-    """They belong to the present time, not to the origin of the solver's series."""
+    """Derivatives are those at the present time, not at the expansion point of the solver's series."""
     instance = open_fmu("SimplePendulum").initialize(dict(g=1, l=1, theta=2.0), 1e-14)
     instance.run(1.5, 0.25)
     k = mpmath.sin(1)
@@ -84,7 +84,7 @@ def test_inputs_are_followed_to_the_end_of_the_step(open_fmu):
 
 
 def test_a_value_ends_the_polynomial_of_its_input(open_fmu):
-    """F1 = k (x2 - x1): after x1 was set, only x2 still moves."""
+    """F1 = k (x2 - x1): after x1 is set, only x2 still moves."""
     instance = open_fmu("SpringDamper").initialize(dict(k=7, c=0, l0=0))
     instance.fmu.setRealInputDerivatives(instance.vr("x1", "x2"), [1, 1], [0.2, 0.5])
     instance.step(0.1)

@@ -1,4 +1,4 @@
-"""The drawing of a system that its FMU carries: model.png, icon.svg, and the same on the documentation page."""
+"""The drawing of a system in its FMU: model.png, icon.svg, and the same on the documentation page."""
 
 import math
 import re
@@ -10,11 +10,11 @@ import pytest
 from lxml import etree
 from matplotlib.image import imread
 
-SIDE = 160  # of the drawing, in its own pixels; the PNG has 128
+SIDE = 160  # of the drawing, in SVG units; the PNG has 128 pixels
 
 
 def shapes(name, element, look):
-    """The points of all circles, lines or polygons of a look, as rows of right and down."""
+    """Points of all circles, lines or polygons of a class, as rows of x and y in the drawing."""
     svg = etree.parse(fmi3.unpacked(name) / "terminalsAndIcons" / "icon.svg").getroot()
     found = [shape for shape in svg if etree.QName(shape).localname == element and shape.get("class") == look]
     text = lambda shape: f"{shape.get('cx')},{shape.get('cy')}" if element == "circle" else shape.get("points")
@@ -27,7 +27,7 @@ def test_all_of_it_is_seen_and_the_page_shows_the_same(name):
     assert 60 < np.count_nonzero(image.min(axis=2) < 0.9) < 128**2 / 1.5
     frame = np.ones((128, 128), bool)
     frame[2:-2, 2:-2] = False
-    assert np.all(image[frame] == 1)  # nothing is cut
+    assert np.all(image[frame] == 1)  # nothing is cut off
     svg = (fmi3.unpacked(name) / "terminalsAndIcons" / "icon.svg").read_text()
     page = (fmu.unpacked(name) / "documentation" / "index.html").read_text()
     drawn = lambda text: re.findall(r'(?:points|cx|cy|r)="[^"]*"', text)
@@ -36,7 +36,7 @@ def test_all_of_it_is_seen_and_the_page_shows_the_same(name):
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "BouncingBall", "ElasticPendulum"])
 def test_the_png_is_the_svg(name):
-    """A particle is where the SVG has it, and as large: the disk's pixels are as many as its area."""
+    """Each particle has the position and the area of that in the SVG."""
     image = imread(fmu.unpacked(name) / "model.png")[..., :3]
     particles = shapes(name, "circle", "particle")
     blue = np.array([26, 95, 180]) / 255
@@ -47,7 +47,7 @@ def test_the_png_is_the_svg(name):
 
 
 def test_the_loop_is_closed_at_the_start():
-    """The bars' ends meet, 0.9 m from each other at the pivots, where the start values alone would leave them apart."""
+    """The bars' ends meet, with pivots 0.9 m apart; the start values alone would leave them apart."""
     crank, coupler, rocker = shapes("FourBar", "polyline", "body")
     metre = np.linalg.norm(coupler[1] - coupler[0]) / 0.8
     assert crank[1] == pytest.approx(coupler[0], abs=0.15)
@@ -62,7 +62,7 @@ def test_the_pendulum_hangs_at_the_angle_of_its_start():
 
 
 def test_points_that_move_apart_are_not_linked():
-    """A ball and the ground, a cart and its rail; but the cart and its pendulum are linked."""
+    """A ball and the ground, or a cart and its rail, are not linked; the cart and its pendulum are."""
     assert not shapes("BouncingBall", "polyline", "link")
     assert len(shapes("InvertedPendulumCart", "polyline", "link")) == 1
 
@@ -74,7 +74,7 @@ def test_a_rod_that_a_constraint_holds():
 
 
 def test_floor_and_stop():
-    """The floor is a level line under the ball, through the origin, and the stop a piece of the pendulum's circle's radius."""
+    """The floor is a horizontal line under the ball through the origin; the stop is at the pendulum's radius, perpendicular to it."""
     [[origin]], floor = shapes("BouncingBall", "circle", "hole"), shapes("BouncingBall", "polyline", "ground")[-1]
     assert floor[:, 1] == pytest.approx([origin[1]] * 2, abs=0.06) and floor[0, 0] < origin[0] < floor[1, 0]
     [[pivot]], stop = shapes("HardStopPendulum", "circle", "hole"), shapes("HardStopPendulum", "polyline", "ground")[-1]
@@ -86,7 +86,7 @@ def test_floor_and_stop():
 
 
 def test_a_disk_is_an_ellipse():
-    """Seen under the angle whose cosine is n.e: the axes of the ellipse are R and R |n.e|, so that its area is pi R^2 |n.e|."""
+    """A disk with normal n seen along e is an ellipse with half-axes R and R |n.e|, and area pi R^2 |n.e|."""
     [disk] = shapes("RollingDisk", "polygon", "solid")
     x, y = disk.T
     area = 0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))

@@ -1,6 +1,6 @@
 """
-Random calls, right ones (random_calls.py) and attacks (c/attack.c), on FMUs built with AddressSanitizer and UBSan. The
-environment variables RANDOM_CALLS and RANDOM_SEED ask for more of them, and for others.
+Random calls, valid ones (random_calls.py) and attacks (c/attack.c), on FMUs built with AddressSanitizer and UBSan. The environment
+variables RANDOM_CALLS and RANDOM_SEED set their number and seed.
 """
 
 import os
@@ -25,12 +25,12 @@ def test_random_calls_under_sanitizers():
         "PYTHONPATH": str(ROOT / "tests" / "support"),
         "FMU_BUILD": str(BUILD / "sanitized"),
         "LD_PRELOAD": library,
-        # Python itself leaves memory at its end; a leak counts where an FMU is on the stack of its allocation.
+        # Python itself leaks memory at its end; a leak counts if an FMU is on the stack of its allocation.
         "ASAN_OPTIONS": "detect_leaks=1:malloc_context_size=12:fast_unwind_on_malloc=1",
         "LSAN_OPTIONS": "exitcode=0:max_leaks=0",
         "UBSAN_OPTIONS": "print_stacktrace=1",
     }
-    calls = CALLS // 2  # each takes a hundred times as long as an attack's
+    calls = CALLS // 2  # each takes a hundred times as long as an attack
     words = [sys.executable, ROOT / "tests" / "fmi" / "random_calls.py", str(calls), SEED]
     result = subprocess.run(words, capture_output=True, text=True, env=environment, timeout=1200 + CALLS // 20)
     text = result.stdout + result.stderr
@@ -43,7 +43,7 @@ def test_random_calls_under_sanitizers():
 
 @pytest.mark.parametrize("name", fmu.small_names())
 def test_attack_under_sanitizers(name):
-    """NULL, unknown references, extreme numbers, wrong states, refused memory, damaged and forged saved states."""
+    """NULL, unknown references, extreme numbers, wrong states, failing allocations, damaged and forged saved states cause no fault."""
     build, description = BUILD / "sanitized", fmu.description(name)
     library = build / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     counts = [len(description.modelVariables), len(fmu.states_of(name)), CALLS, SEED]

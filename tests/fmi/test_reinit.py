@@ -1,4 +1,6 @@
-"""reinit of states (FMI 2.0.4, section 2.2.7, and FMI 3.0.2, section 2.4.7): what jumps has it, and what has none may be set in event mode."""
+"""
+The attribute reinit (FMI 2.0.4, section 2.2.7; FMI 3.0.2, section 2.4.7): states that jump have it; the others can be set in event mode.
+"""
 
 from ctypes import POINTER, c_double
 
@@ -13,7 +15,7 @@ from lxml import etree
 import fmi3
 import fmu
 
-# x switches the force on v at 1; y is set by an event, and w bounces; nothing changes the state of z.
+# x switches the force on v at 1; an event sets y's velocity, and w bounces; nothing changes the state of z discontinuously.
 PUSHED = """<system name="Pushed">
   <coordinate name="x" velocity="v"/><coordinate name="y" velocity="u"/><coordinate name="z" velocity="r"/>
   <coordinate name="h" velocity="w" start="1"/>
@@ -37,7 +39,7 @@ def reinitialized(module, name):
 
 
 def jumps_of(name, monkeypatch):
-    """The states that FMPy sees change in event mode."""
+    """States that change in event mode, as seen by FMPy."""
     states, jumped, before = np.array(fmu.states_of(name)), set(), []
 
     def state_of(model):
@@ -63,7 +65,7 @@ def jumps_of(name, monkeypatch):
     return jumped
 
 
-PIECES = ["BristleFriction", "DigitalServo", "HalfCar", "PidController", "SpinningBeam"]  # what switches changes no state
+PIECES = ["BristleFriction", "DigitalServo", "HalfCar", "PidController", "SpinningBeam"]  # their switches change no state
 
 
 @pytest.mark.parametrize("name", [name for name in fmu.moving_names() if name != "Rope"])
@@ -80,7 +82,7 @@ def test_what_nothing_changes_has_none(pushed):
 
 
 def test_a_state_that_is_set_in_event_mode(pushed, opened):
-    """What switches goes by its value, and what it was before is forgotten."""
+    """Modes follow from the value set; nothing depends on the value before."""
     instance = opened(pushed, kind=FMU3Model).initialize()
     assert instance.get("der(v)")[0] == 2
     instance.set(x=2.0, r=0.5)
@@ -94,7 +96,7 @@ def test_a_state_that_is_set_in_event_mode(pushed, opened):
 
 @pytest.mark.parametrize("kind, state", [(FMU3Model, "u"), (FMU3Model, "h"), (FMU3Slave, "x")])
 def test_states_that_cannot_be_set_in_event_mode(kind, state, pushed, opened):
-    """Those that the FMU sets itself, and in co-simulation all."""
+    """States that the FMU itself sets cannot be set, nor any state in co-simulation."""
     instance = opened(pushed, kind=kind, **({"eventModeUsed": True} if kind is FMU3Slave else {})).initialize()
     with pytest.raises(FMICallException):
         instance.set({state: 0.5})

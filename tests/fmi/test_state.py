@@ -1,4 +1,4 @@
-"""Saving and restoring: repeated steps give the same bits, also in another process, and bad bytes are refused."""
+"""Saved states: repeated steps give the same bits, also in another process, and damaged bytes are an error."""
 
 import json
 import random
@@ -15,12 +15,12 @@ import fmu
 from closed_forms import pendulum_angle
 from fmu import ERROR, ROOT
 
-# Those of tests/systems have the method erk.
+# The systems of tests/systems have the method erk.
 ONE_STEP = [name for name in [*fmu.all_names(), "BeadOnHoop", "TwoCarts"] if name != "Rope"]
 
 
 def change(instance, name, i):
-    """What an importer changes before step i: an input, its derivative, a parameter."""
+    """Change what an importer may change before step i: an input, its derivative, a parameter."""
     inputs, parameter = fmu.names_of(name, "input"), fmu.names_of(name, "parameter")[0]
     if inputs and i % 3 == 0:
         instance.set({inputs[0]: np.sin(i) / 10})
@@ -31,9 +31,9 @@ def change(instance, name, i):
 
 
 def drive(instance, name, steps):
-    """Uneven steps with changes; returns what can be read at each."""
+    """Take uneven steps with changes; return all variables at each."""
     rows = []
-    # Statistics count what was done, also in the past that was left.
+    # Statistics are omitted, since they also count steps that were undone.
     names = [v.name for v in instance.description.modelVariables if v.type == "Real"]
     for i in range(steps):
         change(instance, name, i)
@@ -88,7 +88,7 @@ print(json.dumps([go_on(*saved) for saved in json.loads(sys.stdin.read())]))
 
 
 def test_going_on_in_another_process(open_fmu):
-    """Parameters, inputs and their derivatives, tolerance and step size travel with the bytes."""
+    """The bytes contain parameters, inputs and their derivatives, tolerance and step size."""
     saved, here = [], []
     for name in ("SimplePendulum", "ParticleCartesian", "InvertedPendulumCart", "StateFeedback", "TwoCarts"):
         instance = open_fmu(name)
@@ -104,7 +104,7 @@ def test_going_on_in_another_process(open_fmu):
 
 
 def test_state_has_everything(open_fmu):
-    """Rule 10: parameters, inputs and the status go back too, also out of an error, and the motion goes on as if never left."""
+    """A restored state includes parameters, inputs and the status, even after an error, and continues with the same bits."""
     values = dict(b=0.3, tau=0.1)
     stayed, instance = (open_fmu("DampedPendulum").initialize(values) for _ in range(2))
     stayed.step(0.1)
@@ -127,7 +127,7 @@ def test_state_has_everything(open_fmu):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear"])
 def test_restored_parameters_count(name, open_fmu):
-    """What was computed of the parameters goes back too, before a step and in it: der(omega) and the closed forms."""
+    """Values computed from parameters are restored too, before a step and within one: der(omega) and the closed forms."""
     instance = open_fmu(name).initialize(dict(theta=0.5, omega=0.0, l=2.0), tolerance=1e-10)
     state = instance.fmu.getFMUstate()
     linear = name.endswith("Linear")
@@ -147,7 +147,7 @@ def test_restored_parameters_count(name, open_fmu):
 
 @pytest.mark.parametrize("name", [*fmu.moving_names(), "FurutaPendulum"])
 def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
-    """What was prepared for the old value is not used: a new instance with the same values moves alike."""
+    """Constants computed for the old parameter are updated: the motion is that of a new instance with the same values."""
     if fmu.is_constrained(name):
         pytest.skip("lengths that are tuned move the state: tests/mechanics/test_constraints.py")
     if name in ("DigitalServo", "HalfCar"):
@@ -167,7 +167,7 @@ def test_a_parameter_counts_from_the_next_step_on(name, open_fmu):
 
 
 def test_a_state_is_used_again(open_fmu):
-    """Rule 10: fmi2GetFMUstate reuses a state that is not NULL; fmi2FreeFMUstate sets the pointer to NULL."""
+    """fmi2GetFMUstate reuses a state that is not NULL; fmi2FreeFMUstate sets the pointer to NULL."""
     instance = open_fmu("SimplePendulum").initialize()
     component = c_void_p(instance.fmu.component)
     state = c_void_p()
@@ -215,23 +215,23 @@ def test_truncated_and_foreign_bytes_are_refused(open_fmu):
     with instance.fails(ERROR, "another model"):
         instance.fmu.deSerializeFMUstate(other)
     instance.reset()
-    # A state that was saved for model exchange means other modes.
+    # A state saved for model exchange is for other modes.
     exchange = serialized(open_fmu("SimplePendulum", kind=FMU2Model).initialize())
     with instance.fails(ERROR, "other kind"):
         instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(exchange))
 
 
-# --- States written by hand, with the right checksum ---
+# --- Forged states with the right checksum ---
 
-HEADER = 64  # bytes; the last eight are the checksum of the situation, which follows
-# The situation: eight integers, the statistics, the steps of an integrator, the statistics as they were reported, eight numbers, and then values.
+HEADER = 64  # bytes; the last eight are the checksum of the snapshot, which follows
+# The snapshot: eight integers, the statistics, the steps of an integrator, the statistics as reported, eight numbers, and then values.
 MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 120
 NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched"]
 VALUES = TIME + 8 * len(NUMBERS)
 
 
 def forged(data, form, place, value):
-    """The bytes with another value at the place, and the checksum that fits: FNV-1a."""
+    """Return the bytes with another value at an offset, and the matching checksum, FNV-1a."""
     data = bytearray(data)
     struct.pack_into(form, data, place, value)
     checksum = 0xCBF29CE484222325
@@ -242,7 +242,7 @@ def forged(data, form, place, value):
 
 
 def place_of_saved(name):
-    """Where the solver's own part begins."""
+    """Offset of the solver's own part."""
     count = {cause: len(fmu.names_of(name, cause)) for cause in ("input", "parameter")}
     return VALUES + 8 * (len(fmu.states_of(name)) + 4 * count["input"] + count["parameter"])
 
@@ -274,7 +274,7 @@ def refuses(instance, data, *forgery):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop", "StateFeedback"])
 def test_forged_states_are_refused(name, open_fmu):
-    """Whatever the solver, and all values that a state holds."""
+    """Forged values are errors for every solver and every value of a state."""
     instance = open_fmu(name).initialize()
     instance.step(0.1)
     data = serialized(instance)
@@ -292,7 +292,7 @@ def test_forged_modes_of_the_other_kind_are_refused(open_fmu):
 
 
 def test_forged_series_are_refused(open_fmu):
-    """The order counts coefficients, and would be an index outside of the series."""
+    """The order counts coefficients; a forged one would index outside the series."""
     name = "SimplePendulum"
     instance = open_fmu(name).initialize()
     instance.step(0.1)
@@ -301,7 +301,7 @@ def test_forged_series_are_refused(open_fmu):
     assert 0 < reach < 10 and 4 <= order <= 22
     orders = [-(2**63), -1, 0, 1, 3, 23, 24, 10**6, 2**63 - 1]
     reaches = [np.nan, np.inf, -reach, 2 * reach]
-    numbers = range(saved + 16, len(data), 8)  # what rounding left, and the coefficients
+    numbers = range(saved + 16, len(data), 8)  # rounding errors carried along, and the coefficients
     assert len(numbers) == 2 + 2 * 24
     forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in reaches]
     for forgery in forgeries + [("=d", place, np.nan) for place in numbers]:
@@ -309,7 +309,7 @@ def test_forged_series_are_refused(open_fmu):
 
 
 def test_forged_choices_are_refused(open_fmu):
-    """What the solver that chooses between methods counts, at the end of the state: nine integers and eight numbers."""
+    """The counters of the solver `auto`, at the end of the state: nine integers and eight numbers."""
     instance = open_fmu("ElasticPendulum").initialize()
     instance.step(0.1)
     data = serialized(instance)
@@ -326,14 +326,14 @@ def test_forged_choices_are_refused(open_fmu):
         for value in (np.nan, np.inf, -1.0):
             refuses(instance, data, "=d", place, value)
     for place in (work, trial_work):
-        refuses(instance, data, "=d", place, 1e300)  # as operations, whole numbers could not hold them
+        refuses(instance, data, "=d", place, 1e300)  # counts of operations beyond the range of integers
     large = forged(data, "=q", windows, 2**62 - 1)
     instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(large))
     instance.step(10.0)
 
 
 def test_forged_modes_are_refused(open_fmu):
-    """A sign, or whether a contact is closed, which is read as an integer."""
+    """A mode must be a sign, or 0 or 1 for a contact."""
     for name in ("StickSlip", "BouncingBall"):
         instance = open_fmu(name).initialize()
         instance.step(0.1)
@@ -346,7 +346,7 @@ def test_forged_modes_are_refused(open_fmu):
 
 
 def test_forged_rounding_is_refused(open_fmu):
-    """What the matrix exponential carries along of the state."""
+    """The rounding errors of the state that the exact method carries along must be finite."""
     name = "SimplePendulumLinear"
     instance = open_fmu(name).initialize()
     instance.step(0.1)
@@ -358,7 +358,7 @@ def test_forged_rounding_is_refused(open_fmu):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop"])
 def test_statistics_do_not_overflow(name, open_fmu):
-    """Integers end at 2^31 - 1, which an instance of long standing passes."""
+    """Statistics saturate at 2^31 - 1, which a long-lived instance reaches."""
     instance = open_fmu(name).initialize()
     instance.step(0.1)
     data = serialized(instance)
@@ -387,7 +387,7 @@ def test_serialize_with_a_wrong_size(open_fmu):
 
 
 def test_serialized_form_says_what_it_is(open_fmu):
-    """A magic word, a version, and the GUID of the model."""
+    """The header has a magic word, a version, and the GUID of the model."""
     instance = open_fmu("SimplePendulum").initialize()
     data = serialized(instance)
     assert data[:8] == b"lagrange"
@@ -397,7 +397,7 @@ def test_serialized_form_says_what_it_is(open_fmu):
 
 @pytest.mark.parametrize("name", fmu.all_names())
 def test_reset_is_a_new_instance(name, open_fmu):
-    """Rule 9: the same bits after a reset, thousands of times."""
+    """A reset gives the same bits as a new instance, even after hundreds of resets."""
     fresh = drive(open_fmu(name).initialize(tolerance=1e-6), name, 5)
     instance = open_fmu(name)
     parameter = fmu.names_of(name, "parameter")[0]

@@ -1,4 +1,7 @@
-"""Switches that time alone turns are time events (FMI 2.0.4, sections 3.1 and 3.2.2; FMI 3.0.2, section 2.3.5): importers with fixed steps miss no pulse."""
+"""
+Switches that depend on time alone are time events (FMI 2.0.4, sections 3.1 and 3.2.2; FMI 3.0.2, section 2.3.5), so that importers with
+fixed steps miss no pulse.
+"""
 
 from ctypes import c_double
 
@@ -10,7 +13,7 @@ from fmpy.fmi3 import FMU3Model
 import fmi3
 import fmu
 
-# A pulse of 1 ms, a velocity that is doubled, a ramp, and a knot of a table; all at known times.
+# A pulse of 1 ms, a velocity that is doubled, a ramp, and a knot of a table, all at known times.
 PULSE = """
 <system name="Pulse">
   <parameter name="t0" start="0.1234" unit="s"/>
@@ -27,7 +30,7 @@ PULSE = """
   </event>
 </system>
 """
-# What is not affine in time, or rests on an input, stays an event indicator alone.
+# Conditions that are not affine in time, or depend on an input, remain event indicators.
 UNKNOWN = """
 <system name="UnknownTimes">
   <input name="u"/>
@@ -63,7 +66,7 @@ def opened_for_exchange(version, name, values=(), **words):
 
 
 def update(model, version):
-    """From event mode to continuous-time mode: the time of the next event; None for none."""
+    """Update discrete states and enter continuous-time mode; return the time of the next event, or None."""
     if version == 2:
         needs, terminates, _, _, defined, time = model.newDiscreteStates()
     else:
@@ -80,7 +83,7 @@ def get_array(function, size):
 
 
 def integrate(instance, version, end, sees_indicators=True):
-    """Fixed steps, cut at the next known event alone; exact between events where the acceleration is constant. The times of the events."""
+    """Integrate by fixed steps, shortened at the next known event, exact for constant accelerations; return the times of the events."""
     model, events, time, k = instance.fmu, [], 0.0, 0
     following = update(model, version)
     while time < end:
@@ -119,7 +122,7 @@ def test_a_short_pulse_is_not_missed(version, t0, width):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_the_knots_of_a_table(version):
-    """Behind the start there is no event at 0, and none after the last knot."""
+    """There is no event at 0 after initialization, and none after the last knot."""
     instance = opened_for_exchange(version, "Knots")
     assert integrate(instance, version, 1.0) == pytest.approx([0.3, 0.5, 0.7], rel=1e-15)
 
@@ -145,7 +148,7 @@ def test_parameters_move_the_next_event(version):
 
 @pytest.mark.parametrize("early", [True, False])
 def test_event_mode_of_steps(early):
-    """FMI 3.0: an importer that steps to the next event exactly, and enters event mode there, is behind it."""
+    """An importer of FMI 3.0 that steps exactly to the next event and enters event mode there continues after it."""
     instance = fmi3.Instance("Pulse", eventModeUsed=True, earlyReturnAllowed=early).initialize()
     times = []
     while len(times) < 4:

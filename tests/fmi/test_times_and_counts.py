@@ -1,4 +1,4 @@
-"""Times in event mode, modes that end with events pending, and counts that are discrete (FMI 2.0.4, section 3.2; FMI 3.0.2, section 2.4.7)."""
+"""Times in event mode, modes that end with events pending, and discrete counters (FMI 2.0.4, section 3.2; FMI 3.0.2, section 2.4.7)."""
 
 from ctypes import c_double
 
@@ -27,14 +27,14 @@ def built():
 
 
 def test_time_is_set_in_continuous_time_mode(open_fmu):
-    """In event mode only FMUs without continuous time may be given one (FMI 2.0.4, section 3.2.3)."""
+    """In event mode only FMUs without continuous-time mode accept a time (FMI 2.0.4, section 3.2.3)."""
     ball = open_fmu("BouncingBall", kind=FMU2Model).initialize()
     with ball.fails(ERROR, "fmi2SetTime is not allowed in the state 'event mode'"):
         ball.fmu.setTime(0.1)
 
 
 def test_events_that_are_pending_as_continuous_time_begins(open_fmu):
-    """Of a parameter that was set behind the last update, also in the first event mode, and of a time that has come."""
+    """Pending events are errors: from a parameter set after the last update, also in the first event mode, and from a time that is due."""
     timer = fmu.Instance("Timer", kind=FMU2Model).initialize()
     timer.set(t0=-1.0)
     with timer.fails(ERROR, "an event is due; expected an update of the discrete states before it"):
@@ -88,7 +88,10 @@ def test_counts_without_event_mode_are_those_of_now():
 
 
 def test_what_may_not_be_discarded(open_fmu):
-    """FMI 2.0.4, section 2.1.3: of model exchange GetReal and GetDerivatives may be, directional derivatives never; an error ends the simulation."""
+    """
+    fmi2GetReal and fmi2GetDerivatives may return Discard in model exchange, directional derivatives never (FMI 2.0.4, section 2.1.3); an
+    error ends the simulation.
+    """
     particle = open_fmu("ParticleSpherical", kind=FMU2Model).initialize()
     particle.fmu.enterContinuousTimeMode()
     particle.fmu.setContinuousStates((c_double * 6)(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 6)

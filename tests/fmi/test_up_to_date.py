@@ -1,6 +1,6 @@
 """
-What follows from parameters, inputs, time and state is computed anew where these were changed, and what is refused is
-refused by its own check: against closed forms of an oscillator, m x'' = -k x + u + c time, by every solver.
+Values that depend on parameters, inputs, time and state are recomputed after a change, by every solver: against closed forms of an
+oscillator, m x'' = -k x + u + c time. Each error comes from its own check.
 """
 
 import math
@@ -58,7 +58,7 @@ def motion(x, v, t, duration, m, k, u, c):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_parameters_between_steps(name, open_fmu):
-    """A matrix, a series or a history of the parameters before would go on with these."""
+    """No matrix, series or history of the old parameters is used."""
     instance = open_fmu(name).initialize(tolerance=1e-10)
     x, v, c = 1.0, 0.0, drift_of(name)
     for i, (m, k, u) in enumerate([(2, 3, 0), (2, 5, 0), (1, 5, 0), (1, 5, 0.4), (2, 3, 0.4)]):
@@ -85,7 +85,7 @@ def test_a_restored_state_brings_its_parameters(name, open_fmu):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_parameters_before_each_call_that_needs_them(name, open_fmu):
-    """Each is the first call after the parameter was set."""
+    """Each call is the first one after a change of the parameter."""
     instance = open_fmu(name).initialize()
     instance.set(m=4.0)
     assert instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr("x"), [1.0]) == pytest.approx([-0.75])
@@ -117,7 +117,10 @@ def derivatives_of_output(name, x, v, t, u, orders):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_derivatives_of_an_output_in_time(name, open_fmu):
-    """Of an output that depends on time, an input and an acceleration; each order by itself, so that none is a highest."""
+    """
+    Derivatives of an output that depends on time, an input and an acceleration; each order is requested alone, so that each is once the
+    highest.
+    """
     instance = open_fmu(name).initialize(tolerance=1e-10, start_time=0.5)
     slope, curvature, third, h = 0.3, -0.2, 0.9, 0.25
     instance.fmu.setRealInputDerivatives(instance.vr("u") * 3, [1, 2, 3], [slope, curvature, third])
@@ -134,7 +137,7 @@ def test_derivatives_of_an_output_in_time(name, open_fmu):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_derivatives_of_inputs_after_steps_without(name, open_fmu):
-    """A series that was made for a constant input would go on: x''= u with u = s t is s t^3/6."""
+    """No series for the earlier constant input is used: x'' = u with u = s t gives s t^3/6."""
     instance = open_fmu(name).initialize(dict(k=0.0, x=0.0, m=1.0) | ({"c": 0.0} if drift_of(name) else {}), 1e-10)
     instance.fmu.doStep(0.0, 0.5)
     instance.fmu.setRealInputDerivatives(instance.vr("u"), [1], [6.0])
@@ -142,7 +145,7 @@ def test_derivatives_of_inputs_after_steps_without(name, open_fmu):
     assert instance.get("x", "v", "u") == pytest.approx([0.5**3, 3 * 0.5**2, 3.0], abs=1e-8)
 
 
-# --- Checks, each by itself ---
+# --- Checks, one by one ---
 
 
 def test_a_value_above_its_maximum(open_fmu):
@@ -169,7 +172,7 @@ def test_numbers_that_are_not_finite(value, open_fmu):
 
 
 def test_results_that_are_not_finite(open_fmu):
-    """Finite states of 1e300, of which the energy, the acceleration, or a derivative is none."""
+    """At finite states of 1e300 the energy, the acceleration, or a derivative overflows, which is an error."""
     exchange = open_fmu("OscillatorByTaylor", kind=FMU2Model).initialize(dict(k=3.0))
     exchange.fmu.enterContinuousTimeMode()
     exchange.fmu.setContinuousStates((c_double * 2)(1e200, 1e200), 2)
@@ -238,7 +241,7 @@ def test_states_of_another_version(open_fmu):
 
 
 def test_a_discarded_step_tells_where_the_state_is(open_fmu):
-    """A fall from 1 into the centre takes pi/sqrt(8); the state reached belongs to the time that is told."""
+    """A fall from 1 into the centre takes pi/sqrt(8); the state of the discarded step belongs to the reported time."""
     instance = open_fmu("FallByErk").initialize()
     with instance.fails(DISCARD, "stopped at time"):
         instance.fmu.doStep(0.0, 2.0)
