@@ -1,7 +1,9 @@
 """
-Run time of the Taylor solver at equal error, beside the best of SUNDIALS through the same FMU interface, a Taylor loop
-written by hand, and heyoka at its default tolerance; then chains of 1 to 32 rods. Times are the minimum of several
-repeats of the doStep loop alone, in microseconds; errors are those at the end against 20 digits.
+Compare the run time of the Taylor solver at equal error.
+
+The others are the best method of SUNDIALS behind the same FMI functions, a Taylor loop written by hand, and heyoka at its default tolerance;
+then follow chains of 1 to 32 rods. Times are the minimum of several repeats of the doStep loop, in microseconds. Errors are those at the end,
+against a reference of 20 digits.
 """
 
 import math
@@ -15,14 +17,14 @@ from numerics.driver import step, step_repeatedly
 from numerics.work_precision.peers import heyoka_series
 from numerics.work_precision.scenarios import SCENARIOS, error_at_end, states_of
 
-ERROR = 1e-10
+ERROR = 1e-10  # error at the end that runs of the comparison may have at most
 NAMES = ["SimplePendulum", "InvertedPendulumCart", "ParticlePolar", "DoublePendulum"]
 TOLERANCES = [10.0**-k for k in range(5, 17)]
 RODS = [1, 2, 4, 8, 16, 32]
 
 
 def best_time(solvers, name, steps, error):
-    """The shortest time of all runs with at most this error, over solvers and tolerances."""
+    """Return the shortest time in microseconds of all runs with at most this error, over solvers and tolerances; NaN without any."""
     starts, end = SCENARIOS[name]
     times = []
     for solver in solvers:
@@ -57,7 +59,7 @@ def compare_with_loop():
 
 
 def build_chains():
-    """ChainPendulum under the names Chain1 to Chain32, with taylor and with erk."""
+    """Build ChainPendulum under the names Chain1 to Chain32, with taylor and with erk."""
     text = (ROOT / "fmu" / "ChainPendulum" / "system.xml").read_text()
     systems = ROOT / "build" / "chains" / "systems"
     for rods in RODS:
@@ -70,7 +72,7 @@ def build_chains():
 
 
 def chain_cost(solver, rods, end=1.0, tolerance=1e-10):
-    """(microseconds of a simulation, steps of the solver in it)"""
+    """Return the microseconds of a simulation, and the number of its solver's steps."""
     build = ROOT / "build" / "chains" / solver
     library = build / "systems" / f"Chain{rods}" / "binaries" / "linux64" / f"Chain{rods}.so"
     description = fmpy.read_model_description(build / "fmu" / f"Chain{rods}.fmu")
@@ -78,7 +80,7 @@ def chain_cost(solver, rods, end=1.0, tolerance=1e-10):
     words = [ROOT / "build/bin/stepping", library, description.guid, tolerance, end, 1, 20, 0, 0, reference]
     result = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=True)
     seconds, steps = result.stdout.split()
-    return float(seconds) * 1e6, int(steps) + (solver == "taylor")  # the last series is not left
+    return float(seconds) * 1e6, int(steps) + (solver == "taylor")  # solverSteps does not count the last series, which the simulation does not leave
 
 
 def compare_chains():

@@ -1,7 +1,8 @@
 """
-100,000 double pendulums to t = 1 at a tolerance of 1e-10, from angles of their own, on one core and on all: in lanes (src/ensemble), by heyoka's
-batch mode in as many lanes, with equations written by hand, and by the FMU one after another. Seconds are the least of several repeats, without compilation; heyoka's are with its
-calls from Python, one for each batch, and what these take for no motion at all stands beside.
+Compare programs that simulate 100,000 double pendulums with different start angles, to 1 s at a tolerance of 1e-10, on one core and on all.
+
+The programs are the lanes of src/ensemble, heyoka's batch mode in as many lanes, with equations written by hand, and the FMU, run by run. Times
+are the shortest of several repeats, without compilation. Those of heyoka include a call from Python for each batch, which is also measured alone.
 """
 
 import multiprocessing
@@ -24,7 +25,7 @@ STARTS = np.random.default_rng(0).uniform(-3, 3, (RUNS, 2))
 
 
 def in_threads(function, cores):
-    """The seconds that it takes for all runs, in pieces for each thread."""
+    """Call function(rows) for all runs, in pieces over threads; return the seconds and the results."""
     pieces = np.array_split(STARTS, 20)
     with ThreadPoolExecutor(cores) as executor:
         begin = time.perf_counter()
@@ -59,7 +60,7 @@ def fmi():
 
 
 def by_hand():
-    """For heyoka, masses and lengths of 1: half the time that it takes for the accelerations as SymPy solves and simplifies them."""
+    """Return the equations for heyoka, with masses and lengths of 1; they take half the time of those that SymPy solves and simplifies."""
     import heyoka as hy
 
     a, b, u, v = hy.make_vars("theta1", "theta2", "omega1", "omega2")
@@ -70,7 +71,7 @@ def by_hand():
 
 
 def heyoka_batches(rows, end, lanes, barrier, results):
-    """In a process of its own, as threads of Python would wait for one another between batches."""
+    """Simulate batches in a separate process, since Python's threads would wait for one another between batches."""
     import heyoka
 
     batch = heyoka.taylor_adaptive_batch(by_hand(), np.zeros((4, lanes)), tol=TOLERANCE)
@@ -113,7 +114,7 @@ def main():
     print("| --- |" + " ---: |" * (len(counts) + 2))
     best = {(name, count): np.inf for name in programs for count in counts}
     ends = {}
-    for _ in range(REPEATS):  # in turns, as other programs on the machine may take their share
+    for _ in range(REPEATS):  # in turns, so that other load on the machine affects all programs
         for name, program in programs.items():
             for count in counts:
                 seconds, ends[name] = program(count)

@@ -1,7 +1,9 @@
 """
-Runs of several systems from starts of their own, on one core: in lanes (src/ensemble), by the FMU one after another, by heyoka's batch mode in as many
-lanes, by MuJoCo's rollout, and by SciPy. A row each: microseconds of the processor a run, the least of several repeats in turns, without compilation, and the
-largest difference of the velocities at the end to those of the FMU.
+Compare programs that simulate many runs of several systems, on one core.
+
+The programs are the lanes of src/ensemble, the FMU, run by run, heyoka's batch mode in as many lanes, MuJoCo's rollout, and SciPy. The table has the
+processor time of a run in microseconds, the shortest of several repeats in turns, without compilation, and the largest difference of the
+velocities at the end from those of the FMU.
 """
 
 import itertools
@@ -17,19 +19,19 @@ from scripts.ensembles import Ensemble, lanes_here, source_of
 from scripts.sweep import compile_ensemble
 from scripts.sweep_worker import Instance, run_by_fmi, states_of
 
-TOLERANCE, REPEATS, STEP = 1e-10, 5, 1e-3  # STEP: of MuJoCo, in s
+TOLERANCE, REPEATS, STEP = 1e-10, 5, 1e-3  # STEP: step of MuJoCo in s
 RUNNER = ROOT / "build" / "libsweep_runs.so"
 LANES = lanes_here(RUNNER)
 G = 9.81
 
 
 class System(NamedTuple):
-    varied: dict  # ranges
-    end: float
+    varied: dict  # ranges of start values and parameters by name
+    end: float  # s
     runs: int
-    mathematics: object  # of (sin, cos, q, v): the accelerations, in the order of the coordinates; None where they are too long
-    bodies: str = ""  # of MuJoCo, whose joints are the coordinates
-    bounces: bool = False  # at q = 0, with restitution e, which is varied last
+    mathematics: object  # function of (sin, cos, q, v) that returns the accelerations; None if they are too long to write by hand
+    bodies: str = ""  # in MJCF; the joints are the coordinates
+    bounces: bool = False  # True for impacts at q = 0 with restitution e, which is varied last
 
 
 def pendulum(sin, cos, q, v):
@@ -41,7 +43,7 @@ def orbit(sin, cos, q, v):
 
 
 def cart(sin, cos, q, v, big=1.0, small=0.1, length=0.5):
-    """From (M + m) x'' + m l cos(theta) theta'' = m l sin(theta) theta'^2 and l theta'' + cos(theta) x'' = g sin(theta)."""
+    """Solve (M + m) x'' + m l cos(theta) theta'' = m l sin(theta) theta'^2 and l theta'' + cos(theta) x'' = g sin(theta)."""
     s, c = sin(q[1]), cos(q[1])
     x = (small * length * s * v[1] ** 2 - small * G * s * c) / (big + small * s * s)
     return [x, (G * s - c * x) / length]
@@ -92,7 +94,7 @@ class Fmu:
 
 
 class Starts:
-    """The states of the FMU with which runs begin."""
+    """Start states of runs, in the order of the FMU's states."""
 
     def __init__(self, name, system):
         description = fmpy.read_model_description(archive(name))
@@ -108,7 +110,7 @@ class Starts:
         return states
 
 
-restitution = np.empty(LANES)  # of the runs in heyoka's lanes, which copies what belongs to a function
+restitution = np.empty(LANES)  # of the runs in heyoka's lanes; global, since heyoka copies callbacks with their closures
 
 
 def bounce(batch, sign, lane):
@@ -117,7 +119,7 @@ def bounce(batch, sign, lane):
 
 
 class Heyoka(Starts):
-    """In batches; a bounce is a terminal event, with a function in Python, after which the lane goes on."""
+    """heyoka's batch mode; a bounce is a terminal event with a callback in Python, after which the lane continues."""
 
     def __init__(self, name, system):
         import heyoka
@@ -150,7 +152,7 @@ class Heyoka(Starts):
 
 
 class MuJoCo(Starts):
-    """Of fewer runs, which take so long."""
+    """MuJoCo's rollout, for fewer runs, since they are slow."""
 
     runs = 40
 
@@ -176,7 +178,7 @@ class MuJoCo(Starts):
 
 
 class Scipy(Starts):
-    """Likewise."""
+    """SciPy's DOP853, for fewer runs, since they are slow."""
 
     runs = 8
 
@@ -194,7 +196,7 @@ class Scipy(Starts):
             time_now, state = solution.t[-1], solution.y[:, -1]
             if solution.status == 0:
                 return state
-            state = np.array([1e-12, -row[-1] * state[1]])  # above 0, where it would find the same event again
+            state = np.array([1e-12, -row[-1] * state[1]])  # slightly above 0, so that the same event is not found again
 
 
 def programs_for(name, system):
@@ -207,7 +209,7 @@ def programs_for(name, system):
 
 
 def measure(name, system):
-    """Of each program microseconds a run and the largest difference."""
+    """Return by program the microseconds of a run and the largest difference from the FMU."""
     generator = np.random.default_rng(0)
     rows = np.array([generator.uniform(*span, system.runs) for span in system.varied.values()]).T
     programs = programs_for(name, system)

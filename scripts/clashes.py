@@ -1,6 +1,8 @@
 """
-Names of the runtime that clash where an FMU's source is one file: all that can stand in one is compiled as one, for each version of
-FMI, behind the names that lagc gives. Prints what the compiler says; no output where all is well.
+Find names of the runtime that clash when an FMU's source is one file.
+
+For each version of FMI all sources that one file may contain are compiled as one unit, with the names that lagc generates. Prints the compiler's
+messages; no output means no clash.
 """
 
 import re
@@ -13,13 +15,13 @@ RUNTIME = ROOT / "src" / "runtime"
 
 
 def sources(version):
-    """What SUNDIALS is needed for is never in one file."""
+    """Return the runtime sources that one file may contain; sources that need SUNDIALS are never in it."""
     left_out = {"sundials", "fmi2", "fmi3"} - {f"fmi{version}"}
     return sorted(path for path in RUNTIME.rglob("*.c") if path.parent.name not in left_out)
 
 
 def generated_names():
-    """Of what may stand outside of functions in system.c: what lagc writes as static, alone or as a list of numbers, and functions."""
+    """Return the names at file scope in system.c: static objects and arrays that lagc writes, and functions."""
     folder = ROOT / "src" / "compiler" / "write"
     texts = "".join(path.read_text() for path in folder.glob("*.c"))
     found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'write_(?:sizes\(file, "\w+"|whole_numbers\(file|truths\(file), "(\w+)"', texts)
@@ -33,6 +35,7 @@ def unit(version):
 
 
 def complaints(text):
+    """Return the messages of gcc for a C source."""
     words = ["gcc", "-std=c11", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused", "-x", "c", "-"]
     headers = [f"-I{folder}" for folder in (ROOT / "include", RUNTIME)]
     return subprocess.run([*words, *headers], input=text, capture_output=True, text=True).stderr

@@ -1,11 +1,12 @@
 """
-A co-simulation from step to step, of FMI 2.0 and 3.0: rows at the communication points and at events, with inputs that are polynomials between them.
+Run a co-simulation of FMI 2.0 or 3.0, with rows at communication points and at events, and piecewise polynomial inputs.
 
-In FMI 2.0 the FMU follows inputs by their derivatives. Where it cannot, as in FMI 3.0, each half of a smooth piece has a constant input of the same mean and first
-moment, which is right to the fourth order where the rates are linear in the input (commutator-free Magnus integrator, Blanes and Moan 2006, with two exponentials).
+An FMU of FMI 2.0 follows inputs by their derivatives. Otherwise, as in FMI 3.0, the two halves of a smooth piece get constant inputs u1, u2 with
+the mean and the first moment of the polynomial. This is of fourth order if the rates are linear in the input (commutator-free Magnus integrator
+with two exponentials, S. Blanes and P. Moan 2006).
 
-An event is two rows of one time: just before it, and behind it. FMI 3.0 ends its steps at events. In FMI 2.0 the FMU's number of events tells that one lies in a
-step; the step is repeated from the saved state to halve the time, until it is known. Then the FMU goes on from the end of the step as if nobody had looked.
+An event has two rows of one time: before it and after it. FMI 3.0 ends its steps at events. In FMI 2.0 the FMU's counter of events shows that a
+step contains one. Bisection, with the step repeated from a saved state, locates it. Then the state at the end of the step is restored.
 """
 
 import itertools
@@ -21,15 +22,15 @@ from fmpy.simulation import Recorder, apply_start_values, instantiate_fmu, setta
 from .problem import Problem
 from .signals import REAL, value
 
-EVENTS = "events"  # the FMU's variable that counts them
-NEAR = 1e-9  # of a step: times that differ by less are one
-FOUND = 1e-10  # of a step, to which the time of an event is known
-CROWD = 20  # events that are found in a step; more are not told apart
+EVENTS = "events"  # variable of the FMU that counts events
+NEAR = 1e-9  # times that differ by less, relative to a step, are equal
+FOUND = 1e-10  # accuracy of the time of an event, relative to a step
+CROWD = 20  # events of a step that are located; further ones have no rows
 OPTIONS = ("start_time", "stop_time", "output_interval", "relative_tolerance", "record_events", "logger", "debug_logging", "visible", "fmi_call_logger")
 
 
 class Interrupted(Exception):
-    """A step failed; has the rows before it, and why, as `reached` and `cause`."""
+    """A step failed; `reached` has the rows before it, and `cause` is the exception."""
 
     def __init__(self, reached, cause):
         super().__init__(str(cause))
@@ -37,7 +38,7 @@ class Interrupted(Exception):
 
 
 class Slave:
-    """An FMU with its inputs."""
+    """An FMU in co-simulation with its inputs; subclasses have the calls of a version of FMI."""
 
     def __init__(self, fmu, description, signals):
         self.fmu, self.description, self.signals = fmu, description, signals
@@ -45,7 +46,7 @@ class Slave:
 
     @staticmethod
     def _setters(signals):
-        """(type, references, columns) of variables of one type."""
+        """Return (type, references, columns) for each type of variables."""
         ends = np.cumsum([0, *signals.sizes])
         found = {}
         for variable, begin, end in zip(signals.variables, ends[:-1], ends[1:]):
@@ -55,13 +56,13 @@ class Slave:
         return [(kind, *both) for kind, both in found.items()]
 
     def set(self, values):
-        """The inputs, held."""
+        """Set constant inputs."""
         for kind, references, columns in self.setters:
             numbers = [float(values[i]) if kind in REAL else int(round(values[i])) for i in columns]
             getattr(self.fmu, f"set{'Integer' if kind == 'Enumeration' else kind}")(references, numbers)
 
     def initialize(self, start_values, piece, start, stop, tolerance):
-        """piece: of the inputs in the first step, or None."""
+        """Initialize the FMU; `piece` has the polynomials of the inputs in the first step, or is None."""
         left = apply_start_values(self.fmu, self.description, start_values, settable=settable_in_instantiated)
         self.enter_initialization(start, stop, tolerance)
         left = apply_start_values(self.fmu, self.description, left, settable=settable_in_initialization_mode)
@@ -72,7 +73,7 @@ class Slave:
             raise Problem(f"{self.description.modelName} takes no start values of {', '.join(left)}")
 
     def held_halves(self, piece, begin, end):
-        """(begin, end, value) of constant inputs in place of a polynomial, which may be constant itself."""
+        """Return a list of (begin, end, values) of constant inputs that replace polynomials: one if these are constant, else two."""
         if not np.any(piece[1:]):
             return [(begin, end, piece[0])]
         scaled = piece * ((end - begin) ** np.arange(len(piece)))[:, None]
@@ -91,7 +92,7 @@ class Slave2(Slave):
         self.can_find = counter is not None and abilities.canGetAndSetFMUstate and abilities.canHandleVariableCommunicationStepSize
         self.counter = [counter.valueReference] if counter is not None else None
         self.states = []
-        self.is_looking = False  # for events, when nothing new is logged
+        self.is_looking = False  # True while events are located, when log messages are repetitions
 
     def enter_initialization(self, start, stop, tolerance):
         self.fmu.setupExperiment(tolerance=tolerance, startTime=start, stopTime=stop)
@@ -107,7 +108,7 @@ class Slave2(Slave):
         return self.fmu.getInteger(self.counter)[0]
 
     def step(self, begin, end, piece, record):
-        """record(time, is_forced) makes a row; piece: of the inputs, or None."""
+        """Take a step; record(time), or None, adds a row at events; `piece` has the polynomials of the inputs, or is None."""
         parts = [(begin, end, None)]
         if piece is not None and self.follows:
             self.follow(piece)
@@ -124,7 +125,7 @@ class Slave2(Slave):
             self.find_events(saved, count, begin, end, record)
 
     def follow(self, piece):
-        """The polynomials, by derivatives of the orders that they have."""
+        """Set polynomial inputs, by their derivatives that are not 0."""
         self.set(piece[0])
         references, orders, rates = [], [], []
         for kind, all_references, columns in self.setters:
@@ -138,7 +139,7 @@ class Slave2(Slave):
             self.fmu.setRealInputDerivatives(references, orders, rates)
 
     def saved(self, place):
-        """The state, in the memory that this place has."""
+        """Save the FMU state in the slot `place`, whose memory is reused; return it."""
         if place == len(self.states):
             self.states.append(self.fmu.getFMUstate())
         else:
@@ -150,7 +151,7 @@ class Slave2(Slave):
             self.fmu.freeFMUstate(state)
 
     def find_events(self, state, count, begin, end, record):
-        """Rows of the events of a step, at whose end the FMU is and stays."""
+        """Add rows for the events of the step that the FMU has just done from `state`; leave the FMU at the end of the step."""
         last, total = self.saved(1), self.events()
         self.is_looking = True
         try:
@@ -164,13 +165,13 @@ class Slave2(Slave):
                 self.go(state, begin, high)
                 record(time)
                 begin, count, state = high, self.events(), self.saved(2)
-        except FMICallException:  # so short a step may fail where the whole one does not
+        except FMICallException:  # a very short step may fail although the whole one succeeds
             pass
         self.is_looking = False
         self.fmu.setFMUstate(last)
 
     def narrowed(self, state, count, begin, end):
-        """The times between which the next event is, of which the first may be the beginning."""
+        """Return two times that bracket the next event, by bisection; the first may be `begin`."""
         low, high, enough = begin, end, max(FOUND * (end - begin), 4 * np.spacing(abs(end)))
         while high - low > enough:
             middle = (low + high) / 2
@@ -179,6 +180,7 @@ class Slave2(Slave):
         return low, high
 
     def go(self, state, begin, end):
+        """Restore a state at `begin`, and step to `end`."""
         self.fmu.setFMUstate(state)
         if end > begin:
             self.fmu.doStep(begin, end - begin)
@@ -201,7 +203,7 @@ class Slave3(Slave):
             self.update()
 
     def update(self, values=None):
-        """Through event mode, perhaps with other inputs."""
+        """Iterate event mode, with new inputs unless `values` is None, and enter step mode."""
         if values is not None:
             self.set(values)
         needs_more, ends = True, False
@@ -228,7 +230,7 @@ class Slave3(Slave):
             self.set(value(piece, end - begin))
 
     def reach(self, time, end, held, inputs, record):
-        """Through the events until then."""
+        """Step to `end` through all events, with constant inputs `held`; inputs(time) are the true inputs, for rows."""
         while time < end:
             is_event, ends, is_early, last = self.fmu.doStep(time, end - time)
             if ends:
@@ -245,7 +247,7 @@ class Slave3(Slave):
                     self.set(held)
 
     def show(self, time, inputs, record):
-        """A row with the inputs of that time."""
+        """Add a row with the true inputs of that time."""
         if record and inputs(time) is not None:
             self.set(inputs(time))
         if record:
@@ -256,18 +258,18 @@ class Slave3(Slave):
 
 
 def _size(piece, step):
-    """Of polynomials over a step, at most."""
+    """Return bounds of the polynomials over a step."""
     return np.sum(abs(piece) * (step ** np.arange(len(piece)))[:, None], axis=0)
 
 
 def _jumps(before, piece, step):
-    """True if a polynomial begins at another value than the one before ended at; before: that value, and its size."""
+    """Return True if a polynomial does not begin at the last value of the one before; `before` is that value and its bound."""
     ended, size = before
     return np.any(abs(piece[0] - ended) > NEAR * np.maximum(size, _size(piece, step)))
 
 
 def _steps(signals, start, stop, interval):
-    """(begin, end, whether that is a communication point): the inputs' breaks are ends of steps too."""
+    """Yield (begin, end, True if `end` is a communication point); steps also end at the breaks of inputs."""
     time, count, near = start, 0, NEAR * interval
     while time < stop:
         count += 1
@@ -279,7 +281,7 @@ def _steps(signals, start, stop, interval):
 
 
 def _run(slave, recorder, steps, record_events):
-    """The steps, with rows at communication points and at events; each step's inputs are known."""
+    """Take the steps, (begin, end, polynomials of the inputs, is_point), with rows at communication points and at events."""
     record = (lambda time: recorder.sample(time, force=True)) if record_events else None
     before = None
     for time, end, piece, is_point in steps:
@@ -297,8 +299,10 @@ def _run(slave, recorder, steps, record_events):
 
 def co_simulate(archive, description, start_values, signals, output, interval, start, stop, tolerance=None, record_events=True, logger=None, debug_logging=True, visible=False, fmi_call_logger=None):
     """
-    A structured array of time and the output, names of variables; Interrupted where a step fails. The tolerance is that of the FMU's experiment where none is given.
-    logger: as FMPy's, which is not called for what is only tried.
+    Simulate an FMU; return a structured array of the time, in s, and the variables named in `output`.
+
+    A `tolerance` of None leaves the choice to the FMU. `logger` is called as by FMPy, but not for steps that are repeated to locate events.
+    Raise Interrupted if a step fails, and Problem if the FMU has no library for this platform.
     """
     if platform not in supported_platforms(archive):
         raise Problem(f"{archive} has no library for {platform} but for {', '.join(supported_platforms(archive)) or 'no platform'}; expected an FMU that was built for this machine")

@@ -1,7 +1,8 @@
 """
-What it costs to make an FMU: lagc beside SymPy's LagrangesMethod with cse, whole FMUs with C compiler and packing, the C of mechanisms
-and robots by gcc, clang and zig, and a step of a large stiff system by each implicit method. All have a limit of time, and the table says so
-where it is reached.
+Measure the cost of making an FMU, and print tables.
+
+They compare lagc with SymPy's LagrangesMethod and cse; whole FMUs, with C compiler and packing; the C of mechanisms and robots by gcc, clang and
+zig; and the step of a large stiff system by each implicit method. A table shows where a measurement reaches the limit of time.
 """
 
 import math
@@ -20,7 +21,7 @@ from cross import PLATFORMS
 from fmu import ROOT
 from numerics.driver import step
 
-LIMIT = 60  # seconds
+LIMIT = 60  # s, of each measurement
 BUILD = ROOT / "build" / "cost"
 SYSTEMS = ROOT / "scripts" / "numerics" / "systems"
 CHAINS, LATTICES = (1, 2, 4, 8, 16, 32), (100, 1000, 10000)
@@ -29,7 +30,7 @@ STIFF, STIFF_METHODS = (10, 30, 100, 300, 1000), ("bdf", "radau", "auto")
 
 
 def seconds_of(words):
-    """The time of a command, or None beyond the limit; what it started ends with it."""
+    """Return the wall-clock time of a command in s, or None beyond LIMIT, when its process group is killed."""
     start = time.perf_counter()
     process = subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL, start_new_session=True)
     try:
@@ -59,7 +60,7 @@ def source(name):
 
 
 def lagc(name, n=None, repeats=5):
-    """(seconds, operations) with all files written, the best of several runs; None and None beyond the limit."""
+    """Return the shortest time of lagc in s, with all files written, and the number of operations; (None, None) beyond LIMIT."""
     with tempfile.TemporaryDirectory() as folder:
         words = [ROOT / "build/bin/lagc", source(name), "-o", folder, *(["-D", f"N={n}"] if n else [])]
         times = [seconds_of(words)]
@@ -72,7 +73,7 @@ def lagc(name, n=None, repeats=5):
 
 
 def factorization(n):
-    """Operations of factoring M = L D L^T and solving for n unknowns; a division for one."""
+    """Return the number of operations of the factorization M = L D L^T and of solving for n unknowns."""
     return 1 if n == 1 else n * (n * n - 1) // 3 + n * (n - 1) + 2 * n * (n - 1) + n
 
 
@@ -125,7 +126,7 @@ def derive_with_sympy(name, n, queue):
 
 
 def sympy(name, n):
-    """The same for SymPy, or None and None. M and f by SymPy, M factored numerically, as if it were full."""
+    """Return the same for SymPy, which derives M and f; the operations include a numeric factorization of a full M."""
     queue = multiprocessing.Queue()
     process = multiprocessing.Process(target=derive_with_sympy, args=(name, n, queue))
     process.start()
@@ -137,7 +138,7 @@ def sympy(name, n):
 
 
 def compare_derivation(name, counts, argument=True):
-    """A row for each count; the exponent is that of the time's growth since the row above."""
+    """Print a row for each N; the exponent p is that of time ~ N^p between two rows."""
     print(f"\n{name}\n\n| N | lagc, time | exponent | lagc, operations | SymPy, time | ratio | SymPy, operations |\n|{' ---: |' * 7}")
     before, slow, theirs = None, False, (None, None)
     for n in counts:
@@ -158,7 +159,7 @@ def own_name(name, n, method=""):
 
 
 def prepare_build(cases):
-    """A build of these systems, each as NAMEn, or as NAMEnMETHOD with another method, with all that they share built already."""
+    """Prepare a build folder with these systems, named NAMEn or NAMEnMETHOD, and build the targets that they share."""
     for name, n, *method in cases:
         own = own_name(name, n, *method)
         folder = BUILD / "systems" / own
@@ -176,7 +177,7 @@ def prepare_build(cases):
 
 
 def build_fmu(name):
-    """Seconds from system.xml to the archive, from nothing; None beyond the limit."""
+    """Return the time from system.xml to the archive in s; None beyond LIMIT."""
     (BUILD / "systems" / name / "system.xml").touch()
     for path in (BUILD / "fmu" / f"{name}.fmu", BUILD / "systems" / name / "system.c"):
         path.unlink(missing_ok=True)
@@ -193,7 +194,7 @@ def compare_whole_fmus():
 
 
 def robot(name, axes):
-    """The URDF of a robot whose joints, of these axes, are chains of seven from its base, all inertias full."""
+    """Return the URDF of a robot with joints about these axes, in chains of seven from its base, with full inertia tensors."""
     at = random.Random(1).uniform
     parts, parent = [f'<robot name="{name}"><link name="base"/>'], "base"
     for i, axis in enumerate(axes):
@@ -209,7 +210,7 @@ def robot(name, axes):
 
 
 def code_of(folder):
-    """What lagc writes of mechanisms and robots, each in a folder of its name."""
+    """Yield the name and the system.c of mechanisms and robots; lagc writes each into a folder of its name."""
     robots = {"arm of 7 joints": 7, "humanoid of 30 joints": 30}
     inputs = {name: source(name) for name in ("StewartPlatform", "Arm7", "Bricard", "AndrewsSqueezer")}
     for name, joints in robots.items():
@@ -221,7 +222,7 @@ def code_of(folder):
 
 
 def compare_compilers():
-    """All in one file, as packages, other platforms and rebuilt sources compile it."""
+    """Print the times of compiling FMUs as one file, as the package, other platforms and rebuilt sources do."""
     print(f"\nThe C of an FMU in one file, -O2\n\n| system | C | gcc | clang |{'|'.join(f' zig, {name} ' for name in PLATFORMS)}|\n| --- |" + " ---: |" * (3 + len(PLATFORMS)))
     runtime = ROOT / "src" / "runtime"
     layer = [word for file in sorted((runtime / "fmi2").glob("*.c")) for word in ("-include", file)]
@@ -234,13 +235,13 @@ def compare_compilers():
 
 
 def stiff_run(n, method, end=1.0, tolerance=1e-6):
-    """(the time of making the FMU or None, its run or None)"""
+    """Return the time of making the FMU in s or None, and its run or None."""
     taken = build_fmu(own_name("StiffLattice", n, method))
     return taken, step("cost", own_name("StiffLattice", n, method), {}, end, tolerance, 1, 3, 1, LIMIT) if taken is not None else None
 
 
 def compare_stiff_steps():
-    """The exponent is that of a step's time; a method that reaches the limit is not tried with more masses."""
+    """Print steps and times of each method; the exponent is that of a step's time. A method that reaches LIMIT gets no larger systems."""
     print("\nStiffLattice: 1 s at tolerance 1e-6\n\n| N | method | FMU | steps | a step | exponent | in all |\n| ---: | --- |" + " ---: |" * 5)
     before, slow = {}, set()
     for n in STIFF:

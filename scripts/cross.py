@@ -1,10 +1,11 @@
 """
-Compiles for other platforms than this machine's, with zig, which brings compilers, linkers and C libraries for all of them
-(the Python package ziglang). What every platform needs is here, and nowhere else.
+Compile for other platforms with zig, which has compilers, linkers and C libraries for all of them (the Python package ziglang).
 
-    cross.py fmu PLATFORM SYSTEM.c BINARIES NAME [--fmi 3] [--sundials FOLDER]    a system that lagc wrote, as libraries in binaries/
-    cross.py libraries PLATFORM NAME [--fmi 3]                                    which these are, separated by ;
-    cross.py sundials FOLDER SUNDIALS SUITESPARSE                                 SUNDIALS and KLU for all of them, from their sources
+    cross.py fmu PLATFORM SYSTEM.c BINARIES NAME [--fmi 3] [--sundials FOLDER]    compiles a system.c to the libraries in binaries/
+    cross.py libraries PLATFORM NAME [--fmi 3]                                    prints the paths of these libraries, separated by ;
+    cross.py sundials FOLDER SUNDIALS SUITESPARSE                                 compiles SUNDIALS and KLU for all platforms
+
+All properties of platforms are defined in this file.
 """
 
 import argparse
@@ -19,35 +20,39 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-# Folders in binaries/ of FMI 2.0, with what libraries end in and zig's targets. FMI 2.0.5 has the first three, and for others the names of
-# FMI 3.0, which are those of the targets, one a processor.
+# Folders in binaries/ of FMI 2.0, with the suffix of libraries and zig's targets. FMI 2.0.5 defines the first three, and takes others from
+# FMI 3.0, whose names are those of the targets, one for each processor.
 PLATFORMS = {
     "linux64": (".so", ["x86_64-linux-gnu.2.17"]),
     "win64": (".dll", ["x86_64-windows-gnu"]),
     "darwin64": (".dylib", ["x86_64-macos.11.0", "aarch64-macos.11.0"]),
     "aarch64-linux": (".so", ["aarch64-linux-gnu.2.17"]),
 }
-WEBASSEMBLY = "wasm32"  # a component of the draft FMI-LS-WASM, of FMI 3.0 alone; see wasm_component/
+WEBASSEMBLY = "wasm32"  # a component of the draft FMI-LS-WASM, for FMI 3.0 only; see wasm_component/
 PLATFORM_NAMES = [*PLATFORMS, WEBASSEMBLY]
-ROOT = Path(__file__).resolve().parent.parent  # of include/ and src/runtime/
+ROOT = Path(__file__).resolve().parent.parent  # contains include/ and src/runtime/
 
-# The same sums and products everywhere: no a*b + c in one operation. Without unused functions.
+# No fused multiply-add, so that results are equal on all platforms. Unused functions are removed.
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-ffp-contract=off", "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all"]
-# No linker of all platforms redirects calls, as --wrap does for this machine's libraries: src/runtime/methods/sundials/sundials_memory.c.
+# Redirect the allocations of SUNDIALS, see src/runtime/methods/sundials/sundials_memory.c: not all linkers have --wrap.
 ALLOCATIONS = [f"-D{name}=__wrap_{name}" for name in ("malloc", "calloc", "realloc", "free")]
 SUNDIALS_PARTS = ["sundials", "arkode", "cvode", "nvector/serial", "sunmatrix/dense", "sunmatrix/band", "sunmatrix/sparse", "sunlinsol/dense",
                   "sunlinsol/band", "sunlinsol/klu", "sunnonlinsol/newton", "sunnonlinsol/fixedpoint"]  # fmt: skip
-# Interfaces to Fortran and to other libraries, and measurements, which not every platform has.
+# Interfaces to Fortran and to other libraries, and profilers, which some platforms lack.
 LEFT_OUT = re.compile(r"^f(ark|cv|n|sun)|xbraid|hypamg|profiler|fused|futils")
 KLU_PARTS = ["KLU", "AMD", "COLAMD", "BTF"]
 
 
 class Failure(Exception):
-    """What cannot be compiled, with the compiler's words."""
+    """A compilation failed; the text has the compiler's messages."""
 
 
 def zig(*words, cache):
-    """Runs zig; what it compiled of the platforms' C libraries stays where ZIG_GLOBAL_CACHE_DIR says, or zig's own place."""
+    """
+    Run zig with these arguments; raise Failure if it fails.
+
+    `cache` is its local cache. The compiled C libraries of platforms stay in ZIG_GLOBAL_CACHE_DIR, by default zig's own folder.
+    """
     environment = {"ZIG_LOCAL_CACHE_DIR": str(cache), **os.environ}
     result = subprocess.run([sys.executable, "-m", "ziglang", *map(str, words)], env=environment, capture_output=True, text=True)
     if result.returncode != 0:
@@ -56,14 +61,14 @@ def zig(*words, cache):
 
 @contextmanager
 def scratch(output):
-    """A folder beside the output, for what must not be left behind."""
+    """Yield a temporary folder beside the output, so that a finished file can be moved atomically."""
     output.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=".cross-") as folder:
         yield Path(folder)
 
 
 def libraries_of(platform, name, fmi=2):
-    """The libraries of an FMU for the platform, as paths in binaries/, each with the targets that it is for."""
+    """Return the targets of each library of an FMU for the platform, by its path in binaries/. Raise Failure if the platform is unknown."""
     if platform not in PLATFORM_NAMES:
         raise Failure(f"the platform '{platform}' is not known; expected {', '.join(PLATFORM_NAMES)}")
     require_package("ziglang", f"compiles for {platform}")
@@ -74,7 +79,7 @@ def libraries_of(platform, name, fmi=2):
         return {f"wasm32-wasip2/{name}.wasm": ["wasm32-wasi"]}
     suffix, targets = PLATFORMS[platform]
     if fmi == 2:
-        # Importers on Apple's own processors look into a folder by its name in FMI 3.0 first, or alone.
+        # Importers on Apple's own processors look first, or only, into the folder of FMI 3.0.
         further = {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets[1:]}
         return {f"{platform}/{name}{suffix}": targets, **further}
     return {f"{folder_of(target)}/{name}{suffix}": [target] for target in targets}
@@ -87,13 +92,13 @@ def require_package(name, purpose):
 
 
 def folder_of(target):
-    """What FMI 3.0 calls a target."""
+    """Return the name of a target's folder in FMI 3.0."""
     processor, system = target.split(".")[0].split("-")[:2]
     return f"{processor}-{'darwin' if system == 'macos' else system}"
 
 
 def universal(slices):
-    """Mach-O files for several processors as one: a header in big endian with the place of each, which is a multiple of 2^14."""
+    """Join Mach-O files for several processors into a universal binary: a big-endian header with the offset of each, a multiple of 2^14."""
     align = 14
     header, content = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
     start = 1 << align
@@ -107,8 +112,9 @@ def universal(slices):
 
 def words_of_fmu(target, system, fmi, source):
     """
-    What makes one object of system.c, the parts of the runtime that it includes and the layer of the version of FMI. system.c comes first, as it
-    says how series are compiled: unrolled where that is too much, they take compilers minutes.
+    Return the arguments that compile system.c, the runtime that it includes, and the functions of the version of FMI into one object.
+
+    system.c comes first, since it defines how series are compiled: unrolled series of large systems take compilers minutes.
     """
     *before, last = [system, *sorted((source / "src" / "runtime" / f"fmi{fmi}").glob("*.c"))]
     words = ["-target", target, *FLAGS, "-DFMU_IN_ONE_FILE", f"-ffile-prefix-map={source}=.", f"-ffile-prefix-map={system.parent}=."]
@@ -117,7 +123,7 @@ def words_of_fmu(target, system, fmi, source):
 
 
 def compile_target(target, system, library, fmi, source, sundials, folder):
-    """The FMU as one library in the folder."""
+    """Compile the FMU for one target in the folder; return the bytes of the library."""
     output = folder / target / library
     output.parent.mkdir()
     words = ["-shared", "-s", "-Wl,--gc-sections"]
@@ -130,7 +136,7 @@ def compile_target(target, system, library, fmi, source, sundials, folder):
 
 
 def compile_component(target, system, source, folder):
-    """The bytes of the FMU as a WebAssembly component: the FMU and its adapter as a module, and the component around it."""
+    """Compile the FMU and its adapter to a WebAssembly module; return the bytes of the component around it."""
     if __package__:
         from .wasm_component.component import ADAPTER, LINK_WORDS, component_of
     else:
@@ -143,9 +149,10 @@ def compile_component(target, system, source, folder):
 
 def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=None):
     """
-    Compiles the system.c of lagc as the platform's libraries in the folder binaries, for an FMU of this name and version of FMI, with the
-    runtime in source/include and source/src/runtime. sundials: the folder that compile_sundials() made, for systems with erk and bdf;
-    others leave it alone.
+    Compile a system.c of lagc to the platform's libraries in the folder `binaries`.
+
+    `name` and `fmi` are the name and the version of FMI of the FMU. The runtime is in source/include and source/src/runtime. `sundials` is the
+    folder of compile_sundials(), which systems with the methods erk and bdf need. Raise Failure if the compilation fails.
     """
     system, source = Path(system).resolve(), Path(source).resolve()
     if '#include "methods/sundials/' not in system.read_text():
@@ -171,7 +178,7 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
 
 
 def sundials_configuration(source):
-    """The header that SUNDIALS' own build would make: doubles, indices of 32 bits, which KLU has on all platforms, and nothing that is optional."""
+    """Return the text of sundials_config.h: double precision, indices of 32 bits, which KLU has on all platforms, and no optional parts."""
     version = re.search(r'PACKAGE_VERSION_MAJOR "(\d+)".*?MINOR "(\d+)".*?PATCH "(\d+)"', (source / "CMakeLists.txt").read_text(), re.S).groups()
     values = dict(zip(("PACKAGE_VERSION_MAJOR", "PACKAGE_VERSION_MINOR", "PACKAGE_VERSION_PATCH"), version), PACKAGE_VERSION=".".join(version),
                   PRECISION_LEVEL="#define SUNDIALS_DOUBLE_PRECISION 1", INDEX_TYPE="#define SUNDIALS_INT32_T 1", SUNDIALS_CINDEX_TYPE="int32_t",
@@ -193,7 +200,7 @@ def write_headers(include, sundials, suitesparse):
 
 
 def compile_sundials(folder, sundials, suitesparse):
-    """folder/include and folder/TARGET/libsundials.a, with KLU in it, from the unpacked sources of both."""
+    """Compile SUNDIALS and KLU from their unpacked sources to folder/include and, for each target, folder/TARGET/libsundials.a."""
     folder, sundials, suitesparse = (Path(path).resolve() for path in (folder, sundials, suitesparse))
     sources = [path for part in SUNDIALS_PARTS for path in sorted((sundials / "src" / part).glob("*.c")) if not LEFT_OUT.search(path.name)]
     sources += [path for part in KLU_PARTS for path in sorted((suitesparse / part / "Source").glob("*.c"))]

@@ -1,6 +1,8 @@
 """
-Many runs of an FMU at once: its equations, which stand in its sources, compiled over the vectors of this machine's processor (src/ensemble), and
-once more for one run, for its events and constraints. Those of systems with Taylor series can be. Also a module of the wheel.
+Compute many runs of an FMU at once, in SIMD lanes.
+
+The equations in the FMU's C sources are compiled over the vectors of this machine's processor (src/ensemble), and once more for a single run,
+which handles events and constraints. This works for systems with Taylor series. Also a module of the wheel.
 """
 
 import sys
@@ -9,28 +11,28 @@ from ctypes import CDLL, Structure, byref, c_bool, c_double, c_size_t, c_void_p
 
 import numpy as np
 
-MARK = "#ifdef LANES"  # of sources that can be compiled over lanes
-NOT_IN_LANES = ("fmi2", "fmi3", "methods", "sundials")  # rooms of src/runtime: what calls an FMU, and solvers, which src/ensemble replaces
-COMPLETE = ["-Wl,-z,defs"] if sys.platform == "linux" else []  # a missing function fails when the library is made, not when it is loaded
+MARK = "#ifdef LANES"  # in sources that can be compiled over lanes
+NOT_IN_LANES = ("fmi2", "fmi3", "methods", "sundials")  # rooms of src/runtime that are left out: FMI functions, and solvers, which src/ensemble replaces
+COMPLETE = ["-Wl,-z,defs"] if sys.platform == "linux" else []  # reports missing functions when linking instead of when loading
 LANES_HEAD = '#include "generated.h"\n'
-ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # of those with something that is done for one run alone
+ONE_MARKS = (".event_laws = ", ".constraints.projection = ")  # in sources of systems with events or constraints, which are handled for a single run
 SYSTEM, NO_SYSTEM = '#include "system.c"\n', "const struct Lagrangian lagrangian = {0};\n"
 ONE_HEAD = '#undef LANES\n#define LANES 1\n#include "lagrangian.h"\n#include "instructions.h"\n#include "ldlt.h"\n#include "saddle.h"\n'
 
 
 def runtime_sources(root):
-    """Returns all that a system in lanes may refer to."""
+    """Return the runtime sources to which a system in lanes may refer."""
     files = sorted((root / "src" / "runtime").rglob("*.c"))
     return [file for file in files if file.parent.name not in NOT_IN_LANES or file.name == "projection.c"]
 
 
 def lanes_here(runner):
-    """How many lanes this machine's processor computes at once; runner: the library of sweep_runs.c."""
+    """Return the number of lanes of this machine's processor; `runner` is the library of sweep_runs.c."""
     return CDLL(str(runner)).sweep_lanes()
 
 
 def source_of(fmu):
-    """The FMU's source in C, or None where its equations cannot be had over lanes."""
+    """Return the FMU's C source, or None if its equations cannot be compiled over lanes."""
     with zipfile.ZipFile(fmu) as archive:
         names = [name for name in archive.namelist() if name.startswith("sources/") and name.endswith(".c")]
         texts = [archive.read(name).decode() for name in names]
@@ -39,8 +41,9 @@ def source_of(fmu):
 
 def words(root, lanes, source, folder, library):
     """
-    What a C compiler takes to make the library of an FMU's source, but for the C in src/ensemble and in the runtime, compiled or not. Leaves in the
-    folder what it compiles: the equations over lanes, and those of one run.
+    Return the arguments with which a C compiler makes the library of an FMU's source, without the C of src/ensemble and of the runtime.
+
+    Write the compiled files into `folder`: the equations over lanes, and those of a single run.
     """
     ensemble, needs_one = root / "src" / "ensemble", any(mark in source for mark in ONE_MARKS)
     texts = {"system": source, "lanes": f"{LANES_HEAD}{SYSTEM}", "one": f"{ONE_HEAD}{SYSTEM if needs_one else NO_SYSTEM}"}
@@ -66,7 +69,7 @@ class Request(Structure):
 
 
 class Ensemble:
-    """Runs from 0 on, by a library; varied and asked are value references."""
+    """Runs of a compiled library from 0 s on; `varied` and `asked` are the value references of varied and of recorded variables."""
 
     def __init__(self, library, varied, asked, times, tolerance=None):
         self.library = CDLL(str(library))
@@ -80,12 +83,16 @@ class Ensemble:
         return Request(*map(len, arrays), *(a.ctypes.data for a in arrays), self.tolerance, *(a.ctypes.data for a in (start, values, is_left)))
 
     def serves(self):
-        """Whether all that varies can be given, and all that is asked be told."""
+        """Return True if the library can vary and record these variables."""
         nothing = np.empty(0)
         return self.library.ensemble_serves(byref(self.request(nothing, nothing, nothing)))
 
     def run(self, start):
-        """What is asked at each time of each run, whose start values are rows; and which runs are left to the FMU itself."""
+        """
+        Perform n runs with the start values `start`, n x varied.
+
+        Return the recorded values, n x times x asked, and a mask of the runs that the FMU itself must perform.
+        """
         start = np.ascontiguousarray(start, dtype=float)
         values = np.full((len(start), len(self.times), len(self.asked)), np.nan)
         is_left = np.zeros(len(start), dtype=bool)

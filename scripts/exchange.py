@@ -1,4 +1,8 @@
-"""A simulation in model exchange, by CVode of FMPy, which holds inputs between its own steps: here the FMU has those of each time at which it is evaluated."""
+"""
+Simulate in model exchange, by CVODE of FMPy.
+
+FMPy holds inputs over a step of CVODE. Here setTime of the FMU also sets the inputs, so that each evaluation has the inputs of its time.
+"""
 
 import shutil
 
@@ -10,7 +14,7 @@ from .co_simulation import NEAR, Slave
 
 
 class Followed(Slave):
-    """Inputs that are linear between the rows of a table; of two rows of one time the second one holds from the event there on."""
+    """An FMU whose inputs follow a table, linear between rows. At two rows of one time the second takes effect in event mode."""
 
     def __init__(self, fmu, description, signals, table):
         super().__init__(fmu, description, signals)
@@ -21,12 +25,13 @@ class Followed(Slave):
         fmu.setTime, fmu.enterEventMode = self.go_to, self.enter_event
 
     def pass_jumps(self):
-        """The rows from the last jump to the next one hold."""
+        """Select the rows between the last jump and the next one."""
         passed = np.count_nonzero(self.times[self.jumps] <= self.time + NEAR * (self.times[-1] - self.times[0]))
         ends = [0, *(self.jumps + 1), len(self.times)]
         self.rows = slice(ends[passed], ends[passed + 1])
 
     def go_to(self, time):
+        """Set the time of the FMU, and its inputs at this time."""
         self.set_time(time)
         self.time, times, values = time, self.times[self.rows], self.values[self.rows]
         self.set([np.interp(time, times, column) for column in values.T])
@@ -37,7 +42,7 @@ class Followed(Slave):
 
 
 def exchange(archive, description, start_values, signals, output, interval, start, stop, logger, debug_logging=True, visible=False, fmi_call_logger=None, **options):
-    """A structured array of time and the output, names of variables; options are those of simulate_fmu."""
+    """Simulate an FMU; return a structured array of the time and the variables named in `output`. The options are those of simulate_fmu."""
     table = None if signals is None else signals.as_table(start, stop, interval)
     times = {"start_time": start, "stop_time": stop, "output_interval": interval}
     folder = extract(archive)

@@ -1,4 +1,4 @@
-"""Writes the table of FMI features of all FMUs, read from their modelDescription.xml, into fmu/SYSTEMS.md."""
+"""Write the table of the FMI features of all FMUs, read from their modelDescription.xml, into fmu/SYSTEMS.md."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The site that scripts/gallery makes: build/gallery, of the FMUs in build/fmu and build/fmi3 and the pages of the tree, by MkDocs."""
+"""Build the site build/gallery, from the FMUs in build/fmu and build/fmi3 and the pages of the tree, with MkDocs; for scripts/gallery."""
 
 import html
 import json
@@ -25,7 +25,7 @@ from scripts.whole_files import write_whole
 
 BUILD = ROOT / "build"
 PAGES, SITE = BUILD / "gallery-pages", BUILD / "gallery"
-# What there is to read, by the places in the tree, which their links to one another rest on.
+# Pages by title, with their paths in the tree, on which their links to one another depend.
 READ = {
     "Start": "README.md",
     "Gallery": "gallery.md",
@@ -44,8 +44,8 @@ READ = {
         "Changes": "CHANGELOG.md",
     },
 }
-FIRST = "DoublePendulum"  # in the laboratory
-# What pages refer to.
+FIRST = "DoublePendulum"  # system that the laboratory shows first
+# Files to which pages link.
 BESIDE = ("fmu/systems.gif", "fmu/system.xsd", *(f"fmu/{name}/system.xml" for name in (
     "BristleFriction", "GantryCrane", "HydraulicCylinder", "PidController", "SpinningBeam", "StateFeedback")))  # fmt: skip
 STYLE = """
@@ -58,12 +58,13 @@ STYLE = """
 
 
 def places(pages):
+    """Yield the paths of all pages."""
     for page in pages.values():
         yield from places(page) if isinstance(page, dict) else [page]
 
 
 def write_system(archive):
-    """The files of a system's FMU, in a folder of its name; its card, as HTML."""
+    """Write the files of a system's FMU into a folder of its name; return its card as HTML."""
     name, folder = archive.stem, PAGES / "systems" / archive.stem
     folder.mkdir(parents=True)
     with zipfile.ZipFile(archive) as content:
@@ -81,7 +82,7 @@ def write_system(archive):
     try:
         write_page(archive, folder / "live.html", origin_in(BUILD, source) if source.exists() else None)
         links = {"<b>live</b>": "live.html"} | links
-    except Problem as problem:  # of a method that carries no sources
+    except Problem as problem:  # an FMU whose method has no sources in it
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)
     first = next(iter(links.values()))
     sentence = html.escape(read_tree(archive).get("description") or "")
@@ -90,7 +91,7 @@ def write_system(archive):
 
 
 def write_laboratory(names):
-    """The page in which all systems can be changed whose methods it has."""
+    """Write the page in which systems can be changed; it has those whose method it supports. Return a sentence about it."""
     sources = {name: ROOT / "fmu" / name / "system.xml" for name in names}
     has_method = {name: not re.search(r"""method *= *["'](erk|bdf)["']""", source.read_text(encoding="utf-8")) for name, source in sources.items() if source.exists()}
     chosen = [name for name, has in has_method.items() if has]
@@ -102,18 +103,18 @@ def write_laboratory(names):
 
 
 def slug(text, separator):
-    """A heading's anchor, which the theme does not find where it begins with a digit."""
+    """Return the anchor of a heading; the theme does not find anchors that begin with a digit."""
     word = toc.slugify(text, separator)
     return f"part{separator}{word}" if word[:1].isdigit() else word
 
 
 def build_site(navigation):
-    logging.basicConfig(format="%(message)s", level=logging.WARNING)  # what ends a strict build
+    logging.basicConfig(format="%(message)s", level=logging.WARNING)  # shows the warnings that end a strict build
     shutil.copy(ROOT / "scripts" / "gallery_search.js", PAGES / "search.js")
     settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
                 "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search"],
                 "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
-    file = BUILD / "mkdocs.json"  # which is YAML too
+    file = BUILD / "mkdocs.json"  # JSON is YAML, which MkDocs reads
     write_whole(file, json.dumps(settings))
     build(load_config(str(file), markdown_extensions=[{"toc": {"slugify": slug}}]))
     index = (SITE / "search" / "search_index.json").read_text()

@@ -1,4 +1,4 @@
-"""A report as one HTML file with its plots inside, which needs no network."""
+"""Write a report as one HTML file that contains its plots and needs no network."""
 
 import csv
 import html
@@ -42,7 +42,7 @@ table.overview .ratio { color: #10151f; border-left: 2px solid var(--paper); }
 }
 """
 
-# Shows what belongs to the mark under the pointer, or the nearest one in its plot.
+# Shows the text of the mark under the pointer, or of the nearest mark in its plot.
 SCRIPT = """
 const tip = Object.assign(document.createElement('div'), {id: 'tip', hidden: true});
 document.body.append(tip);
@@ -70,19 +70,19 @@ document.addEventListener('pointermove', event => {
 });
 """
 
-# What plots are drawn with, which becomes the colour of the text around them.
+# Color of lines and text in plots; svg() replaces it by the color of the text around them.
 INK = "#1d2434"
 plt.rcParams.update({key: INK for key in ("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color")} | {
     "figure.facecolor": "none", "axes.facecolor": "none", "legend.facecolor": "none", "savefig.facecolor": "none"})  # fmt: skip
 
 
 def with_tips(line, texts):
-    """A line of a plot whose points show texts under the pointer."""
+    """Give the points of a line in a plot texts, which appear under the pointer."""
     line.set_gid("tips " + "|".join(texts))
 
 
 def add_tips(text):
-    """Gives each mark of a line of with_tips() its text."""
+    """Return the SVG in which each mark of a line of with_tips() has its text."""
 
     def marked(match):
         tips = iter(html.unescape(match[2]).split("|"))
@@ -116,7 +116,7 @@ def table(header, rows):
 
 
 def write_csv(path, header, rows):
-    """A table beside the page, whole or not at all."""
+    """Write a table as CSV, atomically."""
     text = io.StringIO(newline="")
     csv.writer(text).writerows([header, *rows])
     write_whole(path, text.getvalue())
@@ -135,7 +135,7 @@ def folded(summary, content):
 
 
 def page(sections):
-    """sections: (title, html); the first is the first screen, and the others are listed beside it."""
+    """Return the HTML of a page with sections (title, html); the first is the head of the page, and a menu links to the others."""
     (title, first), *others = sections
     links = "".join(f'<a href="#section{i}">{html.escape(heading)}</a>' for i, (heading, _) in enumerate(others))
     body = f"<h1>{html.escape(title)}</h1>{first}"

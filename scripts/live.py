@@ -1,4 +1,4 @@
-"""Writes the page in which an FMU runs: live.py FMU [PAGE] [--system FILE --build FOLDER [--edit]]"""
+"""Write the page in which an FMU runs: live.py FMU [PAGE] [--system FILE --build FOLDER [--edit]]"""
 
 import argparse
 import sys
@@ -12,11 +12,11 @@ from scripts.one_file import one_file
 from scripts.problem import Problem
 
 ROOT = Path(__file__).resolve().parent.parent
-LABORATORY = ROOT / "build" / "laboratory" / "laboratory.wasm"  # of scripts/build-laboratory
+LABORATORY = ROOT / "build" / "laboratory" / "laboratory.wasm"  # made by scripts/build-laboratory
 
 
 def origin_in(build, system):
-    """Of an FMU that was made of the system in this build folder."""
+    """Return the Origin of an FMU that was built from the system in this build folder."""
     return Origin(Path(system), build / "bin" / "lagc", lambda code, name: one_file(ROOT, build / "global_names", 2, code, name))
 
 

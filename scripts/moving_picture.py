@@ -1,4 +1,4 @@
-"""Draws the moving picture of the README from simulations: moving_picture.py FOLDER_OF_FMUS PICTURE.gif [SECONDS]"""
+"""Draw the animated picture of the README from simulations: moving_picture.py FOLDER_OF_FMUS PICTURE.gif [SECONDS]"""
 
 import sys
 from pathlib import Path
@@ -16,14 +16,14 @@ BALLS = 5
 
 
 def simulate(folder, name, seconds, outputs, start=None):
-    """The outputs at the times of the frames, an array for each."""
+    """Simulate an FMU; return an array for each output, at the times of the frames."""
     archive = str(folder / f"{name}.fmu")
     result = simulate_fmu(archive, stop_time=seconds, output_interval=1 / FRAMES_PER_SECOND, output=outputs, start_values=start or {})
     return [result[output] for output in outputs]
 
 
 def cradle(folder, seconds):
-    """Threads from pivots side by side to the balls: points of one line, each thread apart from the next by a gap."""
+    """Return lines(frame) that yields the threads of Newton's cradle, from pivots side by side to the balls; limits of x and y; marker size."""
     angles = simulate(folder, "NewtonsCradle", seconds, [f"theta[{i}]" for i in range(1, BALLS + 1)])
     length, width = 0.2, 0.04
 
@@ -46,14 +46,14 @@ def double_pendulum(folder, seconds):
 
 
 def walker(folder, seconds):
-    """The stance foot goes on with each step, along the slope."""
+    """Return lines(frame) that yields slope and legs of the walker, as cradle() does; each step moves the stance foot down the slope."""
     names = ["thetaStance", "thetaSwing", "steps"]
     stance, swing, steps = simulate(folder, "PassiveWalker", seconds, names)
     slope, foot = np.radians(3), np.zeros((len(stance), 2))
     for i in range(1, len(stance)):
         foot[i] = foot[i - 1]
         if steps[i] > steps[i - 1]:
-            # The legs have just struck, and lie alike on both sides of the slope's normal.
+            # The swing foot has just struck: the legs are symmetric about the slope's normal.
             way = 2 * np.sin(abs(stance[i - 1] - swing[i - 1]) / 2)
             foot[i] += way * np.array([np.cos(slope), -np.sin(slope)])
 

@@ -1,6 +1,8 @@
 """
-The C source of an FMU as one file, from the system's and the runtime's: one_file.py ROOT GLOBAL_NAMES VERSION SYSTEM.c NAME FILE. GLOBAL_NAMES lists
-what the linker sees of the compiled runtime, as nm does: such names get the FMU's before them, so that several FMUs can be linked into one program.
+Write the C source of an FMU as one file, made of the system and the runtime: one_file.py ROOT GLOBAL_NAMES VERSION SYSTEM.c NAME FILE
+
+GLOBAL_NAMES is the output of nm for the compiled runtime. The names in it get the FMU's name as a prefix, so that several FMUs can be linked
+into one program.
 """
 
 import re
@@ -8,7 +10,7 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'#include "([a-z0-9_/]+\.[ch])"\n')
-NAMING = {2: "FMI 2.0.4, section 2.1.1", 3: "FMI 3.0.2, section 2.2.2"}  # where the prefix is defined
+NAMING = {2: "FMI 2.0.4, section 2.1.1", 3: "FMI 3.0.2, section 2.2.2"}  # sections of the standards that define the prefix
 HEAD = """/*
  * {license}
  */
@@ -37,7 +39,7 @@ HEAD = """/*
 
 
 def included_once(text, root, included):
-    """The text with each file of the project in the place where it is first included."""
+    """Replace the first #include of each project file by its text, and delete the others; `included` is the set of files so far."""
 
     def content(found):
         if found[1] in included:
@@ -50,9 +52,9 @@ def included_once(text, root, included):
 
 
 def one_file(root, global_names, version, system, name):
-    """The text."""
+    """Return the text of the file; `version` is the version of FMI, `system` the path of system.c, `name` the FMU's name."""
     fmi, runtime = f"FMI{version}", root / "src" / "runtime"
-    # The layer of the version of FMI stands beside the core.
+    # The functions of the version of FMI, which come beside the runtime that all versions share.
     layer = "".join(f'#include "{path.relative_to(runtime).as_posix()}"\n' for path in sorted((runtime / f"fmi{version}").glob("*.c")))
     text = system.read_text(encoding="utf-8").replace("#ifdef FMU_IN_ONE_FILE\n", f"#ifdef FMU_IN_ONE_FILE\n{layer}")
     text = included_once(text, root, set())

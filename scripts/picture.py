@@ -1,4 +1,4 @@
-"""A figure that Jupyter shows."""
+"""Show figures in Jupyter without pyplot."""
 
 import io
 
@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 
 class Picture(Figure):
-    """A figure of matplotlib; Jupyter shows it as it is, since pyplot does not know it."""
+    """A figure of matplotlib that is not registered with pyplot, so that Jupyter shows it exactly once."""
 
     def _repr_png_(self):
         picture = io.BytesIO()

@@ -1,12 +1,12 @@
-"""What went wrong in a way that the user can do something about."""
+"""Define the exceptions for errors that a user can correct."""
 
 
 class Problem(Exception):
-    """Its text is the message, with the remedy."""
+    """An error that a user can correct; its text names the cause and the remedy."""
 
 
 class Unfinished(Problem):
-    """A simulation that stopped; has the Motion until then as `motion`."""
+    """A simulation stopped before its end; `motion` is the simulation.Motion until then."""
 
     def __init__(self, text, motion):
         super().__init__(text)

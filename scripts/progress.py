@@ -1,10 +1,12 @@
-"""A progress bar on a terminal; elsewhere a line now and then."""
+"""Show a progress bar on a terminal, or else print a line every 15 s."""
 
 import sys
 import time
 
 
 class Progress:
+    """Progress of `count` steps, of which `done` are complete at the start; a call adds steps."""
+
     def __init__(self, count, done=0):
         self.count, self.done, self.before = count, done, done
         self.begin, self.shown = time.time(), 0.0

@@ -1,4 +1,4 @@
-"""Values of variables as texts, such as "30deg", "pi/2" and "20cm", which lagc converts to a variable's unit. Also a module of the wheel."""
+"""Convert values given as texts, such as "30deg", "pi/2" and "20cm", to the unit of a variable, by lagc. Also a module of the wheel."""
 
 import argparse
 import functools
@@ -26,7 +26,7 @@ def _converted(name, text, unit):
 
 
 def number_of(name, value, unit, is_limit=False):
-    """The number in this unit of a value, which may be one already; limits may be infinite."""
+    """Return a value, a number or a text, as a number in the unit; raise Problem if it is not finite, unless `is_limit` allows infinity."""
     if not isinstance(value, str):
         return value
     try:
@@ -39,12 +39,12 @@ def number_of(name, value, unit, is_limit=False):
 
 
 def numbers_of(values, units):
-    """Of a dict by name; units: likewise, of those that have some."""
+    """Return the values of a dict as numbers; `units` has the units of variables by name, and "1" is the default."""
     return {name: number_of(name, value, units.get(name, "1")) for name, value in values.items()}
 
 
 def assignment(text):
-    """NAME=VALUE on a command line: the name, and the value as it is written."""
+    """Parse NAME=VALUE of a command line; return the name, and the value as text."""
     name, separator, value = text.partition("=")
     if not separator or not name or not value.strip():
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE")

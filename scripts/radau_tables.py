@@ -1,6 +1,9 @@
 """
-The coefficients of Radau IIA with 3, 5 and 7 stages as C, from 60 digits: python scripts/radau_tables.py > src/runtime/methods/radau_tables.h
-(E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8.)
+Print the coefficients of Radau IIA with 3, 5 and 7 stages as C: python scripts/radau_tables.py > src/runtime/methods/radau_tables.h
+
+The nodes c are the zeros of d^(s-1)/dx^(s-1) of x^(s-1) (x - 1)^s. The matrix A integrates the Lagrange polynomials of the nodes from 0 to c_i.
+The eigenvalues and eigenvectors of A^-1 decouple the linear systems of Newton's method. The embedded formula gives the error estimate.
+All is computed with 60 digits (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8).
 """
 
 import mpmath as mp
@@ -10,8 +13,8 @@ STAGES = (3, 5, 7)
 
 
 def nodes(s):
-    """The zeros of d^(s-1)/dx^(s-1) of x^(s-1) (x - 1)^s."""
-    polynomial = [mp.mpf(0)] * (2 * s)  # ascending
+    """Return the nodes of the method with s stages, ascending."""
+    polynomial = [mp.mpf(0)] * (2 * s)  # coefficients in ascending order
     for k in range(s + 1):
         polynomial[s - 1 + k] = mp.binomial(s, k) * mp.mpf(-1) ** (s - k)
     for _ in range(s - 1):
@@ -21,7 +24,7 @@ def nodes(s):
 
 
 def lagrange_integrals(points, end):
-    """The integrals from 0 to end of the Lagrange polynomials of the points."""
+    """Return the integrals from 0 to `end` of the Lagrange polynomials of the points."""
     size = len(points)
     vandermonde = mp.matrix(size, size)
     for i in range(size):
@@ -32,13 +35,14 @@ def lagrange_integrals(points, end):
 
 
 def method(s):
+    """Return nodes, eigenvalues and eigenvectors of A^-1 (one of each conjugate pair), the inverse of all eigenvectors, and error weights."""
     c = nodes(s)
     a = mp.matrix([lagrange_integrals(c, end) for end in c])
     inverse = a**-1
     values, vectors = mp.eig(inverse)
     order = sorted(range(s), key=lambda j: (abs(mp.im(values[j])), -mp.im(values[j])))
     order = [j for j in order if mp.im(values[j]) > -mp.mpf(10) ** -30]
-    full = mp.matrix(s, s)  # columns: the eigenvectors of all values, conjugates behind
+    full = mp.matrix(s, s)  # columns: the eigenvectors, followed by the conjugates
     columns = [vectors[:, j] / vectors[s - 1, j] for j in order]
     everything = columns + [column.apply(mp.conj) for column in columns[1:]]
     for j, column in enumerate(everything):
@@ -46,7 +50,7 @@ def method(s):
             full[i, j] = column[i]
     back = full**-1
     real = mp.re(values[order[0]])
-    # The embedded formula with the node 0, whose weight is 1 / real: what it differs by, in terms of the stages.
+    # The embedded formula has the additional node 0 with the weight 1 / real; its difference from the method, in terms of the stages.
     weight = 1 / real
     moments = mp.matrix([(mp.mpf(1) / (i + 1)) - (weight if i == 0 else 0) for i in range(s)])
     vandermonde = mp.matrix(s, s)

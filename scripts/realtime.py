@@ -1,4 +1,4 @@
-"""What scripts/realtime prints: the times of single communication steps of 1 ms."""
+"""Measure the times of single communication steps of 1 ms, and print them; for scripts/realtime."""
 
 import importlib.util
 import re
@@ -19,9 +19,9 @@ from html_page import write_csv
 from scripts.problem import Problem
 
 PROGRAM = ROOT / "build" / "bin" / "realtime"
-STEP, RUNS = 1e-3, 3
-LONGEST = 60.0  # s of the clock for a run
-TRACED = 2000  # steps under strace
+STEP, RUNS = 1e-3, 3  # communication step in s; runs, of which the fastest counts for each step
+LONGEST = 60.0  # limit of a run's wall-clock time, in s
+TRACED = 2000  # steps that run under strace at most, since strace is slow
 COLUMNS = ("system", "steps", "median", "99.9 %", "longest", "longest as seen", "allocations", "system calls")
 PYTHON_PENDULUM = '''
 from math import sin
@@ -56,7 +56,7 @@ def words_for(folder, description, count, runs):
 
 
 def system_calls(words):
-    """Between the two calls of getppid, in some steps; None without strace, or where it may not watch."""
+    """Count the system calls between the program's two calls of getppid; return None if strace is missing or not permitted."""
     if not shutil.which("strace"):
         return None
     with tempfile.NamedTemporaryFile("r") as log:
@@ -77,7 +77,7 @@ def measure(name, folder, description, count):
 
 
 def python_pendulum(folder, count):
-    """An FMU as PythonFMU makes it, with Runge and Kutta's method in Python; its interpreter is this one, so that FMPy calls it."""
+    """Measure a pendulum by PythonFMU, with the classical Runge-Kutta method in Python; FMPy calls it, since it runs in this interpreter."""
     source = Path(folder) / "python_pendulum.py"
     source.write_text(PYTHON_PENDULUM)
     subprocess.run([sys.executable, "-m", "pythonfmu", "build", "-f", source, "-d", folder], check=True, capture_output=True)
@@ -100,7 +100,7 @@ def python_pendulum(folder, count):
 
 
 def imported_pendulum(solver, count):
-    """The FMU of SimplePendulum in model exchange, by a solver of FMPy, whose loop in Python is in the times."""
+    """Measure the FMU of SimplePendulum in model exchange, by a solver of FMPy; the times include FMPy's loop in Python."""
     taken = []
     for _ in range(RUNS):
         clock = []
@@ -113,7 +113,7 @@ def imported_pendulum(solver, count):
 
 
 def row_of(name, taken):
-    """taken: s of each step, a row for each run."""
+    """Return the row of COLUMNS; `taken` has the time of each step in s, runs x steps."""
     least, count = np.sort(taken.min(axis=0)), taken.shape[1]
     times = [np.median(least), least[count - 1 - count // 1000], least[-1], taken.max()]
     return dict(zip(COLUMNS, (name, count, *(f"{1e6 * one:.3g}" for one in times), "", "")))
@@ -124,7 +124,7 @@ def show(row):
 
 
 def rows_of(names, seconds):
-    """A row of COLUMNS by name for each system; for a pendulum by FMPy's solvers and, where PythonFMU is installed, for one in Python."""
+    """Yield a row for each system, for a pendulum by FMPy's solvers, and, if PythonFMU is installed, for one in Python."""
     count = round(seconds / STEP)
     for name in names:
         yield measure(name, unpacked(name), read_model_description(archive(name)), count)

@@ -1,6 +1,8 @@
 """
-The rooms of lagc, with the laboratory above it, of what is linked into FMUs and of what runs many at once: folders of at most a dozen modules, each a .c and its .h, whose #include lines lead down alone.
-Prints what is otherwise; no output where all is well.
+Check the layers of the C sources.
+
+lagc with the laboratory, the runtime of FMUs, and the ensemble each consist of rooms: folders of at most a dozen modules, where a module is a .c
+file and its .h file. An #include leads to the same room or to one that is listed before it. Prints violations; no output means there are none.
 """
 
 import re
@@ -13,8 +15,8 @@ MOST_MODULES = 12
 
 
 class House(NamedTuple):
-    rooms: list  # from the ground up: each includes of itself and of those before it
-    paths: list  # in which #include finds names beside the file's own folder; all rooms are in them
+    rooms: list  # folders from the lowest layer up; a room includes files of itself and of rooms before it
+    paths: list  # include paths beside the file's own folder; they contain all rooms
 
 
 LAGC = House(
@@ -79,7 +81,7 @@ HOUSES = [LAGC, RUNTIME, ENSEMBLE]
 
 
 def files_of(house):
-    """By room."""
+    """Return the C files of each room, by the room's path."""
     rooms = {}
     for file in sorted({file for path in house.paths for file in (ROOT / path).rglob("*.[ch]")}):
         rooms.setdefault(str(file.parent.relative_to(ROOT)), []).append(file)
@@ -87,7 +89,7 @@ def files_of(house):
 
 
 def arrows_from(file, house):
-    """The lines that include something of the house, each with the room that it leads to."""
+    """Yield the #include lines that lead to a file of the house, as (name, room)."""
     for name in re.findall(r'^#include "(.*)"', file.read_text(), re.MULTILINE):
         places = [file.parent / name, *(ROOT / path / name for path in house.paths)]
         found = next((place for place in places if place.exists()), None)
@@ -96,7 +98,7 @@ def arrows_from(file, house):
 
 
 def way(arrows, start, end):
-    """The rooms on a way along the arrows, both ends with them; None where there is none."""
+    """Return the rooms on a shortest path from `start` to `end`, by breadth-first search; None if there is no path."""
     ways = [[start]]
     seen = {start}
     for path in ways:
@@ -109,6 +111,7 @@ def way(arrows, start, end):
 
 
 def complaints(house):
+    """Yield a message for each violation."""
     rooms = files_of(house)
     lines = [(room, file, *arrow) for room in rooms for file in rooms[room] for arrow in arrows_from(file, house)]
     arrows = {room: {to for start, _, _, to in lines if start == room} for room in rooms}

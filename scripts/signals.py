@@ -1,10 +1,12 @@
 """
-The inputs of an FMU over time, as polynomials between the times where they change, from tables or functions.
+Represent the inputs of an FMU as piecewise polynomials in time, from tables or functions.
 
-Between the rows of a table an input is linear, or held where that is wished. Rows of one time are a jump. Before the first row and behind the last it is constant.
-An input that moves something has its derivatives as inputs of their own, der(zb) and der(der(zb)). It is a cubic spline through its rows, or, where its derivative has a
-column too, the cubics that have both values and slopes (Hermite). Derivatives without a column are those of these polynomials. A function of time is the cubic through four of its
-values in each step.
+- Between the rows of a table an input is linear, or held on request. Two rows of one time are a jump. Outside of the rows it is constant.
+- An input of a prescribed motion has its derivatives as inputs, der(zb) and der(der(zb)). It is a cubic spline through its rows, or, if its
+  derivative has a column, a cubic Hermite interpolant. Derivatives without a column are those of these polynomials.
+- A function of time is interpolated in each step by the cubic through its values at four Lobatto nodes.
+
+The cubic spline solves a tridiagonal system by Thomas' algorithm, with O(n) operations for n rows (C. de Boor: A practical guide to splines).
 """
 
 from collections.abc import Mapping
@@ -15,35 +17,35 @@ from .problem import Problem
 from .variables import known
 
 ORDER = 3  # of the polynomials
-NODES = 0.5 + 0.5 * np.array([-1.0, -(5**-0.5), 5**-0.5, 1.0])  # of a step, where functions are evaluated: Lobatto's, which integrate polynomials up to order 5
-FROM_NODES = np.linalg.inv(np.vander(NODES, increasing=True))  # values there become coefficients
-SAME = 1e-10  # of the largest: what differs by less is equal
+NODES = 0.5 + 0.5 * np.array([-1.0, -(5**-0.5), 5**-0.5, 1.0])  # Lobatto nodes in [0, 1], whose quadrature is exact to order 5
+FROM_NODES = np.linalg.inv(np.vander(NODES, increasing=True))  # matrix from values at the nodes to coefficients
+SAME = 1e-10  # difference, relative to the largest value, below which values are equal
 REAL = ("Real", "Float64", "Float32")
-PIECES = 100  # linear ones in place of a polynomial that is curved, for importers that take tables alone
+PIECES = 100  # linear pieces in place of a curved polynomial, for importers that accept tables only
 EXPECTED = "expected the path of a CSV, a structured array, a dict of arrays or a DataFrame with time and names of inputs, or a function of time"
 
 
 def derivative(coefficients):
-    """Of polynomials, whose coefficients by order are along the first axis."""
+    """Return the coefficients of the polynomials' derivatives; the first axis is the order."""
     found = np.zeros_like(coefficients)
     found[:-1] = coefficients[1:] * np.arange(1, len(coefficients)).reshape(-1, *[1] * (coefficients.ndim - 1))
     return found
 
 
 def value(coefficients, s):
-    """Of polynomials, at s behind where they begin."""
+    """Return the values of cubic polynomials at a time s after their begin."""
     return coefficients[0] + s * (coefficients[1] + s * (coefficients[2] + s * coefficients[3]))
 
 
 def _end_slope(times, values):
-    """At the first row, of the polynomial through the first four."""
+    """Return the slope at the first row of the polynomial through the first four rows."""
     times, values = times[: ORDER + 1], values[: ORDER + 1]
     span = times[-1] - times[0]
     return np.polynomial.polynomial.polyfit((times - times[0]) / span, values, len(times) - 1)[1] / span
 
 
 def spline_slopes(times, values):
-    """At the rows, of the cubic spline with the end slopes of polynomials: a tridiagonal system, by Thomas' algorithm."""
+    """Return the slopes at the rows of the cubic spline whose end slopes are those of _end_slope(), by Thomas' algorithm."""
     count = len(times)
     if count == 1:
         return np.zeros(1)
@@ -52,7 +54,7 @@ def spline_slopes(times, values):
     weight = 1 / np.diff(times)
     pull = 3 * np.diff(values) * weight**2
     pivot, right = np.ones(count), slopes.copy()
-    above = np.concatenate([[0.0], weight[1:]])  # of the diagonal; the first row is solved already
+    above = np.concatenate([[0.0], weight[1:]])  # superdiagonal; the first unknown is known
     for i in range(1, count - 1):
         share = weight[i - 1] / pivot[i - 1]
         pivot[i] = 2 * (weight[i - 1] + weight[i]) - share * above[i - 1]
@@ -63,13 +65,13 @@ def spline_slopes(times, values):
 
 
 class Column:
-    """Numbers at the rows of a table: kind is "held", "linear" or "cubic", with these slopes where they are known."""
+    """The values of an input at the rows of a table; `kind` is "held", "linear" or "cubic", and `slopes` are the given slopes or None."""
 
     def __init__(self, kind, values, slopes=None):
         self.kind, self.values, self.slopes = kind, values, slopes
 
     def pieces(self, times, rises):
-        """The coefficients between the rows `rises` and the next ones, whose times are later."""
+        """Return the coefficients, 4 x n, of the pieces that begin at the n rows `rises`, whose next rows have later times."""
         step, low, high = times[rises + 1] - times[rises], self.values[rises], self.values[rises + 1]
         found = np.zeros((ORDER + 1, len(rises)))
         found[0] = low
@@ -89,11 +91,11 @@ class Column:
 
 
 class Table:
-    """Polynomials through rows."""
+    """Piecewise polynomials through the rows of a table. Piece i begins at starts[i]; the first and last are constant."""
 
     def __init__(self, times, columns):
         rises = np.flatnonzero(np.diff(times) > 0)
-        self.starts = np.concatenate([times[:1], times[rises], times[-1:]])  # of pieces: that before the first row, those between rows, that behind the last
+        self.starts = np.concatenate([times[:1], times[rises], times[-1:]])  # of the pieces before the first row, between rows, and after the last
         self.coefficients = np.zeros((ORDER + 1, len(self.starts), len(columns)))
         for k, column in enumerate(columns):
             self.coefficients[0, [0, -1], k] = column.values[[0, -1]]
@@ -101,7 +103,7 @@ class Table:
         self.breaks = self._breaks()
 
     def _breaks(self):
-        """The starts of pieces that do not continue the ones before."""
+        """Return the starts of the pieces whose polynomials are not the continuation of the piece before."""
         before, after = self.coefficients[:, :-1], self.coefficients[:, 1:]
         length, differs = np.diff(self.starts)[:, None], np.zeros(len(self.starts) - 1, bool)
         for _ in range(ORDER + 1):
@@ -110,7 +112,7 @@ class Table:
         return np.unique(self.starts[1:][differs])
 
     def over(self, begin, end):
-        """The coefficients about begin, order x columns, of the polynomials that hold from there to the end."""
+        """Return the coefficients about `begin`, 4 x columns, of the polynomials between two times without a break between them."""
         piece = np.searchsorted(self.starts[1:], (begin + end) / 2, side="right")
         here, s, factor = self.coefficients[:, piece], begin - self.starts[piece], 1.0
         found = np.empty_like(here)
@@ -121,7 +123,7 @@ class Table:
 
 
 class Function:
-    """Polynomials through values of a function of time, which returns one for each column."""
+    """Polynomials that interpolate a function of time, which returns a value for each column."""
 
     breaks = np.empty(0)
 
@@ -137,7 +139,12 @@ class Function:
 
 
 class Signals:
-    """Inputs of an FMU: the variables, how many columns each has, and their polynomials; derivatives that are inputs too stand behind these."""
+    """
+    The inputs of an FMU as polynomials of a Table or a Function.
+
+    `variables` and `sizes` are the input variables and their numbers of columns: first the given ones, then derivatives that are inputs, too.
+    `moving` lists inputs of prescribed motions.
+    """
 
     def __init__(self, own, source, inputs):
         rates = [(rate, name, order) for name in own for rate, order in _rates(name, own, inputs)]
@@ -153,7 +160,7 @@ class Signals:
         return self.source.breaks
 
     def over(self, begin, end):
-        """As of the source, of all variables."""
+        """Return the coefficients about `begin`, 4 x columns of all variables."""
         own = self.source.over(begin, end)
         parts = [own]
         for places, order in self.rates:
@@ -164,11 +171,11 @@ class Signals:
         return np.hstack(parts)
 
     def breaks_between(self, begin, end, near):
-        """The inner times where they change; what is so near to an end is at it."""
+        """Return the breaks between two times; breaks within `near` of an end do not count."""
         return self.breaks[np.searchsorted(self.breaks, begin + near, side="right") : np.searchsorted(self.breaks, end - near, side="left")]
 
     def as_table(self, start, stop, step):
-        """A structured array of linear pieces, with two rows where they jump, for importers that take nothing else."""
+        """Return a structured array that approximates the inputs by linear pieces, with two rows at a jump, for importers that accept tables only."""
         rows = []
         ends = [start, *self.breaks_between(start, stop, 0.0), stop]
         for begin, end in zip(ends[:-1], ends[1:]):
@@ -191,7 +198,7 @@ def _size(variable):
 
 
 def _rates(name, own, inputs):
-    """The derivatives of an input that are inputs too, and have no values of their own, with their order."""
+    """Yield the derivatives of an input that are inputs, too, and are not given, with their order."""
     rate, order = f"der({name})", 1
     while rate in inputs and rate not in own:
         yield rate, order
@@ -199,7 +206,7 @@ def _rates(name, own, inputs):
 
 
 def _columns_of(data):
-    """Arrays by name of what has rows; the index of a DataFrame may be the time."""
+    """Return the columns of a table as arrays by name; the index of a DataFrame may be the time."""
     if hasattr(data, "reset_index"):
         data = data if "time" in data.columns else data.reset_index()
         return {str(name): np.asarray(data[name]) for name in data.columns}
@@ -208,7 +215,7 @@ def _columns_of(data):
 
 
 def _checked(columns):
-    """As numbers, with as many rows as times, which do not decrease."""
+    """Return the columns as arrays of floats; raise Problem for missing values, wrong lengths or decreasing times."""
     if "time" not in columns:
         raise Problem(f"the input has no 'time' but {', '.join(map(repr, columns))}; expected the times of its rows under this name")
     count, found = len(columns["time"]), {}
@@ -258,7 +265,7 @@ def _finite(numbers, time):
 
 
 def _function_of(data):
-    """Of a dict of functions and numbers, one that returns a dict."""
+    """Return a function of time; a dict of functions and numbers becomes a function that returns a dict."""
     if isinstance(data, Mapping):
         return lambda time: {name: one(time) if callable(one) else one for name, one in data.items()}
     return data
@@ -279,7 +286,11 @@ def _from_function(function, inputs, description, start, hold):
 
 
 def signals_of(data, description, start=0.0, hold=False):
-    """The Signals of what a user gives; hold: the values of a table are held from row to row, those of a function over each step."""
+    """
+    Return the Signals of a table or function of the user; raise Problem if they do not fit the FMU's inputs.
+
+    If `hold`, the values of a table are held from row to row, and those of a function over each step.
+    """
     inputs = {variable.name: variable for variable in description.modelVariables if variable.causality == "input"}
     if callable(data) or (isinstance(data, Mapping) and "time" not in data and all(callable(one) or np.ndim(one) == 0 for one in data.values())):
         return _from_function(_function_of(data), inputs, description, start, hold)

@@ -1,4 +1,4 @@
-"""Simulates an FMU with FMPy and leaves a CSV, a plot and an animation: simulate.py FMU [NAME=VALUE ...]"""
+"""Simulate an FMU with FMPy and write a CSV, a plot and an animation: simulate.py FMU [NAME=VALUE ...]"""
 
 import argparse
 import sys

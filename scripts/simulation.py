@@ -1,4 +1,4 @@
-"""Simulating an FMU with FMPy; a CSV, a plot and an animation of its motion. Also a module of the wheel."""
+"""Simulate an FMU with FMPy, and write a CSV, a plot and an animation of its motion. Also a module of the wheel."""
 
 import inspect
 import io
@@ -28,31 +28,33 @@ from .variables import checked_start, elements, instead, known, names_of, near_f
 from .whole_files import write_whole
 
 
-WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver", "step", "tolerance")  # with which users ask for a simulation
+WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver", "step", "tolerance")  # arguments of lagrange_fmu.simulate, for messages
 TYPES = ("CoSimulation", "ModelExchange")
-TAKEN = ("filename", "fmi_type", "fmu_instance", "start_values", "input", "output", "set_input_derivatives")  # which have other names here
-FMPY = tuple(name for name in inspect.signature(simulate_fmu).parameters if name not in TAKEN)  # the other options
-ROWS = 500  # of a simulation for which neither the FMU nor the user has a step
+TAKEN = ("filename", "fmi_type", "fmu_instance", "start_values", "input", "output", "set_input_derivatives")  # arguments of simulate_fmu that have other names here
+FMPY = tuple(name for name in inspect.signature(simulate_fmu).parameters if name not in TAKEN)  # options of simulate_fmu that are passed on
+ROWS = 500  # of a simulation, if neither the FMU nor the user gives a step
 ENERGIES = ("kineticEnergy", "potentialEnergy", "totalEnergy")
-FLAT = 15.0  # times that the largest of a panel is larger than the smallest, at most
-LEVEL = 1e-6  # of its size: what changes by less is drawn as if it did not
-MOST_NAMES, MOST_EVENTS = 8, 100  # in a panel
+FLAT = 15.0  # largest ratio of the magnitudes in a panel, so that no curve is flat
+LEVEL = 1e-6  # changes below this share of the magnitude are drawn as constant
+MOST_NAMES, MOST_EVENTS = 8, 100  # of a panel
 WIDEST_TITLE = 75  # letters
-STOPPED = "-stopped.csv"  # behind the name of a system whose simulation did not come to its end
+STOPPED = "-stopped.csv"  # suffix of the CSV of a simulation that stopped before its end
 
 
 @dataclass
 class Motion:
+    """A simulated motion of an FMU."""
+
     fmu: Path
     description: ModelDescription
-    tree: ElementTree.Element  # of modelDescription.xml
-    start: dict  # the start values of all that have one
-    outputs: np.ndarray  # structured: time and the outputs
-    values: np.ndarray  # likewise, with where the elements are, energies, and the number of events where there may be some
+    tree: ElementTree.Element  # root of modelDescription.xml
+    start: dict  # start values by name
+    outputs: np.ndarray  # structured array of the time and the outputs
+    values: np.ndarray  # the same, with the positions of drawn elements, energies and the number of events, if the FMU has them
 
 
 def print_problem(*words):
-    """A logger, of FMI 2.0 or 3.0, that leaves out what is neither a problem nor a start that initialization moved."""
+    """Print a log message of FMI 2.0 or 3.0, if it is a warning, an error, or about start values that initialization changed."""
     *_, status, _, message = words
     text = message.decode().replace("%%", "%")
     if status > 0 or "moved to fulfil the constraints" in text:
@@ -60,7 +62,7 @@ def print_problem(*words):
 
 
 def described(fmu):
-    """The description of an FMU, or a Problem where it is none."""
+    """Return the model description of an FMU; raise Problem if the file is missing or not an FMU."""
     if not Path(fmu).exists():
         raise Problem(f"there is no file {fmu}{near_file(fmu) or '; expected an FMU'}")
     try:
@@ -70,7 +72,7 @@ def described(fmu):
 
 
 def experiment_of(description, start_time=None, stop_time=None, output_interval=None):
-    """When a simulation begins and ends, and its step, all in s: where these are not given, as the FMU's experiment says."""
+    """Return start time, stop time and step of a simulation in s; values that are None come from the FMU's experiment."""
     experiment = description.defaultExperiment
     start, stop, step = (
         float(next((value for value in (given, getattr(experiment, name, None), default) if value is not None), math.nan))
@@ -84,7 +86,7 @@ def experiment_of(description, start_time=None, stop_time=None, output_interval=
 
 
 def _log_into(problems):
-    """Returns a logger that collects errors, and prints warnings."""
+    """Return a logger that appends errors to the list `problems`, and prints warnings."""
 
     def log(*words):
         *_, status, _, message = words
@@ -97,7 +99,7 @@ def _log_into(problems):
 
 
 def _what_ended(fmu, problems, exception):
-    """The message of a simulation that failed: what the FMU says, or, if it says nothing, which call failed."""
+    """Return the message of a failed simulation: the FMU's error messages, or, without any, the failed call."""
     return f"{fmu}: {'; '.join(dict.fromkeys(problems)) or exception}"
 
 
@@ -109,8 +111,11 @@ def _check_options(options, allowed):
 
 def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSimulation", **options):
     """
-    The Motion of an FMU from start values by name, over its experiment. `output` has the names of the variables to record, in place of all
-    outputs; `input` is what signals_of takes, held between its rows or in each step if `hold`; options are those of co_simulate, or in model exchange of simulate_fmu of FMPy.
+    Return the Motion of an FMU from start values by name, over its experiment.
+
+    `output` has the names of the variables to record, in place of all outputs. `input` is a table or function for signals_of(), whose values are
+    held between rows or over each step if `hold`. The options are those of co_simulate(), or in model exchange of simulate_fmu() of FMPy.
+    Raise Problem, or Unfinished if the simulation stops.
     """
     if fmi_type not in TYPES:
         raise Problem(f"the type '{fmi_type}' is not known; {instead(fmi_type, TYPES, 'expected one of these')}")
@@ -150,14 +155,14 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
 
 
 def crowds_of(names):
-    """"x[]" for each of x[1], x[2], ..., where they are too many to be told apart by names; "" for all else."""
+    """Return by name "x[]" for x[1], x[2], ..., if these are too many for a legend, and "" for all other names."""
     of = {name: re.sub(r"\[[^]]*\]", "[]", name) for name in names}
     members = Counter(of.values())
     return {name: crowd if members[crowd] > MOST_NAMES + 1 else "" for name, crowd in of.items()}
 
 
 def scalars(values):
-    """A structured array in which the elements of arrays have columns of their own."""
+    """Return a structured array in which each element of an array is a field."""
     shapes = {name: values.dtype[name].shape for name in values.dtype.names}
     if not any(shapes.values()):
         return values
@@ -166,7 +171,7 @@ def scalars(values):
 
 
 def sizes_of(unit_of, result):
-    """The largest value of each; 0 where that is a rounding error beside others of the unit."""
+    """Return the magnitude of each variable; 0 if it is at the level of rounding errors of the largest variable of its unit."""
     size = {name: np.nanmax(abs(result[name])) for name in result.dtype.names[1:]}
     most = {unit: max(size[name] for name in size if unit_of[name] == unit) for unit in map(unit_of.get, size)}
     return {name: value if value > 1e-9 * most[unit_of[name]] else 0.0 for name, value in size.items()}
@@ -174,8 +179,10 @@ def sizes_of(unit_of, result):
 
 def panels_of(description, result):
     """
-    (unit, names) of what is drawn together: outputs of one unit, unless one of them would be a flat line beside the other; all but zero goes
-    with any. What is too many of a kind has a panel of its own.
+    Return the panels of a plot as (unit, names).
+
+    A panel has variables of one unit whose magnitudes differ by at most a factor of FLAT; a zero variable fits any panel. Arrays of many elements
+    have their own panel.
     """
     unit_of = units_of(description)
     size = sizes_of(unit_of, result)
@@ -194,14 +201,18 @@ def panels_of(description, result):
 
 
 def event_times(values):
-    """The times of the results behind which there were more events than before."""
+    """Return the times of the rows at which the number of events has increased."""
     if EVENTS not in values.dtype.names:
         return []
     return values["time"][1:][np.diff(values[EVENTS]) > 0]
 
 
 def draw(axis, result, names, size):
-    """The curves, whose largest value is `size`, with names that the legend shows: of many of a kind the first and the last, whose colors run from dark to bright; else as many as can be told apart."""
+    """
+    Draw curves whose magnitude is `size`, with a legend.
+
+    Of an array with many elements the legend has the first and the last, and colors run from dark to bright. Otherwise it has MOST_NAMES names.
+    """
     from matplotlib import colormaps
 
     crowd, all_named = any(crowds_of(names).values()), len(names) <= MOST_NAMES + 1
@@ -219,7 +230,7 @@ def draw(axis, result, names, size):
 
 
 def figure_of(description, result, events=()):
-    """A panel for outputs of one unit and size, their names beside it; dotted lines are events."""
+    """Return a figure with the panels of panels_of(), legends beside them, and dotted lines at events."""
     from .picture import Picture
 
     panels, sizes = panels_of(description, result), sizes_of(units_of(description), result)
@@ -248,14 +259,14 @@ def csv_of(values):
 
 
 def picture_of(figure):
-    """A PNG, in bytes."""
+    """Return the figure as bytes of a PNG."""
     picture = io.BytesIO()
     figure.savefig(picture, format="png", dpi=120)
     return picture.getvalue()
 
 
 def write_results(motion, folder):
-    """Writes them into the folder; the path of each kind, the FMU's too, or why there is none."""
+    """Write CSV, plot and animation of a Motion into the folder; return by kind, with "FMU", the path or the reason why there is none."""
     name, result = motion.description.modelName, motion.outputs
     csv, plot, animation, stopped = ((folder / f"{name}{end}").resolve() for end in (".csv", ".png", "-motion.html", STOPPED))
     write_whole(csv, csv_of(result))
@@ -275,7 +286,11 @@ def write_results(motion, folder):
 
 
 def write_motion(simulated, folder):
-    """The same of the Motion that simulated() returns. One that stops leaves the rows until then in a CSV of another name, and none of earlier results."""
+    """
+    Write the results of the Motion that simulated() returns, as write_results() does.
+
+    If the simulation stops, write its rows to NAME-stopped.csv, delete older results, and raise Unfinished.
+    """
     try:
         motion = simulated()
     except Unfinished as unfinished:

@@ -1,6 +1,7 @@
 """
-Runs an FMU over a grid or a random sample of start values and parameters, on all cores or on a Dask cluster. Each run is a row of a
-Parquet file: what varied, the states at the end, the error of the energy, the run time, and what went wrong.
+Run an FMU over a grid or a random sample of start values and parameters, on all cores or on a Dask cluster.
+
+Each run is a row of a Parquet file: the varied values, the states at the end, the error of the energy, the run time, and the message of a failure.
 """
 
 import argparse
@@ -21,7 +22,11 @@ from scripts.sweeping import report, sweep
 
 
 def compile_ensemble(source, lanes):
-    """Once for a system, without what takes a compiler long and makes equations no faster; by clang where it is, to the same bits as by gcc."""
+    """
+    Compile the library of ensembles.py for a system.c, unless it exists; return its path.
+
+    The optimization is -O1: higher levels take long and make the equations no faster. clang and gcc give the same bits; clang is preferred.
+    """
     archives = [ROOT / "build" / f"lib{name}.a" for name in (f"ensemble{lanes}", "ensemble_runtime", "solvers")]
     parts = [*archives, *sorted((ROOT / "src" / "ensemble").glob("*.*")), *sorted((ROOT / "include").iterdir())]
     key = hashlib.sha256(b"".join([source.encode(), *(part.read_bytes() for part in parts)])).hexdigest()[:32]

@@ -1,4 +1,4 @@
-"""What a sweep records of each run beside the states at the end: values at times, largest and smallest values, events. Also a module of the wheel."""
+"""Parse the records of a sweep: values at times, extremes, and events of each run. Also a module of the wheel."""
 
 import math
 
@@ -10,23 +10,23 @@ from .variables import instead, names_of, nearest
 
 VALUE, MAXIMUM, MINIMUM, EVENTS, FIRST = range(5)  # enum RecordKind of sweep_runs.c
 EXTREMES, COUNTS = {".max": MAXIMUM, ".min": MINIMUM}, {".events": EVENTS, ".first": FIRST}
-COUNTER = "events"  # the FMU's variable
+COUNTER = "events"  # variable of the FMU that counts events
 FORMS = "NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first, or of a single contact or friction NAME.events, NAME.first"
-SAMPLES = 1000  # of a run, where the FMU has no step size
+SAMPLES = 1000  # for extremes, in a run of an FMU without step size
 
 
 def items_of(given):
-    """Those of "height.max,omega@end", or of several such texts."""
+    """Return the list of items of a text such as "height.max,omega@end", or of several such texts."""
     return list(dict.fromkeys(item.strip() for text in names_of(given or [], "record") for item in text.split(",") if item.strip()))
 
 
 def _split(text, ends):
-    """The name before one of the ends, and what that stands for; or None twice."""
+    """Return the text before a suffix of `ends`, and the value of the suffix; (None, None) if it has none."""
     return next(((text.removesuffix(end), kind) for end, kind in ends.items() if text.endswith(end) and text != end), (None, None))
 
 
 def _time_of(item, text, stop):
-    """The time behind @, in s."""
+    """Return the time in s that follows the @ of an item; raise Problem if it is not from 0 to `stop`."""
     try:
         time = stop if text == "end" else float(text)
     except ValueError:
@@ -37,7 +37,7 @@ def _time_of(item, text, stop):
 
 
 def _check_switching(item, name, description):
-    """That the events of the FMU are those of this contact or friction alone."""
+    """Raise Problem unless all events of the FMU are those of this contact or friction."""
     names = [v.name for v in description.modelVariables]
     switching = [other for v in names for other, _ in [_split(v, {".closed": 1, ".sliding": 1})] if other]
     if name not in [COUNTER, *switching]:
@@ -47,7 +47,7 @@ def _check_switching(item, name, description):
 
 
 def _record(item, reals, counts, stop, description):
-    """(kind, name, time) of an item."""
+    """Return (kind, name, time) of an item; raise Problem if it is unknown."""
     name, separator, at = item.rpartition("@")
     counted, count = _split(item, COUNTS)
     extreme, kind = _split(item, EXTREMES)
@@ -65,7 +65,7 @@ def _record(item, reals, counts, stop, description):
 
 
 def records_of(given, description, stop):
-    """[(column, kind, name of a variable or None, time)] of the items of --record."""
+    """Return the list of (column, kind, name of a variable or None, time) for the items of --record."""
     reals = [v.name for v in description.modelVariables if v.type in REAL]
     has_counter = any(v.name == COUNTER for v in description.modelVariables)
     found = {f"{item}@end" if item in reals else item: _record(item, reals, has_counter, stop, description) for item in items_of(given)}
@@ -73,7 +73,11 @@ def records_of(given, description, stop):
 
 
 def times_of(records, description, stop, step):
-    """The ends of communication steps: equal ones, of the length `step` or the whole run, in which extremes are sampled; and times of values."""
+    """
+    Return the ends of the communication steps: equal steps of about the length `step`, or one, and the times of recorded values.
+
+    Extremes are sampled at these times; their step is by default the FMU's step size.
+    """
     experiment = description.defaultExperiment
     if step is None and any(kind in (MAXIMUM, MINIMUM) for _, kind, _, _ in records):
         step = float(experiment.stepSize) if experiment and experiment.stepSize else stop / SAMPLES

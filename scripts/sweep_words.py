@@ -1,11 +1,15 @@
-"""The words of a sweep on a command line. Also a module of the wheel."""
+"""Declare the arguments of a sweep on a command line. Also a module of the wheel."""
 
 import argparse
 from pathlib import Path
 
 
 def variation(text):
-    """NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,...; the values as they are written."""
+    """
+    Parse NAME=FROM:TO:COUNT, NAME=FROM:TO (for --random) or NAME=VALUE,VALUE,...
+
+    Return the name, and a tuple (FROM, TO, COUNT or None) or a list of values, all as texts.
+    """
     name, separator, values = text.partition("=")
     try:
         if not separator:
@@ -21,7 +25,7 @@ def variation(text):
 
 
 def sweep_words(parser, output):
-    """Declares them; output tells where the file goes if nothing is said."""
+    """Declare the arguments; `output` describes the default file."""
     parser.add_argument("--vary", action="append", type=variation, required=True, metavar="NAME=FROM:TO:COUNT",
                         help="or NAME=VALUE,VALUE,...; several make a grid. theta0 is the start value of theta")  # fmt: skip
     parser.add_argument("--random", type=int, metavar="RUNS", help="a random sample of the ranges instead of a grid")

@@ -1,4 +1,4 @@
-"""What a thread or a worker of a cluster does in a sweep: runs one after another, by C, from bytes to bytes."""
+"""Compute a chunk of a sweep in a thread or in a worker of a cluster: from the bytes of an FMU to the bytes of a Parquet table."""
 
 import hashlib
 import io
@@ -21,14 +21,14 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
-opened = {}  # instances of FMUs, by the threads that run them and the digests of their archives
+opened = {}  # Instance by (thread, hash of the FMU's archive)
 
 
 class Instance:
-    """An FMU that every run resets, and the C that runs it."""
+    """An instance of an FMU, which each run resets, and the library that performs the runs."""
 
     def __init__(self, archive, runner):
-        self.folder = tempfile.TemporaryDirectory(prefix="sweep-")  # which goes with the worker
+        self.folder = tempfile.TemporaryDirectory(prefix="sweep-")  # deleted with the worker
         place = Path(self.folder.name)
         (place / "system.fmu").write_bytes(archive)
         (place / "runner").write_bytes(runner)
@@ -54,7 +54,7 @@ class Instance:
         return any(variable.name == "events" and variable.type == "Integer" for variable in self.description.modelVariables)
 
     def run(self, sweep, count):
-        """What went wrong in each of the runs."""
+        """Perform the runs of a Sweep; return for each the message of its failure, or None."""
         problems, first, failed = [None] * count, 0, c_char_p()
         while first < count:
             self.messages.clear()
@@ -66,11 +66,11 @@ class Instance:
         return problems
 
 
-VALUE, EVENTS = 0, 3  # enum RecordKind of sweep_runs.c; what is less than EVENTS is of a variable
+VALUE, EVENTS = 0, 3  # enum RecordKind of sweep_runs.c; kinds below EVENTS refer to a variable
 
 
 class Record(Structure):
-    """That of sweep_runs.c."""
+    """struct Record of sweep_runs.c."""
 
     _fields_ = [("kind", c_size_t), ("variable", c_size_t), ("time", c_double)]
 
@@ -80,7 +80,7 @@ def variables_fields(name):
 
 
 class Sweep(Structure):
-    """That of sweep_runs.c."""
+    """struct Sweep of sweep_runs.c."""
 
     _fields_ = [
         *(field for name in ("varied", "watched", "ends", "sampled") for field in variables_fields(name)),
@@ -90,7 +90,7 @@ class Sweep(Structure):
 
 
 def lawful_energies(description):
-    """What to watch for the law of the energy: none where it may change, as in systems that are moved in a given way."""
+    """Return the variables of the energy balance; none for a system without a conservation law, such as one with prescribed motion."""
     law = next((v.description or "" for v in description.modelVariables if v.name == "totalEnergy"), "")
     if law.endswith("; constant"):
         return ["totalEnergy", "kineticEnergy"]
@@ -98,7 +98,7 @@ def lawful_energies(description):
 
 
 def energy_errors(before, after):
-    """Relative to the largest energy there was; NaN without a law."""
+    """Return the error of the energy balance of each run, relative to its largest energy; NaN without a conservation law."""
     if before.shape[1] == 0:
         return np.full(len(before), np.nan)
     work = after[:, 2] - before[:, 2] if before.shape[1] > 2 else 0.0
@@ -112,27 +112,28 @@ def states_of(description):
 
 @dataclass
 class Results:
-    """Arrays over runs: what is watched at both ends, the states at the end, what is recorded, the run times, and what went wrong."""
+    """The results of n runs, arrays with a row for each."""
 
-    before: np.ndarray
-    after: np.ndarray
-    ends: np.ndarray
-    recorded: np.ndarray
-    seconds: np.ndarray
-    problems: np.ndarray  # of texts, None where all went well
+    before: np.ndarray  # energies at the start, in the order of lawful_energies()
+    after: np.ndarray  # energies at the end
+    ends: np.ndarray  # states at the end
+    recorded: np.ndarray  # a column for each record
+    seconds: np.ndarray  # run times in s
+    problems: np.ndarray  # messages of failures; None for a run without
 
     def replace(self, runs, others):
+        """Replace the rows of some runs; `runs` is a mask."""
         for name, values in vars(others).items():
             getattr(self, name)[runs] = values
 
 
 def sampled_of(settings):
-    """The names of the variables that records are of, each once."""
+    """Return the names of the recorded variables, each once."""
     return list(dict.fromkeys(name for _, kind, name, _ in settings["records"] if kind < EVENTS))
 
 
 def run_by_fmi(instance, rows, names, settings):
-    """One run after another, by the functions of FMI."""
+    """Perform the runs one after another, by the functions of FMI; return their Results."""
     states, watched, sampled, records = states_of(instance.description), lawful_energies(instance.description), sampled_of(settings), settings["records"]
     variables, count = [instance.references(of) for of in (names, watched, states, sampled)], len(rows)
     counter = instance.references(["events"] if any(kind != VALUE for _, kind, _, _ in records) and instance.counts_events() else [])
@@ -143,12 +144,16 @@ def run_by_fmi(instance, rows, names, settings):
     sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data, settings["tolerance"] or 0.0, len(times), times.ctypes.data,
                   len(counter), counter.ctypes.data, len(records), addressof(wanted), *(a.ctypes.data for a in (recorded, samples, before, after, ends, seconds)))  # fmt: skip
     problems = np.array(instance.run(sweep, count), dtype=object)
-    recorded[problems != None] = np.nan  # noqa: E711: of each element
+    recorded[problems != None] = np.nan  # noqa: E711: elementwise comparison
     return Results(before, after, ends, recorded, seconds, problems)
 
 
 def run_in_lanes(ensemble, instance, rows, names, settings):
-    """Many runs at once, which have equal shares of the time; those that the lanes leave, by FMI. What is recorded are values at times."""
+    """
+    Perform the runs in SIMD lanes, and by FMI those that the lanes leave; return their Results.
+
+    Each run in lanes gets an equal share of their time. All records must be values at times.
+    """
     begin, states, watched = time.perf_counter(), len(states_of(instance.description)), len(lawful_energies(instance.description))
     values, is_left = ensemble.run(rows)
     seconds, sampled, times = np.full(len(rows), (time.perf_counter() - begin) / len(rows)), sampled_of(settings), list(ensemble.times)
@@ -162,7 +167,11 @@ def run_in_lanes(ensemble, instance, rows, names, settings):
 
 
 def run_chunk(archive, runner, numbers, rows, names, settings, ensemble=None):
-    """A table of the results of some runs, as Parquet in bytes; ensemble: that of ensembles.py, where the FMU has one."""
+    """
+    Perform the runs `numbers`, with start values `rows` (runs x names); return their table as bytes of Parquet.
+
+    `archive` and `runner` are the bytes of the FMU and of the library of sweep_runs.c. `ensemble` is an Ensemble, or None.
+    """
     place = threading.get_ident(), hashlib.sha256(archive).hexdigest()
     if place not in opened:
         opened[place] = Instance(archive, runner)

@@ -1,8 +1,9 @@
 """
-Runs an FMU over a grid or a random sample. Each run starts from the FMU's own values but for those that vary, and ends
-as a row of one Parquet file: what varied, the states at the end, the error of the energy, the run time, and what went
-wrong; the energy has an error only where the FMU says which law it obeys. Finished runs are kept in parts beside the file
-until all are there, so that the same command goes on after a kill. Also a module of the wheel.
+Run an FMU over a grid or a random sample of start values and parameters.
+
+Each run is a row of one Parquet file: the varied values, the states at the end, the relative error of the energy, the run time, and the message
+of a failure. The energy has an error only if the FMU's description of totalEnergy states a conservation law. Finished chunks of runs are kept
+beside the file until all are complete, so that the same command continues after a kill. Also a module of the wheel.
 """
 
 import hashlib
@@ -32,18 +33,18 @@ from .whole_files import replace
 
 try:
     import fcntl
-except ModuleNotFoundError:  # on Windows, where a folder cannot be locked
+except ModuleNotFoundError:  # Windows, which cannot lock folders
     fcntl = None
 
-CHUNK, PARTS = 250, 100  # runs a task: at least so many, and one in so many of all
-LANES_CHUNK, LANES_PARTS = 1000, 25  # the same in lanes, which take less time for a run than to write it
-LARGEST_CHUNK = 20000  # so that memory does not grow with the number of runs
-LANES_FROM = 2000  # runs, with which the lanes need less time than a compiler for them
-IN_FLIGHT = 3  # tasks a worker thread, likewise
+CHUNK, PARTS = 250, 100  # runs of a task at least; number of tasks at most, if that makes them larger
+LANES_CHUNK, LANES_PARTS = 1000, 25  # the same for runs in lanes, which are faster than writing their rows
+LARGEST_CHUNK = 20000  # runs of a task at most, to bound the memory
+LANES_FROM = 2000  # runs from which on lanes save more time than their compilation takes
+IN_FLIGHT = 3  # tasks in flight for each thread of a cluster, to hide latency
 
 
 def known_name(name, description):
-    """The variable of this name; theta0 is the start value of theta."""
+    """Return the variable that a name varies: theta for theta, and for theta0, the start value of theta. Raise Problem if there is none."""
     names = settable(description)
     if name in names:
         return name
@@ -54,14 +55,14 @@ def known_name(name, description):
 
 
 def in_unit(name, values, unit):
-    """Values of sweep_words.py as numbers."""
+    """Return a range or values of sweep_words.py, which may be texts, as numbers in the unit."""
     if isinstance(values, tuple):
         return (*(number_of(name, end, unit) for end in values[:2]), values[2])
     return [number_of(name, value, unit) for value in values]
 
 
 def points(variations, random, seed):
-    """A row of values for each run."""
+    """Return the varied values, runs x variables: the grid, or `random` samples with this seed."""
     if random:
         generator, columns = np.random.default_rng(seed), []
         for _, values in variations:
@@ -77,13 +78,13 @@ def points(variations, random, seed):
 
 
 def read(path):
-    """A table; pyarrow's read_table would first load what data sets of many files need."""
+    """Read a Parquet file; faster than pyarrow's read_table, which loads the modules for data sets of many files."""
     with pq.ParquetFile(path) as file:
         return file.read()
 
 
 def lock_of(path, flags):
-    """The file or folder at the path, open and locked for this process; None while another process has it."""
+    """Open and lock the file or folder at the path; return its descriptor, or None if another process has locked it."""
     while True:
         lock = os.open(path, flags)
         try:
@@ -93,13 +94,15 @@ def lock_of(path, flags):
             return None
         if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):
             return lock
-        os.close(lock)  # another process has moved it
+        os.close(lock)  # another process has renamed or removed it
 
 
 class Parts:
     """
-    Finished chunks beside the result, in a folder whose name tells which plan they belong to; and the unfinished result, which is locked, so that
-    sweeps of different plans cannot write it at once.
+    The finished chunks of a sweep, and its unfinished output.
+
+    The chunks are in a folder beside the output, whose name has the hash of the sweep's plan. The folder is locked against equal sweeps, and the
+    output against sweeps of other plans.
     """
 
     def __init__(self, output, plan):
@@ -115,7 +118,7 @@ class Parts:
             raise Problem(f"another sweep to {output} runs already; expected another --output, or to wait for its end")
 
     def _locked(self):
-        """The folder, created and locked for this process; an equal sweep that runs is waited for."""
+        """Create and lock the folder; wait for the end of an equal sweep that runs already. Return its descriptor, or None on Windows."""
         while True:
             self.folder.mkdir(parents=True, exist_ok=True)
             if fcntl is None:
@@ -128,18 +131,19 @@ class Parts:
                 fcntl.flock(lock, fcntl.LOCK_EX)
             if self.folder.exists() and os.path.samestat(os.fstat(lock), os.stat(self.folder)):
                 return lock
-            os.close(lock)  # the other one has removed it
+            os.close(lock)  # the other sweep has removed the folder
 
     def path(self, chunk):
         return self.folder / f"{chunk:06}.parquet"
 
     def write(self, chunk, data):
+        """Write a chunk, bytes of Parquet, atomically."""
         temporary = self.path(chunk).with_suffix(".part")
         temporary.write_bytes(data)
         replace(temporary, self.path(chunk))
 
     def finished(self, runs_of):
-        """The chunks that are there. One whose file was cut short is dropped."""
+        """Return the set of finished chunks; delete damaged ones."""
         chunks = sorted(int(path.stem) for path in self.folder.glob("*.parquet"))
         whole = [chunk for chunk in chunks if self.is_whole(chunk, len(runs_of(chunk)))]
         for chunk in set(chunks) - set(whole):
@@ -155,7 +159,7 @@ class Parts:
             return False
 
     def join(self, output, count):
-        """One file of all parts in the order of the runs, a part at a time."""
+        """Write all chunks into the output, in the order of the runs, and delete their folder; one chunk is in memory at a time."""
         writer = None
         for chunk in range(count):
             table = read(self.path(chunk))
@@ -177,11 +181,11 @@ class Parts:
 
 
 def ensemble_of(path, description, names, settings, runner, compile_ensemble):
-    """What runs many at once, or None where the FMU or what varies does not allow it."""
+    """Return the Ensemble that computes many runs at once, or None if the FMU or the varied variables do not allow it."""
     source, states = source_of(path), sweep_worker.states_of(description)
     try:
         library = source and compile_ensemble(source, lanes_here(runner))
-    except Problem as problem:  # an FMU of another version's making may have sources that do not fit
+    except Problem as problem:  # the sources of an FMU of another version may not fit this runtime
         print(f"{problem}\nThe runs follow one another.", file=sys.stderr)
         return None
     if not library:
@@ -194,7 +198,7 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
 
 
 def simulate(executor, width, archive, runner, rows, names, settings, parts, ensemble=None):
-    """Keeps that many tasks in flight; writes each as it ends."""
+    """Compute all chunks that are not finished, `width` tasks at a time, and write each as it ends; return the number of chunks."""
     least, most = (LANES_CHUNK, LANES_PARTS) if ensemble else (CHUNK, PARTS)
     size = min(max(least, -(-len(rows) // most)), LARGEST_CHUNK)
     count = -(-len(rows) // size)
@@ -220,16 +224,16 @@ def simulate(executor, width, archive, runner, rows, names, settings, parts, ens
 
 
 def simulate_in_threads(*words):
-    """The time of a run is spent in C, which Python's lock does not hold."""
+    """Compute all chunks in a thread for each core. Runs are in C, without Python's global interpreter lock."""
     executor = ThreadPoolExecutor(os.cpu_count())
     try:
         return simulate(executor, 2 * os.cpu_count(), *words)
     finally:
-        executor.shutdown(wait=False, cancel_futures=True)  # runs that have begun may take long
+        executor.shutdown(wait=False, cancel_futures=True)  # does not wait for runs in progress, which may take long
 
 
 def client_of(address):
-    """Of the Dask cluster with this scheduler."""
+    """Return a client of the Dask cluster with this scheduler; raise Problem if it does not answer."""
     try:
         import cloudpickle
         from distributed import Client
@@ -239,17 +243,18 @@ def client_of(address):
         client = Client(address)
     except (OSError, ValueError) as problem:
         raise Problem(f"no Dask scheduler answers at '{address}': {problem}; expected an address such as tcp://HOST:8786") from None
-    cloudpickle.register_pickle_by_value(sweep_worker)  # a cluster's workers need not have this module
+    cloudpickle.register_pickle_by_value(sweep_worker)  # sends the module to the workers, which need not have it
     return client
 
 
 def simulate_with_dask(client, *words):
+    """Compute all chunks on a Dask cluster."""
     return simulate(client.get_executor(pure=False, retries=3), IN_FLIGHT * max(1, sum(client.nthreads().values())), *words)
 
 
 def print_summary(output):
-    """Of the file, a part at a time."""
-    count, failed, first, largest = 0, 0, None, None  # largest: error of the energy, where it has a law
+    """Print the numbers of runs and failures, and the largest error of the energy; one row group is in memory at a time."""
+    count, failed, first, largest = 0, 0, None, None  # largest: relative error of the energy; None without a conservation law
     with pq.ParquetFile(output) as file:
         for group in range(file.num_row_groups):
             table = file.read_row_group(group, columns=["energyError", "problem"])
@@ -270,7 +275,7 @@ def print_summary(output):
 
 
 def check_words(words):
-    """Raises a Problem for the first number that is out of its range."""
+    """Raise Problem for the first number that is out of its range."""
     for name, least, expected in (("random", 1, "a whole number of runs"), ("seed", 0, "a whole number that is not negative")):
         value = getattr(words, name)
         if value is not None and not (isinstance(value, Integral) and value >= least):
@@ -282,19 +287,20 @@ def check_words(words):
 
 
 def report(run):
-    """Calls run(), which returns the path of a sweep's file, for a command line, and prints a summary."""
+    """Call run(), which returns the path of a sweep's file, and print a summary; for a command line."""
     try:
         output = run()
     except KeyboardInterrupt:
         print("interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
-        os._exit(130)  # runs that have begun may take long
+        os._exit(130)  # does not wait for runs in progress, which may take long
     print_summary(output)
 
 
 def sweep(path, folder, words, runner, compile_ensemble):
     """
-    Of an FMU, to a Parquet file, by the words of sweep_words.py; returns its path. runner: sweep_runs.c as a shared library;
-    compile_ensemble(source, lanes): the library of ensembles.py, or None.
+    Sweep an FMU into a Parquet file, by the arguments of sweep_words.py; return its path.
+
+    `runner` is the shared library of sweep_runs.c. compile_ensemble(source, lanes) returns the library of ensembles.py, or None.
     """
     check_words(words)
     description = described(path)
@@ -312,8 +318,8 @@ def sweep(path, folder, words, runner, compile_ensemble):
     output = Path(words.output or Path(folder) / f"{description.modelName}-sweep.parquet")
     archive = Path(path).read_bytes()
     ensemble = None
-    at_times = all(kind == VALUE for _, kind, *_ in records)  # lanes have no extremes and no events
-    if len(rows) >= LANES_FROM and at_times and not words.scheduler:  # a cluster's workers may have other processors
+    at_times = all(kind == VALUE for _, kind, *_ in records)  # lanes record no extremes and no events
+    if len(rows) >= LANES_FROM and at_times and not words.scheduler:  # the workers of a cluster may have other processors
         ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:

@@ -1,4 +1,4 @@
-"""The variables of an FMU."""
+"""Look up variables of an FMU by name, and suggest names for unknown ones."""
 
 import difflib
 import itertools
@@ -11,22 +11,22 @@ from pathlib import Path
 from .problem import Problem
 from .quantities import numbers_of
 
-LIKE = 0.65  # difflib's ratio of a word and the one that was meant, at least
+LIKE = 0.65  # smallest ratio of difflib at which a word is suggested
 
 
 def settable(description):
-    """The names of those whose start values can be set: parameters, inputs, states."""
+    """Return the names of the real variables whose start values can be set: parameters, inputs and states."""
     return [v.name for v in description.modelVariables if v.start is not None and v.type in ("Real", "Float64")]
 
 
 def elements(name, shape):
-    """The names of an array's elements as FMI 2.0 has them, such as der(theta[1]); that of a scalar."""
+    """Return the names of an array's elements as in FMI 2.0, such as der(theta[1]); for a scalar a list of its name."""
     places = itertools.product(*(range(1, count + 1) for count in shape or ()))
     return [re.sub(r"(\)*)$", rf"[{','.join(map(str, place))}]\1", name, count=1) for place in places] if shape else [name]
 
 
 def start_values(description):
-    """Of all that have one, as numbers; those of an array by its elements."""
+    """Return the start values of all variables that have one, as numbers by name; arrays by their elements."""
     numbers = {"true": 1.0, "false": 0.0}
     found = {}
     for v in description.modelVariables:
@@ -36,13 +36,13 @@ def start_values(description):
 
 
 def why_not(name, description):
-    """Why it cannot be set, where that needs a word."""
+    """Return the end of a message that explains why a variable cannot be set; "" if no explanation is needed."""
     calculated = [v.name for v in description.modelVariables if v.causality == "calculatedParameter"]
     return ", as it follows from other parameters" if name in calculated else ""
 
 
 def nearest(word, words):
-    """The one that was meant, most likely; None where none is like it, or several begin so."""
+    """Return the most similar word; None if there is none, or if several begin with `word`."""
     by_lower = {str(one).lower(): str(one) for one in words}
     word = str(word).lower()
     begins = [one for one in by_lower if one.startswith(word)]
@@ -53,13 +53,13 @@ def nearest(word, words):
 
 
 def instead(word, words, what="these are"):
-    """The end of a message: the word that was meant, or all that there are."""
+    """Return the end of a message: the most similar word, or the list of all words."""
     near = nearest(word, words)
     return f"did you mean '{near}'?" if near else f"{what}: {', '.join(map(str, words))}"
 
 
 def near_file(path):
-    """The end of a message about a file that is not there: one beside it with nearly this name."""
+    """Return the end of a message about a missing file: a file of a similar name in its folder, or ""."""
     path = Path(path)
     beside = {other.stem: other.name for other in path.parent.iterdir()} if path.parent.is_dir() else {}
     near = nearest(path.stem, beside)
@@ -67,19 +67,23 @@ def near_file(path):
 
 
 def units_of(description):
-    """By name; "1" of what has none."""
+    """Return the units of all variables and elements of arrays by name; "1" for variables without unit."""
     return {name: v.unit or "1" for v in description.modelVariables for name in (v.name, *elements(v.name, v.shape))}
 
 
 def _is_finite(value):
-    """True of a number, and of an array of some."""
+    """Return True for a finite number, and for an array of finite numbers."""
     if isinstance(value, Iterable) and not isinstance(value, (str, bytes)) and getattr(value, "shape", (1,)):
         return all(map(_is_finite, value))
     return not isinstance(value, (str, bytes)) and (isinstance(value, Real) or hasattr(value, "__float__")) and math.isfinite(value)
 
 
 def numbers_by_name(given, what="start_values"):
-    """Those of a dict, or of nothing; arrays of them too, and texts, which quantities.py reads."""
+    """
+    Return a dict by name of finite numbers, arrays of them, or texts with units, which quantities.py converts; {} for None.
+
+    Raise Problem for other values.
+    """
     if given is not None and not isinstance(given, Mapping):
         raise Problem(f"{what} is a {type(given).__name__}; expected a dict of numbers by name, such as {{'theta': 1.0}}")
     for name, value in (given or {}).items():
@@ -89,7 +93,7 @@ def numbers_by_name(given, what="start_values"):
 
 
 def names_of(given, what):
-    """Some names, of which one may stand alone."""
+    """Return a list of names, which may be given as a single name; raise Problem if one is not a text."""
     if isinstance(given, str):
         return [given]
     names = list(given) if isinstance(given, Iterable) else [given]
@@ -100,7 +104,7 @@ def names_of(given, what):
 
 
 def known(names, among, description, what="is not a variable"):
-    """The names, all of which are among those."""
+    """Return the names as a list; raise Problem if one is not in `among`."""
     for name in names:
         if name not in among:
             raise Problem(f"'{name}' {what} of {description.modelName}{why_not(name, description)}; {instead(name, among)}")
@@ -108,7 +112,7 @@ def known(names, among, description, what="is not a variable"):
 
 
 def checked_start(start, description):
-    """Start values as numbers; all of them are of variables that take them."""
+    """Return the start values as numbers; raise Problem if one is for a variable that does not exist or cannot be set."""
     names, free = [variable.name for variable in description.modelVariables], settable(description)
     for name in start:
         if name in names and name not in free:

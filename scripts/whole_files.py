@@ -1,4 +1,4 @@
-"""Files that are there as a whole or not at all. Also a module of the wheel."""
+"""Write files atomically. Also a module of the wheel."""
 
 import os
 import threading
@@ -8,19 +8,19 @@ from .problem import Problem
 
 
 def replace(temporary, path):
-    """Gives a file its name when it is on the disk, so that a machine that loses power leaves it whole or not at all."""
+    """Sync a file to the disk and rename it, so that after a power failure the old or the new file exists completely."""
     with open(temporary, "rb+") as file:
         os.fsync(file.fileno())
     os.replace(temporary, path)
 
 
 def write_whole(path, content):
-    """Writes a text or bytes, and returns the path. A file that was there stays as it was if that fails, and the Problem names it."""
+    """Write a text or bytes, and return the path. On failure an existing file is unchanged, and the Problem names it."""
     path = Path(path)
     content = content.encode() if isinstance(content, str) else content
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        if path.exists() and not path.is_file():  # a device
+        if path.exists() and not path.is_file():  # a device, which cannot be replaced
             path.write_bytes(content)
             return path
         target = path.resolve()

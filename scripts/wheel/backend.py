@@ -1,10 +1,10 @@
 """
-scikit-build-core, for wheels of other platforms than this machine's too, since zig compiles lagc for all of them:
+Build wheels for this machine and other platforms, as a build backend on top of scikit-build-core; zig compiles lagc.
 
     pip wheel --no-deps -C platform=win64 scripts/wheel
 
-A source distribution has what the wheel needs of the tree in its places, and in libraries/ what else is linked, so that it builds
-without a distribution's packages.
+A source distribution contains the needed parts of the tree, and in libraries/ the linked libraries, so that it builds without packages of an
+operating system.
 """
 
 import io
@@ -21,7 +21,7 @@ from unittest import mock
 import scikit_build_core.build
 from scikit_build_core.build import *  # noqa: F403
 
-# The tag of the wheel, zig's target and CMake's name of the system. Other than an FMU's, a Mac's wheel is for one processor.
+# Tag of the wheel, zig's target, and CMake's name of the system. A wheel for macOS is for one processor, while an FMU has both.
 PLATFORMS = {
     "linux64": ("manylinux_2_17_x86_64", "x86_64-linux-gnu.2.17", "Linux"),
     "aarch64-linux": ("manylinux_2_17_aarch64", "aarch64-linux-gnu.2.17", "Linux"),
@@ -32,9 +32,9 @@ PLATFORMS = {
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-LIBRARIES = ROOT / "libraries"  # in a source distribution alone
+LIBRARIES = ROOT / "libraries"  # exists in a source distribution only
 OF_THE_TREE = ("include", "modelDescription", "scripts", "src", "fmu/system.xsd", "fmu/README.md", "CMakeLists.txt", "LICENSE")
-# At the top of a source distribution, whose other settings are beside this file.
+# pyproject.toml at the top of a source distribution; the other settings are beside this file.
 PYPROJECT = """[build-system]
 requires = ["scikit-build-core==1.1.2", "ziglang==0.17.1"]
 build-backend = "backend"
@@ -44,6 +44,7 @@ os.chdir(HERE)
 
 
 def this_machine():
+    """Return the name of this machine's platform."""
     processor = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
     for name, (_, target, system) in PLATFORMS.items():
         if target.startswith(f"{processor}-") and system == platform.system():
@@ -53,7 +54,7 @@ def this_machine():
 
 @contextmanager
 def settings_for_platform(settings):
-    """Those of scikit-build-core, with the platform in CMake's words, while the environment tells the tag."""
+    """Yield the settings of scikit-build-core for the platform, while the environment defines the wheel's tag."""
     settings = dict(settings or {})
     name = settings.pop("platform", None) or this_machine()
     if name not in PLATFORMS:
@@ -85,7 +86,7 @@ def get_requires_for_build_wheel(config_settings=None):
 
 
 def _description():
-    """PKG-INFO, and the name of the folder and archive."""
+    """Return the name of the source distribution's folder, and its PKG-INFO."""
     with TemporaryDirectory() as folder:
         name = scikit_build_core.build.build_sdist(folder).removesuffix(".tar.gz")
         with tarfile.open(Path(folder) / f"{name}.tar.gz") as archive:
@@ -93,7 +94,7 @@ def _description():
 
 
 def _contents():
-    """Of a source distribution: the files by their places in it."""
+    """Yield the files of a source distribution as (path in it, path here)."""
     for part in OF_THE_TREE:
         for path in [ROOT / part] if (ROOT / part).is_file() else sorted((ROOT / part).rglob("*")):
             if path.is_file() and "__pycache__" not in path.parts:

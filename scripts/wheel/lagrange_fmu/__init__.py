@@ -6,7 +6,7 @@ Build an FMU from the energies and forces of a mechanical system, simulate it, l
     A, B, C, D = lagrange_fmu.linearize(path, {"theta": 3.14159})[:4]
 
 All functions raise `Problem` on errors. Its text names the cause and the remedy. A likely mistake in a system is a Python warning.
-All values are in SI units.
+Numbers are in the units of the variables, SI units by default. Values may also be texts with units or expressions, such as "30deg" and "pi/2".
 """
 
 from __future__ import annotations
