@@ -75,7 +75,8 @@ def simulate(
     system : path
         An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
     start_values : dict of float, optional
-        Start values of coordinates, velocities, inputs and parameters by name. Other variables keep the start values of the system.
+        Start values of coordinates, velocities, inputs and parameters by name, as numbers or as texts such as "30deg" and "pi/2". Other
+        variables keep the start values of the system.
     output : str or sequence of str, optional
         Names of the variables to record in place of all outputs. Local variables, such as "totalEnergy", are allowed.
     input : path, array, dict, DataFrame or callable, optional
