@@ -1,4 +1,4 @@
-"""The solver that chooses between Taylor series and Radau IIA: right on both sides, and without going to and fro."""
+"""The solver that chooses between Taylor series and Radau IIA: accuracy with either method, and few changes of method."""
 
 import fmpy
 import mpmath
@@ -14,20 +14,20 @@ TEXTS = {
     '<particle mass="1" x="x"/><input name="u"/><force coordinate="x">-b*v - k*x + u</force>',
     "VanDerPol": '<parameter name="mu" start="1e3"/><coordinate name="x" velocity="v" start="2"/><particle mass="1" x="x"/>'
     '<force coordinate="x">mu*(1 - x^2)*v - x</force>',
-    # friction that is nearly dry: stiff where it sticks, not where it slides
+    # nearly dry friction: stiff while it sticks, not while it slides
     "Friction": '<coordinate name="x" velocity="v" start="2.5"/><particle mass="1" x="x"/><potential>x^2/2</potential>'
     '<force coordinate="x">-tanh(v/1e-4)</force>',
-    # a root has no series at its branch point, where the motion starts
+    # a square root, which has no series at its branch point, where the motion starts
     "Root": '<parameter name="b" start="1"/><coordinate name="x" velocity="v" start="0"/><particle mass="1" x="x"/>'
     '<force coordinate="x">sqrt(x) + 1 - b*v</force>',
     "Conservative": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><potential>x^4/4</potential>'
     '<force coordinate="x">sin(time)</force>',
-    # a charge in a magnetic field that is not homogeneous, and a strong damper along it
+    # a charge in an inhomogeneous magnetic field, with strong damping along the field
     "Gyro": '<parameter name="B" start="1e4"/><parameter name="b" start="1e4"/><coordinate name="x" velocity="vx"/>'
     '<coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz" start="1"/><particle mass="1" x="x" y="y" z="z"/>'
     '<force coordinate="x">B*vy*(1 + 0.1*z)</force><force coordinate="y">1 - B*vx*(1 + 0.1*z)</force>'
     '<force coordinate="z">-b*vz - b*z/10</force>',
-    # a ball that bounces on a hard ground with little damping
+    # a ball that bounces on hard ground with little damping
     "Ball": '<coordinate name="x" velocity="v" start="0.1"/><particle mass="1" x="x"/><potential>9.81*x</potential>'
     '<force coordinate="x">1e8*max(-x, 0)^1.5*(1 - 0.5*v)</force>',
     "Driven": '<coordinate name="x" velocity="v" start="1"/><particle mass="1" x="x"/><input name="u"/>'
@@ -49,7 +49,7 @@ def count(instance, name):
 
 @mpmath.workdps(50)
 def damped(b, k, t, x0=1.0, v0=0.0):
-    """x of x'' = -b x' - k x."""
+    """x of x'' = -b x' - k x in closed form."""
     root = mpmath.sqrt(mpmath.mpf(b) ** 2 / 4 - mpmath.mpf(k))
     one, other = -mpmath.mpf(b) / 2 + root, -mpmath.mpf(b) / 2 - root
     if b * b > 4 * k:
@@ -61,7 +61,7 @@ def damped(b, k, t, x0=1.0, v0=0.0):
 @pytest.mark.parametrize("b", DECADES)
 @pytest.mark.parametrize("step", [10.0, 0.1])
 def test_decades_of_damping(b, step, open_fmu):
-    """The closed form at every tolerance, with work that is bounded and few changes of method."""
+    """The result agrees with the closed form at every tolerance, with bounded work and few changes of method."""
     instance = open_fmu("AutoDamper")
     for tolerance in (1e-4, 1e-7, 1e-10, 1e-13):
         instance.reset().initialize({"b": b}, tolerance)
@@ -71,7 +71,7 @@ def test_decades_of_damping(b, step, open_fmu):
 
 
 def test_only_what_may_be_stiff():
-    """Where no energy is lost and no force depends on velocities or inputs, the series are all there is."""
+    """Systems without dissipation, and without forces that depend on velocities or inputs, use the series alone."""
     methods = {}
     for name in TEXTS:
         variables = {v.name for v in fmpy.read_model_description(str(fmu.archive(f"Auto{name}"))).modelVariables}
@@ -81,7 +81,10 @@ def test_only_what_may_be_stiff():
 
 
 def test_friction_that_is_nearly_dry(open_fmu):
-    """From 2.5 at rest, on a spring of 1 N/m under 1 N, half a swing about 1 to -0.5, where it sticks and creeps."""
+    """
+    From rest at 2.5, on a spring of 1 N/m under a friction of 1 N, the mass swings half a period about 1 to -0.5, where it sticks and
+    creeps.
+    """
     instance = open_fmu("AutoFriction").initialize(tolerance=1e-8)
     instance.run(20.0, 20.0)
     creeping = -0.5 + 1e-4 * np.arctanh(0.5) * (20 - np.pi)
@@ -92,8 +95,8 @@ def test_friction_that_is_nearly_dry(open_fmu):
 @pytest.mark.parametrize("tolerance", 10.0 ** -np.linspace(5.5, 12.5, 15))
 def test_flights_belong_to_the_series(open_fmu, tolerance):
     """
-    Where no force depends on the state, no method gets further; three bounces against SciPy. The force has no value on the
-    other side of the ground, whatever rounding makes of the end of a step.
+    During flights no force depends on the state, and the series take the longest steps. Three bounces agree with SciPy. The power x^1.5 is
+    undefined across the ground, where rounding may place the end of a step.
     """
     instance = open_fmu("AutoBall").initialize(tolerance=tolerance)
     instance.step(0.7)
@@ -104,17 +107,17 @@ def test_flights_belong_to_the_series(open_fmu, tolerance):
 
 
 def test_a_start_without_a_series(open_fmu):
-    """x'' = sqrt(x) + 1 - v from rest at 0 against mpmath's quadrature of its own expansion: x = t^2/2 + ..."""
+    """x'' = sqrt(x) + 1 - b v from rest at 0, against mpmath's quadrature of the energy integral."""
     instance = open_fmu("AutoRoot").initialize({"b": 0.0}, tolerance=1e-9)
     instance.step(1.0)
-    # Without damping, energy gives t as an integral: v^2/2 = 2/3 x^(3/2) + x.
+    # Without damping, conservation of energy gives t as an integral: v^2/2 = 2/3 x^(3/2) + x.
     x = mpmath.findroot(lambda x: mpmath.quad(lambda s: 2 / mpmath.sqrt(2 + mpmath.mpf(4) / 3 * s), [0, mpmath.sqrt(x)]) - 1, 0.6)
     assert instance.get("x") == pytest.approx(float(x), abs=1e-7)
 
 
 @pytest.mark.parametrize("mu", [10.0, 1e2, 1e3])
 def test_no_chattering(mu, open_fmu):
-    """Two or three changes of method for each jump of van der Pol's oscillator, not one for each step."""
+    """The method changes two or three times per jump of van der Pol's oscillator, not at each step."""
     instance = open_fmu("AutoVanDerPol").initialize({"mu": mu}, tolerance=1e-6)
     periods = 3
     instance.step(periods * 1.7 * mu)
@@ -123,7 +126,7 @@ def test_no_chattering(mu, open_fmu):
 
 
 def test_inputs_that_change_at_every_step(open_fmu):
-    """Piecewise constant inputs: each piece from its own closed form."""
+    """For piecewise constant inputs, each piece has its own closed form."""
     instance, b, k = open_fmu("AutoDamper"), 1e5, 1e4
     instance.initialize({"b": b, "k": k}, tolerance=1e-8)
     x, v, rng = 1.0, 0.0, np.random.default_rng(1)
@@ -139,7 +142,7 @@ def test_inputs_that_change_at_every_step(open_fmu):
 
 
 def test_stiff_for_a_while(open_fmu):
-    """The damping grows and vanishes while the system runs: each part goes on in closed form from the one before."""
+    """The damping grows and vanishes during the run; the closed form of each part starts at the end of the previous one."""
     instance = open_fmu("AutoDamper").initialize({"b": 0.1}, tolerance=1e-9)
     x, v = 1.0, 0.0
     for b in (0.1, 1e6, 0.2, 1e7, 0.1):
@@ -166,7 +169,7 @@ def test_handovers_are_told_once(open_fmu):
     ("AutoRoot", {"b": 1e4}, 0.25, {"b": 10.0}),
 ])  # fmt: skip
 def test_every_step_from_a_saved_state(name, values, step, changed, open_fmu):
-    """In a fresh instance, and in the same one after a step that was made with other values and taken back."""
+    """A step from a saved state has the same result in a new instance, and in the same one after an undone step with other values."""
     counters = ["solverSteps", "solverHandovers", "derivativeEvaluations", "jacobianEvaluations"]
 
     def results(instance):
@@ -194,7 +197,7 @@ def test_every_step_from_a_saved_state(name, values, step, changed, open_fmu):
     ("AutoDamper", {"b": 1e6}, [0.003, 3.5, 8.0]), ("AutoVanDerPol", {"mu": 100.0}, [0.5, 40.0, 81.0, 120.0]),
 ])  # fmt: skip
 def test_saved_states_know_the_method(name, values, times, open_fmu):
-    """The same bits from a serialized state, whichever method the other instance was at."""
+    """A serialized state gives the same bits, whichever method the other instance used before."""
     first, second, third = (open_fmu(name).initialize(values) for _ in range(3))
     third.run(times[-1], 1.0)
     for time in times:

@@ -1,4 +1,6 @@
-"""The matrix exponential: every variable by itself against 60 digits, however different the variables' scales are."""
+"""
+The matrix exponential: every variable is accurate relative to its own size, against 60 digits, for variables of very different scales.
+"""
 
 import math
 
@@ -14,7 +16,7 @@ NAMES = ("x1", "x2", "v1", "v2")
 
 
 def generator(p):
-    """That of (x1, x2, v1, v2, 1), written down from Newton's law."""
+    """Matrix of the linear system of (x1, x2, v1, v2, 1), from Newton's law."""
     p = {name: mpmath.mpf(value) for name, value in p.items()}
     return mpmath.matrix([
         [0, 0, 1, 0, 0],
@@ -26,10 +28,7 @@ def generator(p):
 
 
 def errors(open_fmu, values, step, count):
-    """
-    Of each variable at the end, in units of its own size: that of all terms that add up to it over a step, the largest
-    of the steps.
-    """
+    """Error of each variable at the end, relative to the largest sum of magnitudes of its terms over a step."""
     instance = open_fmu("CoupledOscillators")
     parameters = {**fmu.start_values("CoupledOscillators"), "F": 0.0, **values}
     instance.initialize(values)
@@ -65,13 +64,13 @@ UNCOUPLED = {"k": 0}
     ids=str,
 )
 def test_scales_do_not_disturb_each_other(values, open_fmu):
-    """Errors of the phase are rounding of the square root of k/m h count, some 1e-16 times the angle."""
+    """The rounding error of the phase is that of the square root of k/m h count, some 1e-16 times the angle."""
     angle = math.sqrt(sum(values.get(name, 1) for name in ("k", "k1", "k2")) / values.get("m1", 1)) * 0.01 * 100
     assert max(errors(open_fmu, values, 0.01, 100)) < 2e-15 + 1e-17 * angle
 
 
 def test_a_force_without_effect_costs_no_digits(open_fmu):
-    """A large gain of an input that is 0."""
+    """A large gain of an input that is 0 costs no accuracy."""
     instance = open_fmu("ParticleCartesian")
     instance.initialize({"m": 2.0**-30, "kx": 4 * 2.0**-30, "ky": 9 * 2.0**-30, "kz": 16 * 2.0**-30})
     for i in range(1000):
@@ -82,7 +81,7 @@ def test_a_force_without_effect_costs_no_digits(open_fmu):
 
 @pytest.mark.parametrize("step", [0.01, 1e-4])
 def test_many_steps_of_an_undamped_spring(step, open_fmu):
-    """After n steps, an angle of 1000 n step: its rounding in doubles is 1e-16 times as large."""
+    """After n steps the angle is 1000 n step; rounding it to a double gives an error 1e-16 times as large."""
     instance, count = open_fmu("ParticleCartesian"), 100_000
     instance.initialize({"kx": 1e6})
     for i in range(count):
@@ -94,7 +93,7 @@ def test_many_steps_of_an_undamped_spring(step, open_fmu):
 
 
 def test_a_decay_keeps_its_digits(open_fmu):
-    """What is left of a fast decay is small, but right to its last digits."""
+    """The small rest of a fast decay is accurate to its last digits."""
     instance = open_fmu("CoupledOscillators")
     instance.initialize(UNCOUPLED | {"k2": 0, "b2": 1, "k1": 1e9})
     for i in range(10):
@@ -103,7 +102,7 @@ def test_a_decay_keeps_its_digits(open_fmu):
 
 
 def test_growth_beyond_all_numbers(open_fmu):
-    """cosh(t) passes the largest double at t = 710.4758600739...; the FMU goes on to there, and says so."""
+    """cosh(t) exceeds the largest double at t = 710.4758600739...; the FMU continues up to there, and logs the overflow."""
     instance = open_fmu("ParticleCartesian")
     instance.initialize({"kx": -1.0})
     with instance.fails(DISCARD, "at time 710.47.*try a shorter step"):

@@ -1,4 +1,4 @@
-"""Stiff and extreme cases: right within a bound on the error and on the work, or refused with a clear message."""
+"""Stiff and extreme cases: accurate within a bound on the error and the work, or a clear error message."""
 
 import pytest
 

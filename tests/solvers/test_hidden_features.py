@@ -1,6 +1,6 @@
 """
-Features of the right side that a series about the start of a step cannot see: walls, hills, steps, pulses, powers that
-vanish at the start, and kinks by any name. The truth is the energy integral, or a closed form.
+Features of the right side that a series about the start of a step cannot show: walls, hills, steps, pulses, powers that vanish at the
+start, and kinks of all kinds. Expected values come from the energy integral or a closed form.
 """
 
 import mpmath as mp
@@ -16,12 +16,12 @@ COMMUNICATION_STEPS = (1, 37)
 
 
 def travel_time(potential, energy, marks):
-    """The time of a unit mass along the marks, the last of which may be a turning point."""
+    """Time of a unit mass between the marks, the last of which may be a turning point."""
     return mp.quad(lambda x: 1 / mp.sqrt(2 * abs(energy - potential(x))), marks)
 
 
-# A unit mass with the velocity 1 runs against them: the potential in the language and in mpmath, the start, a place
-# where the potential is above the energy 1/2, and the width of the feature.
+# A unit mass of velocity 1 meets them: the potential in the language and in mpmath, the start, a position where the potential exceeds the
+# energy 1/2, and the width of the feature.
 WALLS = {
     "Hill": ("0.6*exp(-(x/0.1)^2)", lambda x: 0.6 * mp.exp(-((x / mp.mpf("0.1")) ** 2)), -1, 0, 0.1),
     "NarrowHill": ("0.6*exp(-(x/1e-3)^2)", lambda x: 0.6 * mp.exp(-((x * 1000) ** 2)), -1, 0, 1e-3),
@@ -35,7 +35,7 @@ WALLS = {
 
 
 def turning_point(potential, low, high):
-    """Where U = 1/2, by bisection."""
+    """Position with U = 1/2, by bisection."""
     low, high = mp.mpf(low), mp.mpf(high)
     for _ in range(150):
         middle = (low + high) / 2
@@ -64,14 +64,14 @@ def texts():
 
 
 def friction(t):
-    """v' = -tanh(v / eps)/2: sinh(v / eps) falls exponentially."""
+    """v' = -tanh(v / eps)/2, where sinh(v / eps) decreases exponentially."""
     eps = mp.mpf("0.01")
     velocity = lambda s: eps * mp.asinh(mp.sinh(1 / eps) * mp.exp(-s / (2 * eps)))
     return mp.quad(velocity, [0, 1.9, 2, 2.1, 3]), velocity(t)
 
 
 def on_springs(t):
-    """x'' = -sign(x) from x = 1 at rest: parabolas, four quarters of sqrt(2)."""
+    """x'' = -sign(x) from rest at x = 1: parabolas, four quarter periods of sqrt(2)."""
     quarter = mp.sqrt(2)
     quarters = mp.floor(t / quarter)
     s = t - quarters * quarter
@@ -87,13 +87,13 @@ def with_either_sign(t):
 
 
 def distance_from_one(t):
-    """x'' = |t - 1|"""
+    """x'' = |t - 1|."""
     s = mp.mpf(t) - 1
     return mp.mpf(1) / 6 * abs(s) ** 3 - mp.mpf(1) / 6 + mp.mpf(t) / 2, s * abs(s) / 2 + mp.mpf("0.5")
 
 
 def lobes(t):
-    """x'' = -max(0, sin(3 t)): an integral over each lobe, the first of which begins at the start."""
+    """x'' = -max(0, sin(3 t)): an integral over each lobe; the first lobe begins at the start."""
     x = v = mp.mpf(0)
     for a, b in ((0, mp.pi / 3), (2 * mp.pi / 3, t)):
         v -= mp.quad(lambda s: mp.sin(3 * s), [a, b])
@@ -102,18 +102,18 @@ def lobes(t):
 
 
 def through_a_zone(t):
-    """200 N over 1 cm from x = 0.3 on, which is reached after 1.3 s with 1 m/s."""
+    """A force of 200 N over 1 cm from x = 0.3 on, reached after 1.3 s at 1 m/s."""
     fast = mp.sqrt(1 + 2 * 200 * mp.mpf("0.01"))
     return mp.mpf("0.31") + fast * (t - mp.mpf("1.3") - (fast - 1) / 200), fast
 
 
 def up_a_ramp(t):
-    """A potential that rises by 0.3 J over 1e-6 m from x = 0.3 on, which is reached after 1.3 s with 1 m/s."""
+    """A potential that rises by 0.3 J over 1e-6 m from x = 0.3 on, reached after 1.3 s at 1 m/s."""
     slow, width = mp.sqrt(mp.mpf("0.4")), mp.mpf("1e-6")
     return mp.mpf("0.3") + width + slow * (t - mp.mpf("1.3") - 2 * width / (1 + slow)), slow
 
 
-# Force, (start, velocity there), and the motion at t = 3.
+# Force, initial position and velocity, and the motion at t = 3.
 CLOSED_FORMS = {
     "Pulse": ("exp(-(time - 1)^2/1e-4)", (0, 0), lambda t: (mp.sqrt(mp.pi) / 100 * 2, mp.sqrt(mp.pi) / 100)),
     "Friction": ("-0.5*tanh(v/0.01)", (0, 1), friction),
@@ -149,7 +149,7 @@ def outcomes(instance, end, values=()):
 
 @pytest.mark.parametrize("name", WALLS)
 def test_nothing_is_walked_through(name, open_fmu):
-    """The particle turns, and is back at the start after twice the travel time, with the velocity -1."""
+    """The particle turns at the wall, and returns to the start after twice the travel time, with the velocity -1."""
     _, potential, start, top, width = WALLS[name]
     turn = turning_point(potential, start, top)
     marks = [start, *(turn - width * mp.mpf(2) ** k for k in range(12, -12, -2) if turn - width * 2**k > start), turn]
@@ -162,7 +162,7 @@ def test_nothing_is_walked_through(name, open_fmu):
 
 @pytest.mark.parametrize("n", [4, 8, 20])
 def test_powers_that_vanish_at_the_start(n, open_fmu):
-    """From x = 0 with v = 1 under U = x^n/n, five quarters of the period end at the amplitude."""
+    """From x = 0 with v = 1 under U = x^n/n, the motion is at its amplitude after five quarter periods."""
     amplitude = (mp.mpf(n) / 2) ** (mp.mpf(1) / n)
     quarter = travel_time(lambda x: x**n / n, mp.mpf("0.5"), [0, amplitude / 2, amplitude])
     for tolerance, x, v in outcomes(open_fmu(f"Power{n}"), float(5 * quarter)):
@@ -197,7 +197,7 @@ def test_a_potential_may_be_cut_off(open_fmu):
 
 
 def test_a_contact_by_hertz(open_fmu):
-    """It falls from 1 m, and is back after twice the time of its fall."""
+    """The ball falls from 1 m onto a Hertzian contact, and returns after twice the time down."""
     potential = lambda x: mp.mpf("9.81") * x + (mp.mpf(10) ** 6 * (-x) ** mp.mpf("2.5") / 2.5 if x < 0 else 0)
     lowest = turning_point(lambda depth: potential(-depth) - potential(1) + mp.mpf("0.5"), 0, 1)
     time = lambda depth: 1 / mp.sqrt(2 * abs(potential(1) - potential(-depth)))
@@ -208,7 +208,7 @@ def test_a_contact_by_hertz(open_fmu):
 
 
 def test_a_ball_rests_on_its_floor(open_fmu):
-    """It falls from 1 m on a contact of 1 cm and is back after twice the time of its fall."""
+    """The ball falls from 1 m onto a contact of width 1 cm, and returns after twice the time down."""
     potential = lambda x: mp.mpf("9.81") * x + 100 * mp.log1p(mp.exp(-100 * x))
     height = lambda depth: potential(-depth)
     lowest = turning_point(lambda depth: height(depth) - height(-1) + mp.mpf("0.5"), -0.9, 1)
@@ -227,14 +227,14 @@ def test_a_polynomial_motion_takes_one_step(open_fmu):
 
 
 def test_a_whole_exponent_may_be_a_parameter(open_fmu):
-    """x^p at x = 0, from where the motion is that of U = x^4/4."""
+    """x^p is smooth at x = 0 for an integer parameter p; the motion is that of U = x^4/4."""
     quarter = travel_time(lambda x: x**4 / 4, mp.mpf("0.5"), [0, mp.mpf(2) ** mp.mpf("0.25")])
     for tolerance, x, _ in outcomes(open_fmu("ParameterPower"), float(5 * quarter)):
         assert x == pytest.approx(2**0.25, abs=100 * tolerance)
 
 
 def test_a_weak_pole_is_not_crossed(open_fmu):
-    """Energy: 1e-6 log(x) is missing 1/2 only below exp(-500000)."""
+    """By energy, 1e-6 log(x) reaches -1/2 only below exp(-500000), so that the pole is practically reached."""
     instance = open_fmu("WeakPole")
     for tolerance in TOLERANCES:
         for step in (3.0, 0.01):
@@ -255,7 +255,7 @@ def test_friction_that_sticks_is_refused_by_name(open_fmu):
 
 
 def test_the_state_before_a_singularity_can_be_read_and_restored(open_fmu):
-    """log(1 - u) with u = t: the last good time lies before 1, and all that is saved there is finite."""
+    """log(1 - u) with u = t: the last valid time lies before 1, and the saved state there is finite."""
     instance = open_fmu("LogOfInput").initialize(tolerance=1e-8)
     instance.fmu.setRealInputDerivatives(instance.vr("u"), [1], [1.0])
     with instance.fails(DISCARD, "singularity"):

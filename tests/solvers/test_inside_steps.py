@@ -1,4 +1,4 @@
-"""What every solver offers the core of the runtime: steps of its own, and the states inside of the last one."""
+"""The interface of every solver to the runtime: its own steps, and the states within the last one."""
 
 import subprocess
 
@@ -16,7 +16,7 @@ TEXT = """<system name="Oscillator">
 </system>
 """
 END = 5.0
-# A third of the way into a step, against the tolerance of 1e-9: erk has cubic polynomials there, exact has no states.
+# Errors at a third of a step, at the tolerance 1e-9: erk has cubic dense output there; exact has none.
 ERRORS = {"taylor": 1e-9, "erk": 1e-5, "bdf": 1e-8, "radau": 1e-8, "auto": 1e-9, "exact": None}
 
 

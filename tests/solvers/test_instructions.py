@@ -1,4 +1,4 @@
-"""Code in tables does what code in statements does: the same bits, the same number of steps, the same messages."""
+"""Code as tables and code as statements give the same bits, number of steps, and messages."""
 
 from math import atan, pi
 
@@ -10,7 +10,7 @@ from differential.build import compile_system
 from differential.simulation import Built
 from differential.system import Action, Plan, System
 
-# Functions that bound steps, constants of parameters, pieces, and a matrix that is singular at r = 0 and where k is 0.
+# Functions that bound steps, constants that depend on parameters, pieces, and a matrix that is singular at r = 0 and for k = 0.
 TEXT = """<system name="Forms">
   <parameter name="p" start="-0.4"/><parameter name="k" start="1" min="0"/><parameter name="n" start="0"/>
   <coordinate name="r" velocity="vr" start="1" velocityStart="-0.3"/>
@@ -94,7 +94,7 @@ def test_slopes_of_accelerations_are_the_same(tmp_path):
 
 
 def test_an_angle_jumps_where_it_does(tmp_path):
-    """The force is -pi + arctan((x - 0.2)/(-1 - x)) before the jump, and 2 pi more behind it; what it works is its integral."""
+    """The force is -pi + arctan((x - 0.2)/(-1 - x)) before the jump, and larger by 2 pi after it; its work is the integral."""
     before, behind = (quad(lambda x, turn=turn: turn + atan((x - 0.2) / (-1 - x)), a, b)[0] for turn, a, b in ((-pi, 0, 0.2), (pi, 0.2, 1)))
     rows = []
     for form in ("statements", "tables"):

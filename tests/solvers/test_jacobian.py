@@ -1,4 +1,4 @@
-"""The Jacobian matrix of systems for bdf, and its form: dense for small systems, sparse for large ones."""
+"""The Jacobian for bdf and its storage: dense for small systems, sparse for large ones."""
 
 import subprocess
 
@@ -13,7 +13,7 @@ from linked import linked_members
 
 MASSES = 30
 
-# Masses in a row, each tied to the one before; f pulls at the last.
+# Masses in a row, each coupled to the previous one; f acts on the last.
 LATTICE = """<system name="{name}">
   <parameter name="m" start="0.5"/>
   <parameter name="k" start="1000"/>
@@ -35,7 +35,7 @@ LATTICE = """<system name="{name}">
 </system>
 """
 
-# Three rods, whose block of the mass matrix is factored at run time; the first is tied to the lattice.
+# Three rods, whose block of the mass matrix is factored at run time; the first is coupled to the row.
 RODS = """
   <for index="i" from="1" to="3">
     <coordinate name="a[i]" velocity="w[i]" start="0.1"/>
@@ -53,8 +53,8 @@ TEXTS = {
 ELEMENTS = {
     # q' = v; every acceleration depends on the positions and velocities of a mass and its neighbours.
     "RowOfMasses": MASSES + 2 * (3 * MASSES - 2),
-    # The rods have 3 velocities, a full block, and all of them the position to which the first is tied; a mass has that
-    # one's angle. All forces but those of potentials do work: the dampers' and f's depend on all velocities.
+    # Three rods add 3 rates q' = v, a full block by angles and velocities, the dependence of each on the position of the mass coupled to
+    # the first rod, and that of this mass on the rod's angle. The rate of work of nonpotential forces depends on all velocities.
     "RowAndRods": MASSES + 2 * (3 * MASSES - 2) + 3 + 3 * 3 * 2 + 3 + 1 + MASSES + 3,
     "ShortRowAndRods": 2 + 2 * 4 + 3 + 3 * 3 * 2 + 3 + 1 + 2 + 3,
 }
@@ -67,7 +67,7 @@ def systems():
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_elements(name, tmp_path):
-    """The derivatives along each state, which other tests hold against SymPy's, are those of the Jacobian."""
+    """The Jacobian equals the directional derivatives along each state, which other tests compare with SymPy's."""
     source = fmu.archive(name).parent.parent / "systems" / name / "system.c"
     program = tmp_path / "jacobian"
     words = ["gcc", "-O1", f"-I{ROOT}/include", ROOT / "tests" / "c" / "jacobian.c", source, *runtime(2), "-o", program]
@@ -85,7 +85,7 @@ def test_only_large_systems_have_a_sparse_matrix(name):
 
 
 def test_motion_by_the_sparse_matrix(open_fmu):
-    """x' = A x + B f by the matrix exponential."""
+    """Motion of x' = A x + B f, against the matrix exponential."""
     m, k, b = 0.5, 1000.0, 200.0
     ties = np.diag([2.0] * (MASSES - 1) + [1.0]) - np.eye(MASSES, k=1) - np.eye(MASSES, k=-1)
     matrix = np.zeros((2 * MASSES + 1, 2 * MASSES + 1))
@@ -99,13 +99,13 @@ def test_motion_by_the_sparse_matrix(open_fmu):
         instance.run(time, 0.25)
         exact = scipy.linalg.expm(time * matrix)[:-1, -1]
         assert instance.get(*names) == pytest.approx(exact, abs=1e-8)
-    # Of a linear system, Newton's method with the right matrix is done after one iteration or two.
+    # For a linear system with the exact Jacobian, Newton's method converges in one or two iterations.
     steps, evaluations, jacobians = instance.fmu.getInteger(instance.vr("solverSteps", "derivativeEvaluations", "jacobianEvaluations"))
     assert 0 < steps < evaluations < 2 * steps and 0 < 10 * jacobians < steps
 
 
 def test_a_step_reuses_the_pattern(open_fmu):
-    """Steps, a saved state and a new start factor the same pattern again."""
+    """Steps, a restored state and a reset reuse the pattern of the factorization."""
     instance = open_fmu("RowAndRods").initialize(tolerance=1e-7)
     instance.step(0.5)
     state = instance.fmu.getFMUState()

@@ -1,4 +1,4 @@
-"""What a system does not need is not in its FMU: read from the linker's map and from the library itself."""
+"""An FMU contains only what its system needs, by the linker's map and the library's symbols."""
 
 import re
 import subprocess
@@ -13,14 +13,14 @@ EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulum
 NONE = ["StateFeedback", "SpringDamper"]
 AUTO = ["BristleFriction", "DampedPendulum", "DigitalServo", "ElasticPendulum", "FlyballGovernor", "FourBar", "GantryCrane", "Gyrocompass", "HalfCar", "HydraulicCylinder",
         "MotorPendulum", "RobotArm", "Rope", "SeatSuspension", "SpinningBeam", "WormGear"]  # fmt: skip
-LARGE = ["Rope"]  # its equations are tables, and its Jacobian is sparse
-CHAINS = ["Bricard", "RobotArm"]  # of bodies in space, five or six joints long
+LARGE = ["Rope"]  # equations as tables, and a sparse Jacobian
+CHAINS = ["Bricard", "RobotArm"]  # bodies in space, with five or six joints
 STOPPED = ["GantryCrane", "HydraulicCylinder", "WormGear"]  # both methods of auto, and contacts or friction
-BEAMS = ["SpinningBeam"]  # whose energies are integrals
-TABLES = LARGE + CHAINS + BEAMS  # their series are tables, which time is always handed to
+BEAMS = ["SpinningBeam"]  # energies that are integrals
+TABLES = LARGE + CHAINS + BEAMS  # their series are tables, which always receive time
 TIMED = ["BristleFriction", "DigitalServo", "Gyrocompass", "HalfCar", "RotatingPivotPendulum", "SpinningBeam", "VibratingTable"]
-FACTORED = ["ChainPendulum", "RobotArm", "SpinningBeam"]  # by a loop: full mass matrices of many rows
-LONG = ["NFourBar", "Rope"]  # systems of many coordinates
+FACTORED = ["ChainPendulum", "RobotArm", "SpinningBeam"]  # by a loop, since their mass matrices are full and large
+LONG = ["NFourBar", "Rope"]  # many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems
 BDF = ["FurutaPendulum"]
 
@@ -30,7 +30,7 @@ def output_of(*words):
 
 
 def test_exported_symbols(name):
-    """Rule 1 and rule 23: every fmi2 function, and nothing else."""
+    """The library exports every fmi2 function, and nothing else."""
     symbols = output_of("nm", "-D", "--defined-only", fmu.library(name)).split("\n")
     exported = {line.split()[-1] for line in symbols if line}
     header = (fmu.ROOT / "include" / "fmi2.h").read_text()
@@ -44,7 +44,7 @@ def test_needed_libraries(name):
 
 @pytest.mark.parametrize("name", fmu.all_names() + ERK + BDF)
 def test_no_memory_of_its_own(name):
-    """All memory comes from the caller's functions, also that of SUNDIALS."""
+    """All memory comes from the caller's functions, including that of SUNDIALS."""
     assert not re.findall(r"\b(?:malloc|calloc|realloc|free)\b", output_of("nm", "-D", fmu.library(name)))
 
 
@@ -81,14 +81,14 @@ def test_only_the_solver_that_is_needed(name):
 
 
 def test_the_optimised_sundials():
-    """That of scripts/sundials, where there is one."""
+    """FMUs link the SUNDIALS of scripts/sundials if it exists."""
     is_there = (fmu.ROOT / "build" / "sundials" / "version").exists()
     text = (BUILD / "test-systems" / "systems" / "FurutaPendulum" / "link.map").read_text()
     assert ("sundials/lib/libsundials_cvode.a" in text) == is_there
 
 
 def test_generated_code_is_what_the_system_needs(name):
-    """No input code without inputs, no time without time, no Jacobian unless the solver asks for one."""
+    """The code has no input code without inputs, no time unless it is used, and no Jacobian unless the solver needs one."""
     code = (BUILD / "systems" / name / "system.c").read_text()
     assert ("point->input" in code) == bool(fmu.names_of(name, "input"))
     assert ("point->time" in code) == (name in TIMED + TABLES)
@@ -106,14 +106,14 @@ def test_one_degree_of_freedom_is_a_division():
 
 
 def test_constant_mass_matrix_is_factored_once():
-    """The masses of the particle on springs are divided by in prepare(), not at every evaluation."""
+    """prepare() computes the reciprocals of the particle's masses, so that evaluations do not divide."""
     code = (BUILD / "systems" / "ParticleCartesian" / "system.c").read_text()
     body = re.search(r"static int derivatives\(.*?^}", code, re.S | re.M).group()
     assert "/" not in re.sub(r"/\*.*?\*/", "", body)
 
 
 def test_blocks_are_solved_separately():
-    """Two carts, each 2 x 2, and one driven mass: no 5 x 5 elimination."""
+    """Two carts and one driven mass are solved as two 2 x 2 blocks and one division, without a 5 x 5 elimination."""
     code = (BUILD / "test-systems" / "systems" / "TwoCarts" / "system.c").read_text()
     assert "ldlt_factor" not in code
     operations = int(re.search(r"d state / dt; (\d+) operations", code).group(1))
@@ -121,7 +121,7 @@ def test_blocks_are_solved_separately():
 
 
 def test_sizes():
-    """Each FMU stays small; the table of sizes is printed at the end of the tests."""
+    """Each FMU stays below its size limit; the tests print the sizes at their end."""
     for name, archive, shared, sundials, _ in sizes():
         switches = fmu.description(name).numberOfEventIndicators > 0
         has_more = fmu.is_constrained(name) or switches or name == "FlyballGovernor"
@@ -139,7 +139,7 @@ def test_sizes():
     ],  # fmt: skip
 )
 def test_default_solver(force, solver, tmp_path):
-    """Taylor series where the equations have them, else the method that steps across jumps."""
+    """The default is Taylor series for equations that have them, and a method that steps across jumps otherwise."""
     (tmp_path / "system.xml").write_text(
         '<system name="Default"><input name="u"/><coordinate name="q" velocity="w"/><particle mass="1" x="q"/>'
         f'<force coordinate="q">{force}</force></system>'
@@ -150,12 +150,12 @@ def test_default_solver(force, solver, tmp_path):
 
 
 def test_instances_are_small():
-    """Memory of an instance after its first step, which holds the series of all recurrences; no leak between instances."""
+    """Memory of an instance after its first step, including the series of all recurrences; no leak between instances."""
     from numerics.footprint import instance_costs
 
     for name in fmu.all_names():
         memory, _ = instance_costs(name)
-        # The exponential is computed in long double, so that a stiff spring leaves the other variables their digits.
+        # The exponential is computed in long double, so that a stiff spring costs the other variables no accuracy.
         limit = 120_000 if name == "ChainPendulum" else 28_000 if name in EXACT else 24_000 if name in AUTO else 14_000
         if name in LONG:
             limit = 3_000_000

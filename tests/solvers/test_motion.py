@@ -1,4 +1,4 @@
-"""Simulated motion against closed forms, at parameters that are not the defaults, and against references."""
+"""Simulated motion against closed forms, at parameters other than the defaults, and against references."""
 
 import functools
 
@@ -16,13 +16,13 @@ TOLERANCES = [1e-6, 1e-9]
 
 
 def largest_error(rows, exact, scale=1.0):
-    """Largest difference to exact(t), a list of values, over all rows (t, values...)."""
+    """Largest difference from exact(t), a list of values, over all rows (t, values...)."""
     return max(np.max(np.abs(np.array(row[1:]) - exact(row[0])) / scale) for row in rows)
 
 
 @pytest.mark.parametrize("kx", [0.0, 7.0])
 def test_particle_on_springs(open_fmu, kx):
-    """Each axis is a forced harmonic oscillator; without a spring it is a body under a constant force."""
+    """Each axis is a forced harmonic oscillator, or has a constant acceleration without a spring."""
     m, k, g, force = 0.7, np.array([kx, 11.0, 5.0]), 3.7, np.array([1.5, -2.0, 0.4])
     start, speed = np.array([0.3, -0.2, 0.5]), np.array([1.0, 2.0, -0.5])
     values = dict(m=m, kx=k[0], ky=k[1], kz=k[2], g=g, Fx=force[0], Fy=force[1], Fz=force[2])
@@ -105,7 +105,7 @@ def test_pendulum(open_fmu, tolerance, theta0):
     l, g = 2.3, 4.1
     rows = open_fmu("SimplePendulum").initialize(dict(m=5, l=l, g=g, theta=theta0, omega=0), tolerance).run(20, 0.5, "theta")
     exact = lambda t: [pendulum_angle(theta0, np.sqrt(g / l), t)]
-    # Near the top the motion itself multiplies errors.
+    # Near the top the motion itself amplifies errors.
     sensitivity = 1 / np.cos(theta0 / 2) ** 2
     assert largest_error(rows, exact) < 100 * tolerance * sensitivity
 
@@ -160,7 +160,7 @@ def test_magnetic_circle(open_fmu):
 
 
 def test_spherical_pendulum_reference(open_fmu):
-    """A published 30-digit reference: l = 1, g = 9.81, theta = 1, phi' = 1 at t = 10."""
+    """Published 30-digit reference: l = 1, g = 9.81, theta = 1, phi' = 1 at t = 10."""
     instance = open_fmu("SphericalPendulum").initialize(dict(theta=1, nu=1), 1e-12)
     instance.run(10, 0.1)
     theta, phi = instance.get("theta", "phi")
@@ -170,12 +170,12 @@ def test_spherical_pendulum_reference(open_fmu):
 
 def test_motor_starts(open_fmu):
     """
-    From rest at a constant voltage: L i' = V - R i - k w and J w' = k i - b w - M, of which each is its final value plus two
-    exponentials, by the roots of L J s^2 + (L b + R J) s + R b + k^2.
+    From rest at constant voltage: L i' = V - R i - k w and J w' = k i - b w - M. Each is its final value plus two exponentials, by the
+    roots of L J s^2 + (L b + R J) s + R b + k^2.
     """
     R, L, k, J, b, V, M = 0.9, 2e-3, 0.04, 3e-5, 1e-4, 9.0, 0.05
     s = np.roots([L * J, L * b + R * J, R * b + k * k])
-    end = np.array([b * V + k * M, k * V - R * M]) / (R * b + k * k)  # i and w, where nothing changes any more
+    end = np.array([b * V + k * M, k * V - R * M]) / (R * b + k * k)  # steady values of i and w
     slope = np.array([V / L, -M / J])  # at the start
     first = (slope + s[1] * end) / (s[0] - s[1])
     second = -end - first
@@ -190,7 +190,7 @@ def test_motor_starts(open_fmu):
 
 
 def test_stiff_spring_becomes_a_rod(open_fmu):
-    """k -> infinity: the rigid pendulum, up to the stretch m (g cos + l omega^2) / k."""
+    """For k -> infinity the motion is that of a rigid pendulum, up to the stretch m (g cos + l omega^2) / k."""
     instance = open_fmu("ElasticPendulum")
     instance.initialize(dict(k=1e10, c=2e5, l0=1.0, r=1.0, theta=0.5, g=9.81), 1e-9)
     rows = instance.run(5, 0.05, "theta", "r")
@@ -199,7 +199,7 @@ def test_stiff_spring_becomes_a_rod(open_fmu):
     assert instance.fmu.getInteger(instance.vr("solverSteps"))[0] < 20000
 
 
-# Systems without a closed form, against 20 digits of SymPy's equations.
+# Systems without a closed form, against SymPy's equations at 20 digits.
 REFERENCES = {
     "DampedPendulum": dict(theta=2.5, omega=-1, m=0.7, l=1.3, g=5, b=0.4, tau=0.3),
     "InvertedPendulumCart": dict(x=0.1, theta=0.7, v=-0.3, omega=0.2, M=2, m=0.6, l=0.9, g=7, F=0.5),
@@ -225,7 +225,7 @@ def reference(name, end):
 
 
 def error_of(name, tolerance, open_fmu):
-    """The largest error at the end, relative to states larger than 1."""
+    """Largest error at the end, relative to states larger than 1."""
     end = 1.0 if name == "ChainPendulum" else 2.0
     definition, exact = system(name), reference(name, end)
     states = [s.name for s in [*definition.q, *definition.v]]
@@ -241,12 +241,12 @@ def test_against_reference(name, tolerance, open_fmu):
 
 @pytest.mark.parametrize("name", [name for name in REFERENCES if name in fmu.all_names() and name != "ElasticPendulum"])
 def test_against_reference_at_the_limit_of_doubles(name, open_fmu):
-    """What is left is rounding, of the start values too, and how the motion multiplies it."""
+    """Only rounding errors remain, including those of the start values, amplified by the motion."""
     assert error_of(name, 1e-14, open_fmu) < 1e-13
 
 
 def test_forces_with_kinks(open_fmu):
-    """Every function of the expression language, against SciPy's Dormand-Prince method of order 8."""
+    """A force with kinks, of every function of the language, agrees with SciPy's Dormand-Prince method of order 8."""
     definition, values = system("Functions"), dict(m=1.5, q=0.2, w=0.5, u=0.7, p=0.3)
     right_side = definition.right_side(lambda t: [values["u"]], [values["m"], values["p"]])
     exact = solve_ivp(right_side, (0, 2), [values["q"], values["w"]], method="DOP853", rtol=2.3e-14, atol=1e-14).y[:, -1]

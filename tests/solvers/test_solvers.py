@@ -1,4 +1,4 @@
-"""Where the methods with error estimates, erk, bdf and radau, are in danger of going astray."""
+"""Difficult cases for the methods with error estimates, erk, bdf and radau."""
 
 import io
 import math
@@ -19,7 +19,7 @@ from fmu import DISCARD, ERROR
 
 METHODS = ("erk", "bdf", "radau")
 
-# A unit mass at x with velocity v: its force, and where it starts.
+# A unit mass at x with velocity v: the force, and the initial values.
 FORCES = {
     "Collision": ("-a/x^2", 1, 0, ""),
     "Logarithm": ("-a/x", 1, 0, ""),
@@ -45,7 +45,7 @@ def text(name, force, x, v, solver):
 
 @pytest.fixture(scope="module", autouse=True)
 def systems():
-    """Every force with each method: PulseErk, PulseBdf, ..."""
+    """Build every force with each method: PulseErk, PulseBdf, ..."""
     texts = {}
     for name, (force, x, v, solver) in FORCES.items():
         for method in METHODS:
@@ -61,7 +61,7 @@ def systems():
 
 @pytest.mark.parametrize("method", ["Erk", "Bdf", "Radau"])
 def test_the_longest_step_finds_a_pulse(method, open_fmu):
-    """A pulse of 0.01 s in one communication step of 10 s; its integral is 0.01 sqrt(pi)."""
+    """A pulse of 0.01 s within a communication step of 10 s; its integral is 0.01 sqrt(pi)."""
     instance = open_fmu(f"Pulse{method}").initialize(tolerance=1e-8)
     instance.step(10.0)
     assert instance.get("v") == pytest.approx(0.01 * math.sqrt(math.pi), rel=1e-6)
@@ -69,7 +69,7 @@ def test_the_longest_step_finds_a_pulse(method, open_fmu):
 
 @pytest.mark.parametrize("method", ["Taylor", "Erk", "Bdf"])
 def test_a_number_of_steps_that_the_author_sets(method, open_fmu):
-    """It counts within one communication step: 30 are enough for a short one, and for the next one again."""
+    """maxSteps counts within one communication step: 30 suffice for a short one, and for the next one again."""
     instance = open_fmu(f"Few{method}").initialize(tolerance=1e-4)
     for _ in range(3):
         instance.step(0.001)
@@ -88,13 +88,13 @@ def test_a_method_that_stops_advises_others(method, open_fmu):
 
 
 def test_much_work_is_told_of_on_the_way(open_fmu):
-    """Once in a communication step that takes 50000 steps; it succeeds all the same."""
+    """A communication step of 50000 steps logs one warning and succeeds."""
     instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
     instance.step(40.0)
     told = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
     assert len(told) == 1 and told[0][0] == 1
     limit = re.search(r"has taken 50000 steps from time 0 .* gives up after (\d+), which maxSteps .* can change: ", told[0][1])
-    assert 5e6 < int(limit[1]) < 1e8  # 0.1 to 2 microseconds a step for 10 s
+    assert 5e6 < int(limit[1]) < 1e8  # 10 s at 0.1 to 2 microseconds per step
     assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 
 
@@ -105,7 +105,7 @@ def test_a_step_to_the_end_of_all_numbers_ends(open_fmu):
 
 
 def collision_time(name, a):
-    """From energy: v^2 = 2 (U(x0) - U(x)), to where the force has its pole."""
+    """Time to the pole of the force, from energy: v^2 = 2 (U(x0) - U(x))."""
     start, pole, potential = {
         "Collision": (mpmath.mpf(1), 0, lambda x: -a / x),
         "Logarithm": (mpmath.mpf(1), 0, lambda x: a * mpmath.log(x)),
@@ -131,7 +131,7 @@ def test_no_step_passes_through_a_singularity(name, method, open_fmu):
 
 @pytest.mark.parametrize("method", ["Erk", "Bdf", "Radau"])
 def test_a_trial_stage_may_fail(method, open_fmu):
-    """Steps grow before the wall, so that a trial overflows behind it; the energy stays, and x returns to the start."""
+    """Steps grow before the wall, so that a trial stage overflows beyond it; energy is conserved, and x returns to the start."""
     instance = open_fmu(f"Wall{method}").initialize({"a": 1.0}, tolerance=1e-9)
     force = lambda x: 1 - math.exp(50 * (x - 3))
     exact = solve_ivp(lambda t, y: [y[1], force(y[0])], (0, 3), [0, 0], method="DOP853", rtol=1e-13, atol=1e-13)
@@ -140,7 +140,7 @@ def test_a_trial_stage_may_fail(method, open_fmu):
 
 
 def test_a_division_by_zero(open_fmu):
-    """x^-1 at x = 0: the message says what may be the reason."""
+    """x^-1 at x = 0: the message states the likely cause."""
     instance = open_fmu("PowerErk")
     instance.fmu.setupExperiment()
     instance.set(a=-1.0, x=0.0)
@@ -151,24 +151,24 @@ def test_a_division_by_zero(open_fmu):
 
 
 def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):
-    """x^3 along x has a derivative for x < 0, x^a along a has none."""
+    """x^3 has a derivative by x for x < 0, but none by the exponent."""
     instance = open_fmu("PowerErk").initialize({"a": 3.0})
     along = lambda name: instance.fmu.getDirectionalDerivative(instance.vr("der(v)"), instance.vr(name), [1.0])
     assert along("x") == pytest.approx([12.0], rel=1e-15)
-    with instance.fails(ERROR, "not finite"):  # FMI 2.0.4, 2.1.3 lists no Discard there
+    with instance.fails(ERROR, "not finite"):  # FMI 2.0.4, section 2.1.3 lists no Discard for this call
         along("a")
     instance.reset().initialize({"a": 3.0, "x": 2.0})
     assert along("a") == pytest.approx([8 * math.log(2)], rel=1e-15)
 
 
 def test_events_cost_erk_no_digits():
-    """The state at an event lies inside of a step; a dense output of lower order than the step would lose digits."""
+    """The state at an event lies within a step; a dense output of lower order than the step would lose accuracy."""
     system = (
         '<system name="Kicked"><coordinate name="x" velocity="v" start="-0.2"/><kinetic>v^2/2</kinetic><force coordinate="x">3*sin(4*time)</force>'
         '<event when="x" direction="rising"><set velocity="v">v + 1</set></event><solver method="erk"/></system>'
     )
     fmu.build_systems("kicked", {"Kicked": system})
-    # v = 3/4 (1 - cos(4 t)), from where x comes to 0 one more.
+    # v = 3/4 (1 - cos(4 t)); after the event at x = 0 it is larger by 1.
     x = lambda t: -0.2 + 0.75 * (t - np.sin(4 * t) / 4)
     event = brentq(x, 0, 1, xtol=1e-15)
     for tolerance in (1e-10, 1e-12):

@@ -1,4 +1,4 @@
-"""The Taylor solver: its coefficients against 50 digits, its order, its accuracy at the limit of doubles."""
+"""The Taylor solver: coefficients against 50 digits, order, and accuracy at the limit of doubles."""
 
 import re
 import struct
@@ -25,7 +25,7 @@ SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu
 
 
 def series_of(instance):
-    """(origin, reach, order, coefficients[state][order]) that the instance holds, from its serialized state."""
+    """Series of the instance from its serialized state: (origin, interval of validity, order, coefficients[state][order])."""
     state = instance.fmu.getFMUstate()
     data = instance.fmu.serializeFMUstate(state)
     instance.free_state(state)
@@ -41,7 +41,7 @@ def compare(name, values, instance, bound=1e-12):
     _, _, highest, ours = series_of(instance)
     assert highest >= ORDER
     ours = ours[: len(exact), : ORDER + 1]
-    # In units of the sizes that the step length makes equal: c_k grows like radius^-k.
+    # Errors are relative to the largest coefficient of each order, since c_k grows like radius^-k.
     size = np.max(np.abs(exact), axis=0)
     assert np.all(np.abs(ours - exact) <= bound * (size + np.abs(exact)))
 
@@ -69,7 +69,7 @@ OPERATIONS = [
 
 
 def test_every_operation(tmp_path):
-    """Each operation of the expression language as the force on a mass of its own."""
+    """Each operation of the expression language is the force on a mass of its own."""
     names = [(f"q{i}", f"w{i}") for i in range(len(OPERATIONS))]
     own = lambda text, i: re.sub(r"\b([qw])\b", rf"\g<1>{i}", text)
     parts = [
@@ -105,14 +105,14 @@ def test_every_operation(tmp_path):
 
 
 def test_truncation_has_the_order_of_the_series(open_fmu):
-    """The series cut off after the term m is wrong by a term of order m + 1."""
+    """The error of the series cut off after term m is of order m + 1."""
     instance = open_fmu("SimplePendulum").initialize(dict(theta=2.0, l=1.0, g=1.0), 1e-14)
     instance.step(1e-9)
     _, _, _, x = series_of(instance)
     for m in (5, 9, 13):
         error = lambda h: abs(sum(x[0][j] * h**j for j in range(m + 1)) - pendulum_angle(2.0, 1, h))
         order = np.log2(error(0.8) / error(0.4))
-        # Odd coefficients vanish at the turning point, so that the first term left out is of even order.
+        # Odd coefficients vanish at the turning point, so that the first omitted term is of even order.
         assert order == pytest.approx(m + 1, abs=0.8)
 
 
@@ -129,7 +129,7 @@ def test_order_and_steps_follow_the_tolerance(open_fmu):
 
 
 def test_dense_output_spares_series(open_fmu):
-    """Where nothing changes, a short communication step is read from the series that is there."""
+    """Without changes, short communication steps read the existing series."""
     instance = open_fmu("SimplePendulum").initialize(tolerance=1e-12)
     instance.run(10, 10)
     once = instance.fmu.getInteger(instance.vr("solverSteps"))[0]
@@ -143,7 +143,7 @@ def test_dense_output_spares_series(open_fmu):
 def test_kepler_at_the_limit_of_doubles(open_fmu, e):
     values = dict(m=1, mu=1, r=1 - e, vr=0, theta=0, omega=pericentre_velocity(1, 1, e))
     rows = open_fmu("ParticlePolar").initialize(values, 1e-14).run(10, 0.5, "particle.x", "particle.y")
-    # Near the centre the motion multiplies rounding.
+    # Near the centre the motion amplifies rounding errors.
     assert largest_error(rows, lambda t: kepler(1, values["r"], values["omega"], t)) < (2e-14 if e == 0 else 2e-12)
 
 
