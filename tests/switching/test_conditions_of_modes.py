@@ -1,4 +1,4 @@
-"""Conditions of modes and Boolean parameters alone, joined by and, or and not, in `when`."""
+"""Conditions in `when` of modes and Boolean parameters alone, joined by and, or and not."""
 
 import itertools
 
@@ -6,12 +6,12 @@ import pytest
 
 import fmu
 
-# Two switches that turn at known times, and a Boolean that is tuned; how often each condition has come to hold.
+# Two modes that change at known times, and a tunable Boolean; the number of times each condition becomes true.
 CONDITIONS = {
     "both": "a and b", "either": "a or b", "neither": "not a and not b", "one": "(a or b) and not (a and b)",
     "tuned": "flag", "lowered": "not flag", "allowed": "flag and a", "mixed": "flag and x > 0.33", "barred": "a and not flag or b and flag",
 }  # fmt: skip
-TIMES = {"a": (1, 0.1, 0.3), "b": (0, 0.2, 0.4)}  # of each mode: at the start, and when it turns
+TIMES = {"a": (1, 0.1, 0.3), "b": (0, 0.2, 0.4)}  # of each mode: the start value, and the times of its changes
 SYSTEM = """
 <system name="Conditions">
   <parameter name="flag" type="Boolean" start="false"/>
@@ -40,7 +40,7 @@ def turns(mode, time):
 
 @pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=5)))
 def test_how_often_conditions_come_to_hold(flags):
-    """The Boolean is set between steps of 0.1; conditions by Python, on either side of each change."""
+    """The Boolean is set between steps of 0.1; Python evaluates the conditions before and after each change."""
     instance = fmu.Instance("Conditions").initialize()
     reference = instance.references["flag"]
     flag, before, counts = False, None, dict.fromkeys(CONDITIONS, 0)

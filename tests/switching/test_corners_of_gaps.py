@@ -1,4 +1,7 @@
-"""One gap with several pieces, whose corner a body rests in: a message names the contact and asks for one for each piece, which go on."""
+"""
+One gap with several pieces, in whose corner a body comes to rest: the message names the contact and asks for one contact per piece, which
+works.
+"""
 
 import numpy as np
 import pytest
@@ -9,8 +12,8 @@ BODY = '<coordinate name="x" velocity="v" {0}/><coordinate name="y" velocity="w"
 PUSHES = '<force coordinate="x">-0.1</force><force coordinate="y">-2</force>'
 SLIDES = BODY.format('start="1" velocityStart="-1"', "") + PUSHES
 FALLS = BODY.format('start="-1" velocityStart="1"', 'start="1"') + '<force coordinate="y">-2</force>'
-REACHED = 10 * (np.sqrt(1.2) - 1)  # where 1 - t - 0.05 t^2 = 0
-# Of each: the gap, what stands in it by the message, and when the corner is reached; None where bounces do not end before that.
+REACHED = 10 * (np.sqrt(1.2) - 1)  # solves 1 - t - 0.05 t^2 = 0
+# The gap, its piecewise function in the message, and the time at which the corner is reached; None if bounces do not end before.
 CORNERS = {
     "Min": (SLIDES, "min(x, y)", "min", REACHED),
     "Max": (SLIDES, "-max(-x, -y)", "max", REACHED),

@@ -1,4 +1,7 @@
-"""What prescribed motions crush is refused by name when it is caught: in co-simulation, and by FMI 2.0 and 3.0 in model exchange, where an importer would go through a wall."""
+"""
+A body caught between prescribed motions is an error that names it when it is caught: in co-simulation, and in model exchange of FMI 2.0 and
+3.0, where an importer would pass through a wall.
+"""
 
 import re
 
@@ -22,7 +25,7 @@ def pushed(place, speed, acceleration, e=0, further=""):
     return PUSHED.format(name="{name}", place=place, speed=speed, acceleration=acceleration, e=e, further=further)
 
 
-# The system, when the body, 0.1 m before what drives it, is at the stop, and what is logged.
+# The system, the time at which the body, 0.1 m ahead of its drive, reaches the stop, and the log.
 CRUSHED = {
     "Steady": (pushed(0, 1, 0), 0.9, BOTH),
     "Accelerated": (pushed(0, 1, "0.1"), (1.18**0.5 - 1) / 0.1, BOTH),  # y = t + 0.05 t^2
@@ -34,7 +37,7 @@ CRUSHED = {
     "ByAConstraint": ("""<system name="{name}"><coordinate name="y" velocity="u" unit="m"/><coordinate name="x" velocity="v" unit="m" start="0.5"/>
       <particle mass="1" x="x"/><particle mass="1" x="y"/><constraint name="rod" unit="m">y - 0.5*time</constraint>
       <contact name="push" gap="x - y - 0.1" unit="m"/><stop coordinate="x" max="1"/></system>""", 1.8, BOTH),
-    # Two bodies, of which any pair may be named.
+    # Two bodies; the message may name any pair.
     "InARow": ("""<system name="{name}"><coordinate name="y" velocity="u" unit="m" velocityStart="1" acceleration="0"/><coordinate name="x" velocity="v" unit="m" start="0.5"/>
       <coordinate name="z" velocity="w" unit="m" start="0.7"/><particle mass="1" x="x"/><particle mass="100" x="z"/>
       <contact name="push" gap="x - y - 0.1" unit="m"/><contact name="next" gap="z - x - 0.1" unit="m"/><stop coordinate="z" max="1"/></system>""", 0.8, r"the contacts '\S+' and '\S+' crush what is between them:"),
@@ -43,7 +46,7 @@ CRUSHED = {
     "AloneFromRest": ("""<system name="{name}"><coordinate name="x" velocity="v" unit="m" start="1" acceleration="if(time &lt; 1, 0, 0.1)"/>
       <coordinate name="z" velocity="w" unit="m"/><particle mass="1" x="x" y="z"/><stop coordinate="x" max="1"/></system>""", 1.0, ALONE),
 }  # fmt: skip
-# The drive stops in time, at 0.9 m: nothing is crushed.
+# The drive stops in time, at 0.9 m, so that nothing is crushed.
 FINE = pushed("0.5", 0, "if(time &lt; 1, 0.8, if(time &lt; 2, -0.8, 0))").replace('max="1"', 'max="1.4000001"')
 
 
@@ -70,6 +73,6 @@ def test_crushed_bodies_are_refused(name, kind, version):
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 def test_a_drive_that_leaves_room_crushes_nothing(kind):
-    """From 0.5 m by 0.8 m/s2 for 1 s and back to rest: the body is at 0.6 + 0.8 m."""
+    """From 0.5 m at 0.8 m/s2 for 1 s, then back to rest: the body is at 0.6 + 0.8 m."""
     result = fmpy.simulate_fmu(str(fmu.archive("InTime")), stop_time=3, output_interval=0.1, fmi_type=kind, relative_tolerance=1e-8, output=["x", "y"])
     assert result["y"][-1] == pytest.approx(1.3, abs=1e-7 if kind == "CoSimulation" else 1e-5) and result["x"][-1] >= 1.4 - 1e-7

@@ -1,4 +1,4 @@
-"""Event mode of a co-simulation by FMI 3.0: a step ends at an event, and the importer goes through it (sections 4.2.1 and 2.3.5)."""
+"""Event mode in co-simulation of FMI 3.0: a step ends at an event, which the importer handles (sections 4.2.1 and 2.3.5)."""
 
 import contextlib
 
@@ -13,7 +13,7 @@ from fmi3 import Importer, observed
 from fmu import ERROR
 from test_switching import SWITCHED, bounces
 
-# Bounces that an event makes, which come without end in a finite time.
+# Bounces caused by an event, infinitely many in finite time (Zeno behaviour).
 ZENO = """
 <system name="Zeno">
   <coordinate name="h" velocity="v" start="1"/>
@@ -22,7 +22,7 @@ ZENO = """
   <event when="h"><set velocity="v">-0.5*v</set></event>
 </system>
 """
-# The gap is a distance less a radius: near 0 it has no digits left that the state has.
+# The gap is a distance minus a radius: near 0 it has fewer significant digits than the state.
 FAR_GROUND = """
 <system name="{name}">
   <parameter name="e" start="0.5"/>
@@ -34,7 +34,7 @@ FAR_GROUND = """
   <solver method="{method}" tolerance="1e-10"/>
 </system>
 """
-# A gap in units in which it is small.
+# A gap in units that make it small.
 SMALL_GAP = """
 <system name="SmallGap">
   <parameter name="s" start="1"/>
@@ -44,7 +44,7 @@ SMALL_GAP = """
   <contact name="ground" gap="s*h" restitution="0.5"/>
 </system>
 """
-# A block whose velocity leaves 0 as it slips, with no acceleration yet.
+# A block whose velocity leaves 0 as it slips, with an acceleration of 0 at first.
 SLIPPING = """
 <system name="Slipping">
   <coordinate name="x" velocity="v"/>
@@ -85,7 +85,7 @@ def start(opened, name, values=(), **options):  # noqa: F811
 
 
 def to(instance, end, at_event=lambda: None, updates=1):
-    """Steps with all events; how many there were."""
+    """Step through all events; return their number."""
     count = 0
     while instance.time < end:
         need, terminate, early, last = instance.step(end - instance.time)
@@ -127,7 +127,7 @@ def test_an_importer_may_update_discrete_states_again(opened):
 
 @pytest.mark.parametrize("name", SWITCHED)
 def test_event_mode_does_not_change_the_motion(opened, name):  # noqa: F811
-    """Of what bounces on the table, differences grow tenfold from one to the next."""
+    """Event mode does not change the motion. For the ball on the table, differences grow tenfold per bounce."""
     end, bound = (0.6, 1e-10) if name == "VibratingTable" else (3.0, 1e-11)
     handled, inside, late = start(opened, name), opened(name).initialize(), start(opened, name, earlyReturnAllowed=False)
     count = sum(to(handled, time) for time in np.linspace(0.1, end, 29))
@@ -140,7 +140,7 @@ def test_event_mode_does_not_change_the_motion(opened, name):  # noqa: F811
 
 
 def test_a_step_to_an_event_and_no_further(opened):
-    """Where the communication point is the time of the event, to rounding, the event is told then or at once after it."""
+    """If the communication point is the time of the event up to rounding, the event occurs at that point or right after it."""
     first = start(opened, "BouncingBall")
     _, _, _, impact = first.step(1.0)
     for ulps in range(-3, 4):
@@ -164,7 +164,7 @@ def test_an_event_must_be_gone_through(opened):
 
 
 def test_event_mode_without_an_event(opened):
-    """An importer may enter it at any communication point, as where it changes a parameter."""
+    """An importer may enter event mode at any communication point, for instance to change a parameter."""
     instance, plain = start(opened, "BouncingBall", {"h": 0.3}), opened("BouncingBall").initialize({"h": 0.3})
     for one in (instance, plain):
         one.step(0.1)
@@ -219,7 +219,7 @@ def test_events_without_end_come_to_an_end(opened):
 
 
 def test_intermediate_update_and_event_mode(opened):
-    """At the end of a step that an event ends, the state before it is told."""
+    """Intermediate update reports the state before the event at the end of the step."""
     importer = Importer()
     ball = observed(opened, "BouncingBall", importer, ["h", "v"], **EVENTS).initialize()
     go_through(ball)
@@ -264,7 +264,7 @@ def test_a_ball_rests_on_a_gap_whose_terms_cancel(opened, method, radius, option
 
 
 def test_a_step_that_loses_an_event_ends_before_it(opened):
-    """Behind bounces that die away erk tries a step of seconds: it is refused, but nothing beyond the ground is told."""
+    """After fading bounces erk tries a step of seconds: the step fails, without a state beyond the ground."""
     instance = opened(far_ground("erk"), **EVENTS).initialize({"e": 0.95, "h": 1e-9, "v": 0.001})
     go_through(instance)
     with contextlib.suppress(FMICallException):
@@ -274,7 +274,7 @@ def test_a_step_that_loses_an_event_ends_before_it(opened):
 
 @pytest.mark.parametrize("scale", [1, 1e-14, 1e-30])
 def test_importers_find_small_gaps(scale):
-    """By model exchange: indicators are told beyond 0 by less where they are small."""
+    """In model exchange, indicators exceed 0 after events by an amount that scales with the gap."""
     archive = fmu.archive("SmallGap")
     archive = archive.parent.parent / "fmi3" / archive.name
     result = fmpy.simulate_fmu(str(archive), fmi_type="ModelExchange", stop_time=3, relative_tolerance=1e-8, start_values={"s": scale}, output=["h", "ground.closed"])

@@ -1,4 +1,4 @@
-"""Friction in a plane: by closed forms, by SciPy, and by what turning the axes must not change."""
+"""Coulomb friction in a plane: closed forms, SciPy, and invariance under rotation of the axes."""
 
 import math
 from types import SimpleNamespace
@@ -16,7 +16,7 @@ from test_switching import to, value
 G = 9.81
 METHODS = ["taylor", "radau", "bdf", "erk", "auto"]
 
-# The velocities of the friction are turned by the angle: of what moves, nothing may change.
+# The velocities of the friction are rotated by an angle, on which the motion does not depend.
 PUCK = """<system name="{name}" description="Puck that slides on a plane which may be tilted, under a force that may turn and grow">
   <parameter name="m" start="2"/><parameter name="mu" start="0.3"/><parameter name="tilt" start="0"/><parameter name="turned" start="0"/>
   <parameter name="rate" start="0"/><parameter name="turn" start="0"/><parameter name="stick" start="1"/>
@@ -31,7 +31,7 @@ PUCK = """<system name="{name}" description="Puck that slides on a plane which m
   <experiment stopTime="2"/>
 </system>"""
 
-# A homogeneous ball on a plane; the pole is where it touches.
+# A homogeneous ball on a plane; its lowest point is the contact.
 BALL = """<system name="{name}" description="Ball with spin on a plane which may be tilted">
   <parameter name="r" start="0.05"/><parameter name="mu" start="0.2"/><parameter name="tilt" start="0"/><parameter name="e" start="0.6"/>
   <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz" start="r"/>
@@ -42,12 +42,12 @@ BALL = """<system name="{name}" description="Ball with spin on a plane which may
   <friction name="skin" velocity="vx - r*wy" across="vy + r*wx" force="mu*ground.force"/>
   <experiment stopTime="2"/>
 </system>"""
-# A wall throws it back, and so turns what slides without a rest in between.
+# A wall reflects the ball, so that the slip changes direction without coming to rest.
 WALLED = BALL.replace("<experiment", '<stop coordinate="x" max="0.1" restitution="0.8"/><experiment')
 
 
 def disk(points):
-    """A disk that stands on points of equal weight, each with its place."""
+    """A disk on points of equal weight at the given positions."""
     frictions = "".join(
         f'<friction name="p[{i}]" velocity="vx - w*({a:.17g}*sin(phi) + {b:.17g}*cos(phi))"'
         f' across="vy + w*({a:.17g}*cos(phi) - {b:.17g}*sin(phi))" force="mu*9.81/{len(points)}"/>'
@@ -63,7 +63,7 @@ def disk(points):
 
 
 def places(rings):
-    """On the unit disk, each for a share of its area: rings of equal area."""
+    """Points of the unit disk, each for an equal share of its area, on rings of equal area."""
     count = 6
     return [
         (np.sqrt((k + 0.5) / rings) * np.cos(u), np.sqrt((k + 0.5) / rings) * np.sin(u))
@@ -74,7 +74,7 @@ def places(rings):
 
 RINGS = [1, 3, 20]
 
-# Masses that hang together, each with a friction; and one that sticks on two soles, so that their forces are not determined.
+# Coupled masses, each with a friction; and one mass on two soles, whose separate forces are indeterminate.
 CLUSTER = """<system name="Cluster" description="Masses on springs, on a plane">
   <parameter name="k" start="20"/><parameter name="stick" start="1.2"/>
   <for index="i" from="1" to="3">
@@ -97,7 +97,7 @@ SOLES = """<system name="TwoSoles" description="Block on two soles at one place"
   <experiment stopTime="2"/>
 </system>"""
 
-# What moves along x is heavier, so that it does not go where the force pulls; or two of such, of which one pulls the other.
+# A sledge with more inertia along x, so that it does not accelerate along the force; or two of them, one of which pulls the other.
 SLEDGE = """<system name="Sledges" description="Sledges with runners that turn, so that they are heavier along one axis">
   <parameter name="k" start="0"/>
   <for index="i" from="1" to="2">
@@ -112,7 +112,7 @@ SLEDGE = """<system name="Sledges" description="Sledges with runners that turn, 
   <experiment stopTime="2"/>
 </system>"""
 
-# The tip slides along x, whose friction is in a plane, with axes that are turned, or along the line.
+# The tip slides along x; its friction acts in a plane with rotated axes, or along a line.
 ROD = """<system name="{name}" description="Rod that slides on its tip">
   <parameter name="mu" start="0.5"/><parameter name="e" start="0.5"/><parameter name="turned" start="0"/>
   <coordinate name="x" velocity="vx"/><coordinate name="z" velocity="vz"/>
@@ -126,7 +126,7 @@ ROD = """<system name="{name}" description="Rod that slides on its tip">
 </system>"""
 IN_PLANE = 'velocity="slip*cos(turned) + vz*sin(turned)" across="vz*cos(turned) - slip*sin(turned)"'
 
-# The slider of a crank, which it stops nowhere but where all energy is spent; it is free along z.
+# The slider of a crank, which comes to rest only when all energy is dissipated; it is free along z.
 CRANK = """<system name="PlaneCrank"><coordinate name="phi" velocity="w"/><coordinate name="z" velocity="vz"/>
   <kinetic>0.2*w^2/2 + vz^2/2</kinetic><friction name="rub" velocity="-0.3*sin(phi)*w" across="vz" force="1"/></system>"""
 
@@ -134,7 +134,7 @@ SIZE, CONTACTS = 6, 2
 
 
 def random_system():
-    """A mass matrix, gaps and frictions that are all parameters."""
+    """A system whose mass matrix, gaps and frictions are parameters."""
     pairs = [(i, k) for i in range(SIZE) for k in range(i, SIZE)]
     lines = [f'<parameter name="m{i}{k}" start="{int(i == k)}"/>' for i, k in pairs]
     for c in range(CONTACTS):
@@ -181,7 +181,7 @@ def test_a_puck_stops_on_a_line(open_fmu, method, turned):
 @pytest.mark.parametrize("turned", [0, 0.4])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_force_below_the_stiction_holds_and_one_above_moves(open_fmu, method, turned):
-    """Each of its components is below by far: what counts is the size."""
+    """Each component of the force is far below the stiction; the magnitude decides."""
     stiction = 0.3 * 2 * G
     instance = open_fmu(f"Puck_{method}").initialize({"turned": turned}, tolerance=1e-9)
     instance.set({"Fx": 0.9999 * 0.6 * stiction, "Fy": 0.9999 * 0.8 * stiction})
@@ -200,7 +200,7 @@ def test_a_force_below_the_stiction_holds_and_one_above_moves(open_fmu, method, 
 @pytest.mark.parametrize("stick", [1, 1.3])
 @pytest.mark.parametrize("method", ["radau", "bdf", "auto"])
 def test_a_force_that_turns_and_grows_moves_it_from_rest(open_fmu, method, stick):
-    """Where stiction and friction are the same, it creeps away in a direction that follows the force."""
+    """With equal stiction and friction, the puck creeps away in a direction that follows the force."""
     friction, rate, turn = 0.3 * 2 * G, 3.0, 1.0
     begin = stick * friction / rate
     instance = open_fmu(f"Puck_{method}").initialize({"rate": rate, "turn": turn, "stick": stick}, tolerance=1e-9)
@@ -220,7 +220,7 @@ def test_a_force_that_turns_and_grows_moves_it_from_rest(open_fmu, method, stick
 
 @pytest.mark.parametrize("k, forces", [(0, [1.2, 0.9, 0, 0]), (3, [1.2, 0.9, 0, 0]), (3, [1.2, 0.9, 1.2, -0.9])])
 def test_it_leaves_rest_in_the_direction_of_its_acceleration(open_fmu, k, forces):
-    """Which is neither that of the force, nor known without the others that begin with it."""
+    """The initial slip is along neither force; it depends on the other bodies that start at the same time."""
     mass = np.diag([5.0, 1, 5, 1])
     mass[np.ix_([0, 2], [0, 2])] += k * np.array([[1, -1], [-1, 1]])
     forces = np.array(forces)
@@ -247,7 +247,7 @@ def test_it_leaves_rest_in_the_direction_of_its_acceleration(open_fmu, k, forces
 
 @pytest.mark.parametrize("k, forces", [(0, [1.2, 0.9, 0, 0]), (3, [1.2, 0.9, 1.2, -0.9]), (3, [1.4, 0.9, 0.3, -1.3])])
 def test_friction_is_opposite_to_the_acceleration_from_rest(open_fmu, k, forces):
-    """At once, though no velocity tells the direction yet."""
+    """Friction opposes the impending slip at once, before any velocity gives its direction."""
     values = {"k": k, **dict(zip(("Fx[1]", "Fy[1]", "Fx[2]", "Fy[2]"), forces))}
     instance = open_fmu("Sledges").initialize(values, tolerance=1e-9, start_time=1.2)
     for i in (1, 2) if any(forces[2:]) else (1,):
@@ -258,7 +258,7 @@ def test_friction_is_opposite_to_the_acceleration_from_rest(open_fmu, k, forces)
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_puck_across_a_slope_of_the_angle_of_friction(open_fmu, method):
-    """Its speed and that down the slope are the same at any time after a start across: it ends with half the speed, straight down."""
+    """Speed plus the component down the slope is constant after a start across: the final speed is half, straight down."""
     instance = open_fmu(f"Puck_{method}").initialize({"tilt": np.arctan(0.3), "vy": 2}, tolerance=1e-10)
     for time in (0.1, 0.5, 1, 2):
         to(instance, time)
@@ -271,7 +271,7 @@ def test_a_puck_across_a_slope_of_the_angle_of_friction(open_fmu, method):
 @pytest.mark.parametrize("turned", [0, 1.1])
 @pytest.mark.parametrize("tilt, vx, vy", [(0.2, 0, 1), (0.2, -1, 0.5), (0.29, 0.3, 1)])
 def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, turned):
-    """At the time and place that the equation of motion gives, and then it stays."""
+    """It stops at the time and position of the equation of motion, and stays."""
     down, friction = G * np.sin(tilt), 0.3 * G * np.cos(tilt)
 
     def slope(_, state):
@@ -295,7 +295,7 @@ def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, turned):
 @pytest.mark.parametrize("turned", [0, 0.5])
 @pytest.mark.parametrize("method", METHODS)
 def test_a_puck_goes_up_a_steep_slope_and_comes_down(open_fmu, method, turned):
-    """Straight up it stops, and cannot stick."""
+    """Straight up the slope it stops for an instant, and cannot stick."""
     tilt = 0.6
     down, friction = G * np.sin(tilt), 0.3 * G * np.cos(tilt)
     instance = open_fmu(f"Puck_{method}").initialize({"tilt": tilt, "vx": -3, "turned": turned}, tolerance=1e-9)
@@ -308,7 +308,7 @@ def test_a_puck_goes_up_a_steep_slope_and_comes_down(open_fmu, method, turned):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_puck_on_a_belt(open_fmu, method):
-    """Against the belt it moves on a line, at whose end it goes with it."""
+    """Relative to the belt it moves on a line, at whose end it moves with the belt."""
     instance = open_fmu(f"Puck_{method}").initialize({"vy": 1.5, "belt": 2}, tolerance=1e-9)
     deceleration, end = 0.3 * G, 2.5 / (0.3 * G)
     to(instance, end + 1)
@@ -319,7 +319,7 @@ def test_a_puck_on_a_belt(open_fmu, method):
 
 
 def test_a_ball_with_spin_on_a_table(open_fmu):
-    """A parabola until it rolls, then a line, with 5/7 of its velocity and 2/7 of that of rolling with its spin."""
+    """A parabola until it rolls, then a line with 5/7 of its velocity and 2/7 of that of rolling with its spin."""
     instance = open_fmu("PlaneBall").initialize({"vx": 1, "wx": 10, "wy": 5}, tolerance=1e-10)
     slip = np.array([1 - 0.25, 0.5])
     push = -0.2 * G * slip / np.linalg.norm(slip)
@@ -337,7 +337,7 @@ def test_a_ball_with_spin_on_a_table(open_fmu):
 
 @pytest.mark.parametrize("tilt, mu", [(0.3, 0.2), (0.3, 0.09), (0.3, 0.08)])
 def test_a_ball_on_a_slope_rolls_where_friction_is_enough(open_fmu, tilt, mu):
-    """2/7 tan(tilt) = 0.0884 is enough; it comes with a spin across the slope."""
+    """Rolling needs mu > 2/7 tan(tilt) = 0.0884; the ball starts with a spin across the slope."""
     instance = open_fmu("PlaneBall").initialize({"tilt": tilt, "mu": mu, "wx": -6, "vy": 0.4}, tolerance=1e-10)
     to(instance, 3)
     rolls = mu > 2 / 7 * np.tan(tilt)
@@ -349,7 +349,7 @@ def test_a_ball_on_a_slope_rolls_where_friction_is_enough(open_fmu, tilt, mu):
 
 
 def test_a_disk_ends_to_slide_and_to_spin_at_once(open_fmu):
-    """With the more points, the nearer does the ratio of its speeds come to 0.653 (Farkas et al. 2003); the motion is SciPy's."""
+    """The ratio of the final speeds approaches 0.653 as the number of points grows (Farkas et al. 2003); the motion is SciPy's."""
     differences = []
     for rings in RINGS:
         points = np.array(places(rings)) @ [1, 1j]
@@ -366,7 +366,7 @@ def test_a_disk_ends_to_slide_and_to_spin_at_once(open_fmu):
         instance = open_fmu(f"Disk{len(points)}").initialize({"vx": 0.5, "vy": 0.2, "w": 2}, tolerance=1e-10)
         to(instance, result.t[-1])
         assert instance.get("x", "y", "phi", "vx", "vy", "w") == pytest.approx(result.y[:, -1], abs=1e-7)
-        assert sum(value(instance, f"p[{i + 1}].sliding") for i in range(len(points))) >= len(points) - 1  # on six, the last pivot is one
+        assert sum(value(instance, f"p[{i + 1}].sliding") for i in range(len(points))) >= len(points) - 1  # with six points, the last pivot is one of them
         vx, vy, w = instance.get("vx", "vy", "w")
         differences.append(abs(np.hypot(vx, vy) / w - 0.653))
         to(instance, result.t[-1] + 2e-3)
@@ -400,7 +400,7 @@ def test_energy_never_grows(open_fmu, seed):
 
 
 def test_two_frictions_at_one_place(open_fmu):
-    """They hold up to the sum of both, and push together beyond it."""
+    """Two frictions stick up to the sum of their limits, and beyond it both slide."""
     instance = open_fmu("TwoSoles").initialize(tolerance=1e-9)
     instance.set({"Fx": 2.99 * 0.6, "Fy": 2.99 * 0.8})
     to(instance, 1)
@@ -415,7 +415,10 @@ def test_two_frictions_at_one_place(open_fmu):
 
 @pytest.mark.parametrize("mu, e", [(0.05, 0.6), (0.4, 0.6), (0.05, 0), (0.4, 1)])
 def test_a_bounce_with_spin(open_fmu, mu, e):
-    """The impulse of friction is mu that of the contact where the pole slides on, else what brings it to rest: 2/7 of its velocity."""
+    """
+    The impulse of friction is mu times that of the contact if the contact point keeps sliding; otherwise it is 2/7 of its velocity, which
+    stops the slip.
+    """
     instance = open_fmu("PlaneBall").initialize({"z": 0.35, "mu": mu, "e": e, "vx": 1, "wx": 10, "wy": 5}, tolerance=1e-10)
     fall = np.sqrt(0.6 / G)
     to(instance, fall * (1 + 1e-9))
@@ -436,14 +439,14 @@ def values_of_cones(mass, gap, e, mu, normal, first, second, velocity):
 
 @pytest.mark.parametrize("seed", range(40))
 def test_impacts_of_any_bodies_keep_the_cone(open_fmu, seed):
-    """The law itself: impulses in the cone, opposite to what slides behind the impact, and no energy gained."""
+    """Impulses lie in the cone of friction, oppose the slip after the impact, and add no energy."""
     random = np.random.default_rng(seed)
     root = random.normal(size=(SIZE, SIZE))
     mass = root @ root.T + np.eye(SIZE)
     normal, first, second = random.normal(size=(3, CONTACTS, SIZE))
     before, e, mu = random.normal(size=SIZE), random.uniform(0, 1, CONTACTS), random.uniform(0.1, 0.6, CONTACTS)
     if seed % 2:
-        normal[1] = normal[0] * random.choice([1, 0.5])  # both at the same time
+        normal[1] = normal[0] * random.choice([1, 0.5])  # both impacts at the same time
         e[1] = e[0]
     before -= normal.T @ np.linalg.solve(normal @ normal.T + 1e-12 * np.eye(CONTACTS), normal @ before + 1)
     values = values_of_cones(mass, [0, 0.1 if seed % 2 == 0 else 0], e, mu, normal, first, second, before)
@@ -463,7 +466,7 @@ def test_impacts_of_any_bodies_keep_the_cone(open_fmu, seed):
 
 
 def test_other_outcomes_of_an_impact_are_told(open_fmu):
-    """Of frictions in planes in which nothing moves but along a line, so that all outcomes are found by trying all modes out."""
+    """The frictions move along lines only, so that trying all modes finds all outcomes of the impact."""
     instance = open_fmu("RandomCones")
     random = np.random.default_rng(0)
     seen = told = 0
@@ -483,7 +486,7 @@ def test_other_outcomes_of_an_impact_are_told(open_fmu):
         assert any(is_other) or not is_told
         seen += any(is_other)
         told += is_told
-    assert seen > 20 and told > 0.5 * seen, (seen, told)  # they are looked for from some starts only
+    assert seen > 20 and told > 0.5 * seen, (seen, told)  # the runtime searches from a few starts only
 
 
 @pytest.mark.parametrize("turned", [0, 0.8])
@@ -492,7 +495,7 @@ def test_other_outcomes_of_an_impact_are_told(open_fmu):
     [{"vx": -1}, {"vx": 1}, {"vx": 1, "mu": 2}, {"vx": 1, "w": 1, "mu": 2}, {"vx": -2, "y": 1.5}, {"vx": -2, "y": 1.5, "mu": 2}, {"vx": 2, "y": 1.5, "mu": 2}],
 )
 def test_a_rod_in_a_plane_moves_as_one_on_a_line(open_fmu, values, turned):
-    """Its impacts and forces, of which friction on a line is another problem: linear, with impulses by Lemke's method."""
+    """Impacts and forces in the plane equal those on a line, which are a linear problem, solved by Lemke's method."""
     line, plane = open_fmu("RodOnLine").initialize(values, tolerance=1e-10), open_fmu("RodInPlane").initialize({**values, "turned": turned}, tolerance=1e-10)
     for time in (0.05, 0.2, 0.35):
         to(line, time)
@@ -510,7 +513,7 @@ def test_painleves_paradox_is_told(open_fmu, turned):
 
 
 def test_an_importer_with_long_steps_does_not_pass_over_rest():
-    """Euler's method comes past it by a step, and goes on from rest; its place has the method's own error."""
+    """Euler's method passes the stop by up to a step, and continues from rest; the position has the error of the method."""
     for method, step in (("Puck_auto", 0.1), ("Puck_radau", 0.01)):
         result = fmpy.simulate_fmu(
             str(fmu.archive(method)), fmi_type="ModelExchange", solver="Euler", output_interval=step, stop_time=2,
@@ -568,7 +571,9 @@ def test_a_negative_force_is_refused(open_fmu):
 
 
 def test_a_dead_centre(open_fmu):
-    """The slider's velocity is 0 there, and friction without a lever cannot hold the crank: 0.9 J by 1 N are the way."""
+    """
+    At the dead centre the slider's velocity is 0, and its friction has no moment about the crank: 0.9 J divided by 1 N is the path length.
+    """
     for start, w in ((1.0, 3.0), (-0.5, 3.0), (-1.0, -3.0)):
         instance = open_fmu("PlaneCrank").initialize({"phi": start, "w": w})
         instance.step(4)

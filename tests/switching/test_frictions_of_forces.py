@@ -1,4 +1,4 @@
-"""Friction that follows from the force of a constraint, where this passes through 0."""
+"""Friction proportional to the force of a constraint that passes through 0."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def built():
 
 
 def angle_of_bead(phi, speed, end):
-    """Of r'' = -g sin(phi) - mu |N| sign(v) with N = v^2/r + g cos(phi), from one change of N's or v's sign to the next."""
+    """Angle by r'' = -g sin(phi) - mu |N| sign(v) with N = v^2/r + g cos(phi), integrated between sign changes of N and v."""
     time, state, side, way = 0.0, [phi, speed / RADIUS], np.sign(speed**2 / RADIUS + G * np.cos(phi)), np.sign(speed)
 
     def normal(_, z):
@@ -50,7 +50,7 @@ def angle_of_bead(phi, speed, end):
             if abs(np.sin(state[0])) <= MU * abs(np.cos(state[0])):
                 break
             way, state[1] = -np.sign(np.sin(state[0])), 0.0
-        if found.status == 1:  # off the event, which is at the start of what follows
+        if found.status == 1:  # away from the event, with which the next interval starts
             slopes = slope(time, state)
             step = 1e-9
             time, state = time + step, [state[0] + step * slopes[0], state[1] + step * slopes[1]]
@@ -60,7 +60,7 @@ def angle_of_bead(phi, speed, end):
 @pytest.mark.parametrize("method", TOLERANCES)
 @pytest.mark.parametrize("phi, speed", [(2.6, 3.0), (0.9, 3.0), (1.0, 3.0), (1.1, 3.0), (2.0, 1.0), (1.7, 2.5)])
 def test_a_bead_on_a_hoop(open_fmu, method, phi, speed):
-    """The force of the hoop changes its direction; that of the friction, mu times its size, has a kink there and stays positive."""
+    """The force of the hoop changes its sign. The friction, mu times its magnitude, has a kink there and stays positive."""
     start = {"x": RADIUS * np.sin(phi), "y": -RADIUS * np.cos(phi), "vx": speed * np.cos(phi), "vy": speed * np.sin(phi)}
     instance = open_fmu(f"Hoop{method}").initialize(start)
     rows = instance.run(1, 0.01, "x", "y", "rub.force")

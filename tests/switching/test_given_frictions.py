@@ -1,4 +1,4 @@
-"""Friction along velocities that drives and constraints give, which dwell and start; and a belt at rest that starts under a box."""
+"""Friction along velocities prescribed by drives and constraints, which dwell and start; and a belt at rest that starts under a box."""
 
 import fmpy
 import numpy as np
@@ -33,7 +33,7 @@ def after(time, start, value):
     return value if time > start else 0
 
 
-# Of the time: the force of the drive, and that of the friction.
+# Functions of time: the force of the drive, and that of the friction.
 FORCES = {
     "Dwell": lambda t: (after(t, 1, 6), after(t, 1, 5)),
     "Back": lambda t: (after(t, 1, -4), after(t, 1, -3)),
@@ -50,7 +50,7 @@ FORCES = {
 def name_of(body, method):
     return f"Given{body}{method.title()}"
 
-# In a plane: the force is opposite to the velocity (v, w), of 5 N, and none at rest. The mass is 1 kg.
+# In a plane: the friction of 5 N opposes the velocity (v, w), and is 0 at rest. The mass is 1 kg.
 PLANE = ('<coordinate name="x" velocity="v" acceleration="{}"/><coordinate name="y" velocity="w" acceleration="{}"/><particle mass="1" x="x" y="y"/>'
          '<friction name="rub" velocity="v" across="w" force="5"/><output name="across">y.force</output>')  # fmt: skip
 PLANES = {
@@ -63,7 +63,7 @@ PLANES = {
     "Quarter": PLANE.format("6*time*cos(2*time)", "6*time*sin(2*time)"),
 }  # fmt: skip
 QUARTER = lambda t: (3 * t * np.sin(2 * t) - 1.5 * (1 - np.cos(2 * t)), 1.5 * np.sin(2 * t) - 3 * t * np.cos(2 * t))
-# Of the time: the velocity and the acceleration.
+# Functions of time: the velocity and the acceleration.
 DRIVEN = {
     "Both": lambda t: ((3 * max(0, t - 1), 4 * max(0, t - 1)), (after(t, 1, 3), after(t, 1, 4))),
     "One": lambda t: ((-3 * max(0, t - 1), 0), (after(t, 1, -3), 0)),
@@ -86,7 +86,10 @@ def built():
 
 
 def check(body, time, forces, is_exact):
-    """Errors of a method leave a velocity where a drive has stopped: the drive then overcomes the friction, whichever way."""
+    """
+    Compare both forces. Where a drive stops, the error of a method leaves a small velocity of either sign; the drive then balances the
+    friction.
+    """
     if min(abs(time - 1), abs(time - 2)) < 1e-3:
         return
     if body == "Stopped" and 1 < time < 2 and not is_exact:
@@ -112,7 +115,7 @@ def test_in_model_exchange(body):
 
 
 def test_one_that_is_driven_holds_another(open_fmu):
-    """Until the second starts too, it takes the friction of the first, and then beside it its own 1 N."""
+    """From 1 s on the drive of the second body carries the friction of the first, 5 N; from 2 s on also its own inertia force of 1 N."""
     instance = open_fmu(name_of("Between", "taylor")).initialize()
     others = {time: other for time, other in instance.run(3, 0.125, "other")}
     assert [others[time] for time in (0.5, 1.5, 2.5)] == pytest.approx([0, -5, -4], abs=1e-12)

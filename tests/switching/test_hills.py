@@ -1,6 +1,6 @@
 """
-What events look at may be flat where a step begins and have a narrow hill inside of it: none is passed over, by any method, in one
-communication step or many.
+Event indicators that are flat at the start of a step and have a narrow hill within it: no method misses a hill, in one communication step
+or many.
 """
 
 import math
@@ -11,7 +11,7 @@ from fmpy import simulate_fmu
 from fmu import archive, build_systems
 
 METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
-# Hills of height 1 in s, and half their width at half their height.
+# Hills of height 1 in s, and their half-widths at half height.
 HILLS = {
     "exp(-s^2)": math.sqrt(math.log(2)),
     "1/(1 + s^2)": 1.0,
@@ -24,7 +24,7 @@ HILLS = {
 
 
 def system(name, method):
-    """Masses that hills push, one after the other in time and along x; events count the hills; a ball meets one."""
+    """Masses pushed by hills, one after the other in time and along x; events count the hills; a ball meets one."""
     parts = []
     for i, hill in enumerate(HILLS):
         place = "time" if i % 2 == 0 else "x"
@@ -60,7 +60,7 @@ def test_no_hill_is_passed_over(method):
                 assert result[f"n{i}"] == 1, (hill, w, steps)
                 # Rounding of the time is some 1e-16 / w of the width.
                 assert result[f"v{i}"] == pytest.approx(2 * half, rel=1e-9, abs=1e-14 / w), (hill, w, steps)
-            # The ball comes to the slope of the hill at the height 0.1, and is turned about its normal.
+            # The ball meets the slope of the hill at the height 0.1, and is reflected about its normal.
             slope = 2 * 0.1 * math.sqrt(math.log(5)) / w
             turned = (1 - slope**2) / (1 + slope**2), 2 * slope / (1 + slope**2)
             assert (result["va"], result["vb"]) == pytest.approx(turned, abs=1e-10), (w, steps)

@@ -1,4 +1,4 @@
-"""Impacts with friction, forces of contacts that slide, and bounces until rest: by NumPy, SciPy and closed forms."""
+"""Impacts with friction, forces of sliding contacts, and bounces until rest: NumPy, SciPy and closed forms."""
 
 import itertools
 
@@ -15,7 +15,7 @@ SIZE, CONTACTS = 8, 4  # coordinates and contacts of the random systems
 
 
 def random_system(name, order):
-    """A mass matrix, forces, gaps and frictions that are all parameters; the order of the elements is given."""
+    """A system whose mass matrix, forces, gaps and frictions are parameters; `order` is the order of the elements."""
     every = [(i, k) for i in range(SIZE) for k in range(SIZE)]
     pairs = [(i, k) for i, k in every if i <= k]
     lines = [f'<parameter name="m{i}{k}" start="{int(i == k)}"/>' for i, k in pairs]
@@ -111,7 +111,7 @@ TOWER = """<system name="BallOnBall" description="Two balls on top of each other
 
 
 def sledge(name, n):
-    """n masses of 1 kg that slide with a sledge of 10 kg, each down a slope of its own: the friction of each presses all."""
+    """n masses of 1 kg that slide with a sledge of 10 kg, each down its own slope: the friction of each presses all others."""
     parts = "".join(
         f'<coordinate name="z{i}" velocity="w{i}" velocityStart="-0.5"/><particle mass="1" y="z{i}"/><contact name="c{i}" gap="z{i} + 0.5*x"/>'
         for i in range(n)
@@ -146,7 +146,7 @@ def built():
 
 
 class Contacts:
-    """A random system; far contacts do not take part."""
+    """Random values of such a system; distant contacts are inactive."""
 
     def __init__(self, rng, largest_mu=3.0):
         self.count = rng.integers(1, CONTACTS + 1)
@@ -176,13 +176,16 @@ class Contacts:
 
 @pytest.mark.parametrize("tied", [False, True])
 def test_random_impacts_obey_their_law(open_fmu, tied):
-    """One after the other, or all at once: then also Newton's law or less, and Coulomb's, and whether there are other outcomes."""
+    """
+    Impacts one by one, or all at once, obey Newton's law of restitution with at most the given coefficient, and Coulomb's law. The message
+    about other outcomes appears where there are some.
+    """
     instance, other = open_fmu("RandomContacts"), open_fmu("RandomContactsTurned", logging=False)
     rng = np.random.default_rng(tied)
     lessened = turned = several = 0
     for _ in range(400):
         case = Contacts(rng)
-        case.force[:] = 0.0  # nothing presses: what parts or touches stays as the impact leaves it
+        case.force[:] = 0.0  # without external forces, velocities stay as the impact leaves them
         k = case.count
         if tied:
             case.v += np.linalg.pinv(case.n[:k]) @ (-1.0 - case.n[:k] @ case.v)
@@ -212,7 +215,7 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
                 lessened += 1
                 gains = [gain for gain, _ in impacts_by_trial(case)]
                 assert len(gains) > 1 or np.all(np.array(gains) > 0)
-                assert k > 1 or v @ case.mass @ v >= size**2 * (1 - 1e-7)  # as little as keeps the energy from growing
+                assert k > 1 or v @ case.mass @ v >= size**2 * (1 - 1e-7)  # restitution is reduced no more than energy requires
             else:
                 outcomes = [motion for gain, motion in impacts_by_trial(case) if gain <= 1e-12 * size**2]
                 has_others = any(not np.allclose(motion, v, atol=1e-6 * size) for motion in outcomes)
@@ -226,7 +229,7 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
 
 
 def impacts_by_trial(case):
-    """Of all solutions of the law without lessened restitution, by trying all modes out: twice the energy gained, and the motion."""
+    """All solutions without reduced restitution, by trying all modes: twice the energy gained, and the motion."""
     k, found = case.count, []
     w = case.rows() @ np.linalg.inv(case.mass) @ case.rows().T
     before = case.rows() @ case.v
@@ -251,7 +254,7 @@ def impacts_by_trial(case):
 
 
 def motions(free, s):
-    """Accelerations of the gaps, and forces, for which each contact presses or parts: all, by trying each combination out."""
+    """All accelerations of the gaps, and forces, for which each contact either presses or separates, by trying each combination."""
     found = []
     for closed in itertools.product([False, True], repeat=len(free)):
         closed = np.array(closed)
@@ -310,7 +313,7 @@ def test_a_rod_that_locks_is_refused(open_fmu, w, words):
 
 
 def test_a_rod_parts_before_it_locks(open_fmu):
-    """p falls from 0.7 to 0, and so does the force with it (Genot and Brogliato); until then the motion is that of an ODE."""
+    """p falls from 0.7 to 0, and so does the force (Genot and Brogliato); until then the motion is that of an ODE."""
     mu, theta, w, slip = 1.5, 0.8, 1.0, -30.0
 
     def rate(t, state):
@@ -334,7 +337,7 @@ def test_a_rod_parts_before_it_locks(open_fmu):
 
 @pytest.mark.parametrize("mu, theta, rise, tolerance", [(1.3, 0.9, 100.0, 1e-11), (1.35, 0.85, 3.0, 1e-6), (1.4, 0.9, 3.0, 1e-8)])
 def test_a_rod_that_jams_is_told(open_fmu, mu, theta, rise, tolerance):
-    """Where its friction grows p falls to 0 while the rod still presses: the force has no bound, as at a pole, which may pass for a zero."""
+    """With growing friction p falls to 0 while the rod still presses: the force diverges, and its pole may look like a zero."""
     rate = lambda t, state: [state[1], 3 * (G - np.sin(state[0]) * state[1] ** 2) / rod_pressure(state[0], mu + rise * t) * ((mu + rise * t) * np.sin(state[0]) - np.cos(state[0]))]
     locks = lambda t, state: rod_pressure(state[0], mu + rise * t) - 1e-9
     locks.terminal = True
@@ -351,7 +354,10 @@ def told_of_other_forces(instance):
 
 
 def test_contacts_that_are_too_many_to_try_all(open_fmu):
-    """Each force F is 9.81 + k n F with k = 0.5 (mu - 0.5)/10: positive up to n k = 1. Beyond this a pull lifts all, or all press; of 12 that is known."""
+    """
+    Each force F satisfies F = 9.81 + k n F with k = 0.5 (mu - 0.5)/10, positive up to n k = 1. Beyond that a pull lifts all contacts, or
+    all press. For 12 contacts all combinations are tried; for 14 they are not.
+    """
     instance = open_fmu("Masses14").initialize({"mu": 1})
     assert instance.get("c0.force", "c13.force") == pytest.approx(2 * [9.81 / (1 - 14 * 0.025)], rel=1e-9)
     assert told_of_other_forces(instance) == 0
@@ -386,11 +392,11 @@ def test_a_ball_hits_two_at_once(open_fmu, name, angle):
 
 @pytest.mark.parametrize("mu", [0.0, 0.5])
 def test_a_ball_falls_into_a_wedge(open_fmu, mu):
-    """Straight up again: it closes both gaps with half its velocity, and friction has the same part on either side."""
+    """The ball leaves straight up: it closes both gaps with half its velocity, and friction acts equally on both sides."""
     instance = open_fmu("Wedge").initialize({"mu": mu})
     to(instance, np.sqrt(2 / G) + 0.1)
     speed = np.sqrt(2 * G)
-    # normal impulses p along (+-cos 30, sin 30): slides down both walls, as the stick impulse would be beyond mu
+    # normal impulses p along (+-cos 30, sin 30): the ball slides on both walls, since sticking would exceed mu
     assert instance.get("x", "vx", "w") == pytest.approx([0, 0, 0], abs=1e-12)
     assert instance.get("vy") == pytest.approx(0.8 * speed - G * 0.1, rel=1e-12)
     assert events(instance) == 1
@@ -401,7 +407,7 @@ def test_a_ball_falls_into_a_wedge(open_fmu, mu):
 
 @pytest.mark.parametrize("e, steps", [(0.96, 1), (0.96, 2000), (0.99, 1), (0.999, 1)])
 def test_long_bounces_end_in_rest(open_fmu, e, steps):
-    """The ball on top is far away; then both fall on one another."""
+    """The second ball is far above at first; then both are close to each other."""
     instance = open_fmu("BallOnBall").initialize({"e": e, "a": 0.05, "b": 1e9})
     rest = np.sqrt(2 * 0.05 / G) * (1 + e) / (1 - e)
     before = 0.999 * rest
@@ -427,7 +433,7 @@ def test_two_balls_bounce_until_both_rest(open_fmu, e):
 
 
 def incline(e, mu, a, t):
-    """Velocities along an incline, and of the spin: impact by impact, then by the friction of rolling or sliding."""
+    """Velocities along an incline, and the spin: impact by impact, then with the friction of rolling or sliding."""
     fall = G * np.cos(a)
     vs = w = now = 0.0
     flight, speed = np.sqrt(2 * 0.1 / fall), np.sqrt(2 * 0.1 * fall)
@@ -441,7 +447,7 @@ def incline(e, mu, a, t):
         vs, w = vs + push, w + push * 0.1 / 0.004
         speed *= e
         flight = 2 * speed / fall
-    if mu >= 2 / 7 * np.tan(a):  # it rolls in the end: the mean force of many small impacts is that of rest
+    if mu >= 2 / 7 * np.tan(a):  # it rolls in the end: the mean force of many small impacts is that at rest
         slip = vs + 0.1 * w
         rate = G * np.sin(a) - 3.5 * mu * fall
         slides = max(0.0, min(t - now, -slip / rate)) if slip > 0 else 0.0
@@ -465,7 +471,7 @@ def test_a_ball_bounces_down_an_incline(open_fmu, mu):
 
 
 def housner(b, h, theta, count):
-    """Times of the changes of corner, and the angular velocities behind them, without slipping."""
+    """Times of the changes of corner, and the angular velocities after them, without slipping (Housner)."""
     slender, radius = np.arctan2(b, h), np.hypot(b, h)
     factor = 1 - 1.5 * np.sin(slender) ** 2
     lands = lambda t, y: y[0]
@@ -493,7 +499,7 @@ def test_a_block_rocks_by_housner(open_fmu, mu):
 
 
 def frictionless_block(b, h, theta, times):
-    """Angle and velocity of a block whose feet slide freely: its centre moves up and down alone."""
+    """Angle and velocity of a block on frictionless ground: its centre moves vertically."""
     inertia = (b**2 + h**2) / 3
     now, state, side, found = 0.0, np.array([theta, 0.0]), np.sign(theta), []
 
@@ -508,7 +514,7 @@ def frictionless_block(b, h, theta, times):
         while now < time:
             path = solve_ivp(rate, (now, time), state, events=lands, rtol=1e-12, atol=1e-14)
             now, state = path.t[-1], path.y[:, -1]
-            if len(path.t_events[0]):  # vertical impulse at the other corner, inelastic: its velocity is 0 behind
+            if len(path.t_events[0]):  # vertical inelastic impulse at the other corner: its velocity is 0 afterwards
                 w, vy = state[1], side * b * state[1]
                 impulse = -(vy + side * b * w) / (1 + b**2 / inertia)
                 side, state = -side, np.array([0.0, w + side * b * impulse / inertia])

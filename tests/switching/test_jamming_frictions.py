@@ -1,4 +1,6 @@
-"""Worm gears whose friction follows from the force of the gear: where both jam, the message names both, and Painleve's paradox."""
+"""
+Worm gears whose friction is proportional to the force of the gear: jamming, where the message names both elements, and Painleve's paradox.
+"""
 
 import fmpy
 import pytest
@@ -7,8 +9,8 @@ from fmpy.fmi1 import FMICallException
 import fmu
 from fmu import build_systems
 
-# With f = -gear.force, w > 0 and U on the worm: worm*w' = U + f - c |f|, and wheel*w'/10 = -10 f. So k f - c |f| = -U with
-# k = 1 + 100 worm/wheel, which has no solution for U < 0 and c >= k, as the left side is never above 0 then.
+# With f = -gear.force, w > 0 and U on the worm: worm*w' = U + f - c |f|, and wheel*w'/10 = -10 f. So k f - c |f| = -U with k = 1 + 100
+# worm/wheel. For U < 0 and c >= k there is no solution, since the left side is then never positive.
 WORM = """<system name="{name}">
   <coordinate name="a" velocity="w" unit="rad" velocityStart="1"/><coordinate name="b" velocity="v" unit="rad" velocityStart="0.1"/>
   <kinetic>{worm}*w^2/2 + v^2/2</kinetic>
@@ -21,22 +23,23 @@ WORM = """<system name="{name}">
 AT_ONCE, LATER = "-24", "if(time &lt; 0.5, 0, -24)"
 JAMS = {
     "WormAtOnce": (0.001, AT_ONCE, "taylor"),
-    "WormLocks": (0.01, AT_ONCE, "taylor"),  # c = k: the equations are singular
+    "WormLocks": (0.01, AT_ONCE, "taylor"),  # c = k: singular equations
     "WormLater": (0.001, LATER, "taylor"),
     "WormLocksLater": (0.01, LATER, "bdf"),
     "WormRadau": (0.001, LATER, "radau"),
 }
-# Here k = 3: while w > 0, f = 24/(k - c) = 24, and w' = -100 f stops w = 1 after 1/2400 s; then it turns back with f = 24/(k + c).
+# k = 3: while w > 0, f = 24/(k - c) = 24, and w' = -100 f stops w = 1 after 1/2400 s; then the gear reverses with f = 24/(k + c).
 TURNS = (0.02, AT_ONCE, "taylor")
-# From rest. Forwards there is no f as above, and stuck f = 0 holds nothing. Back it is k f + c |f| = 24, of which f = 24/(k + c) goes
-# on back, and f = -24/(c - k) does not: one motion for each k. One that moves back already may go on with either.
+# From rest. Forward motion has no solution f, as above, and sticking with f = 0 balances no load. Backward motion requires k f + c |f| =
+# 24: f = 24/(k + c) continues backwards, f = -24/(c - k) does not. So each k has one motion. A gear that already moves backwards may
+# continue with either.
 AT_REST = {
     f"WormRest{number}{method.title()}": (worm, load, method)
     for number, (worm, load) in enumerate([(0.001, AT_ONCE), (0.02, AT_ONCE), (0.001, LATER), (0.001, "-24*time")])
     for method in ("taylor", "radau")
 }
 
-# k = 3, c = 1 + 4 t: f = 1/(k - c) grows up to 0.5 s, while w > 0 has lost 100 times its integral, some hundred at most.
+# k = 3, c = 1 + 4 t: f = 1/(k - c) grows up to 0.5 s. Until then w > 0 has lost 100 times its integral, a few hundred at most.
 GROWS = WORM.replace("{worm}", "0.02").replace("2*abs", "(1 + 4*time)*abs").replace("{load}", "-1").replace('="1"', '="5000"').replace('="0.1"', '="500"')
 
 

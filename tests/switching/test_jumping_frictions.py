@@ -1,4 +1,7 @@
-"""Friction along a velocity that jumps, as that of a belt which starts at once: what stuck slides, and sticks again when it is as fast."""
+"""
+Friction along a velocity that jumps, such as that of a belt that starts instantly: a sticking body slides, and sticks again at the new
+velocity.
+"""
 
 import fmpy
 import numpy as np
@@ -11,15 +14,15 @@ from fmu import build_systems
 BODY = '<coordinate name="x" velocity="v"/><particle mass="2" x="x"/>'
 PLANE = '<coordinate name="y" velocity="w"/><particle mass="2" y="y"/>'
 METHODS = ["taylor", "erk", "radau", "bdf"]
-# Of each: what else there is, and the friction, whose limit is 50 N; from 0.55 s on v is to become 1 m/s, at 25 m/s2.
+# Further elements, and the friction with the limit 50 N; from 0.55 s on v approaches 1 m/s at 25 m/s2.
 BELTS = {
     "Time": ("", 'velocity="v - if(time &lt; 0.55, 0, 1)"'),
     "Step": ("", 'velocity="v - 0.5*(1 + sign(time - 0.55))"'),
     "Mode": ('<mode name="belt" start="0"/><event when="time &gt; 0.55"><set mode="belt">1</set></event>', 'velocity="v - belt"'),
     "Plane": (PLANE, 'velocity="v - if(time &lt; 0.55, 0, 1)" across="w"'),
-    # There and back: sliding that turns round, at -1 m/s from 0.25 s on, until it turns back at 0.55 s.
+    # The belt reverses: it moves at -1 m/s from 0.25 s on, and at 1 m/s from 0.55 s on.
     "Turned": ("", 'velocity="v - if(time &lt; 0.25, 0, if(time &lt; 0.55, -1, 1))"'),
-    # Nothing but the reaction of the other holds it.
+    # Only the reaction of the other body acts on it.
     "Between": ('<coordinate name="y" velocity="w"/><particle mass="2" x="y"/>', 'velocity="v - w - if(time &lt; 0.55, 0, 2)"'),
 }
 SET = {"Parameter": ('<parameter name="u" start="0" unit="m/s"/>', 'velocity="v - u"')}
@@ -41,7 +44,7 @@ def built():
 
 
 def speed_and_force(belt, time):
-    """Half a second after a jump by 1 it slides for 0.04 s, after one by 2 for 0.08 s."""
+    """It slides for 0.04 s after a jump by 1, and for 0.08 s after a jump by 2."""
     if belt == "Turned":
         return np.interp(time, [0.25, 0.29, 0.55, 0.63], [0, -1, -1, 1]), 50 * (0.25 < time < 0.29) - 50 * (0.55 < time < 0.63)
     return np.interp(time, [0.55, 0.59], [0, 1]), -50 * (0.55 < time < 0.59)

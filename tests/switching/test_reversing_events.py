@@ -1,4 +1,4 @@
-"""Events that look both ways and turn back what they look at: each arrival is one event, as the way back is no passage."""
+"""Events in both directions that reverse the quantity they watch: each arrival is one event, and the return is none."""
 
 import math
 from ctypes import c_double
@@ -39,7 +39,7 @@ def built():
 @pytest.mark.parametrize("start, speed", [(0.0, 1.0), (1.4, -1.0)])
 @pytest.mark.parametrize("method", METHODS)
 def test_an_event_turns_a_body_back(method, start, speed):
-    """It meets the place after 0.7 s, and has 0.7 of its speed from there on, on the side that it came from."""
+    """The body arrives after 0.7 s, and then moves back with 0.7 of its speed, on the side that it came from."""
     instance = Instance(f"Free_{method}").initialize({"x": start, "v": speed}, tolerance=1e-9)
     instance.step(2)
     assert instance.get("x", "v", "n") == pytest.approx([0.7 - 0.7 * 1.3 * speed, -0.7 * speed, 1], abs=1e-7)
@@ -47,13 +47,13 @@ def test_an_event_turns_a_body_back(method, start, speed):
 
 def spring_after_five_events():
     """
-    The time 0.1 s behind the fifth event, and what is there. It loses 0.51 of its kinetic energy, 0.3 J at first, at x = 0.2,
-    and each time it swings round from there.
+    State 0.1 s after the fifth event, and that time. The mass starts with 0.3 J, loses 0.51 of its kinetic energy at x = 0.2, and each time
+    swings round to there.
     """
     w, energy, time = math.sqrt(10), 0.3, math.asin(0.2 * math.sqrt(10)) / math.sqrt(10)
     for _ in range(4):
         energy *= 0.49
-        # From 0.2 with the velocity -u round to 0.2 with u: the phase passes pi + 2 atan(0.2 w/u).
+        # From 0.2 with the velocity -u round to 0.2 with u the phase advances by pi + 2 atan(0.2 w/u).
         time += (math.pi + 2 * math.atan(0.2 * w / math.sqrt(2 * energy))) / w
     after = 0.1
     u = 0.7 * math.sqrt(2 * energy)
@@ -70,7 +70,7 @@ def test_a_spring_brings_it_back_each_time(method):
 
 
 class Integrator:
-    """An importer of either version of FMI that integrates with steps of one size, and comes to events up to a step late."""
+    """An importer of either version of FMI with fixed steps, which detects events up to a step late."""
 
     def __init__(self, name, version, values=()):
         module, kind = (fmu, FMU2Model) if version == 2 else (fmi3, FMU3Model)
@@ -100,7 +100,7 @@ class Integrator:
         start = self.time
         for k in range(1, count + 1):
             state, rate, before = self.vector("getContinuousStates"), self.vector(rates), self.vector("getEventIndicators", 1)
-            # Exact where the accelerations are constant.
+            # Exact for constant accelerations.
             state = state + step * rate + [step**2 / 2 * rate[1], 0]
             self.time = start + (end - start) * k / count
             self.model.setTime(self.time)
@@ -118,7 +118,7 @@ class Integrator:
 @pytest.mark.parametrize("step", [0.1, 0.03, 0.001])
 @pytest.mark.parametrize("start, speed", [(0.0, 1.0), (1.4, -1.0)])
 def test_an_importer_that_comes_late_turns_it_back(version, step, start, speed):
-    """The lateness does not show: the body is where it would be, had it been turned back at the zero itself."""
+    """Late detection leaves no error: the body is where an event at the zero itself would have put it."""
     importer = Integrator("Free_taylor", version, {"x": start, "v": speed})
     end = 0.03 * 66 if step == 0.03 else 2.0
     importer.to(end, step)
@@ -127,7 +127,7 @@ def test_an_importer_that_comes_late_turns_it_back(version, step, start, speed):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_velocity_that_is_set_back_is_one_event(version):
-    """It comes to 2 after 1 s, and again 0.5 s after it was set to 1.5: at 1, 1.5, 2, 2.5, ... s."""
+    """It reaches 2 after 1 s, and again 0.5 s after being set to 1.5: at 1, 1.5, 2, 2.5, ... s."""
     importer = Integrator("Throttled", version)
     importer.to(2.8, 0.07)
     assert importer.get("x", "v", "n") == pytest.approx([1.5 + 3 * (1.5 * 0.5 + 0.125) + 1.5 * 0.3 + 0.045, 1.8, 4], abs=1e-12)
@@ -138,7 +138,7 @@ def test_a_velocity_that_is_set_back_is_one_event(version):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_zero_that_an_input_moves_is_no_lateness(version):
-    """The input comes from 2 to 0.1 while the body is at 0.5: it is turned there, passes 0.1 on its way back, and is turned again."""
+    """The input changes from 2 to 0.1 while the body is at 0.5: the body reverses there, passes 0.1 on its way back, and reverses again."""
     importer = Integrator("Stopped", version)
     importer.to(0.5, 0.1)
     importer.model.enterEventMode()
@@ -152,7 +152,7 @@ def test_a_zero_that_an_input_moves_is_no_lateness(version):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_cvode_of_an_importer_comes_to_the_same(version):
-    """The spring above, through an importer's own solver and its search for events."""
+    """The spring above, with an importer's own solver and event detection."""
     archive = fmu.archive("Spring_taylor") if version == 2 else fmi3.archive("Spring_taylor")
     end, expected = spring_after_five_events()
     words = dict(fmi_type="ModelExchange", stop_time=end, output_interval=0.05, relative_tolerance=1e-9, output=["x", "v", "n"])

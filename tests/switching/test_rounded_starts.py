@@ -1,4 +1,4 @@
-"""Start values of few digits: contacts that they penetrate are parted, as constraints are fulfilled, with a word."""
+"""Start values with few digits: penetrated contacts are separated as constraints are satisfied, with a message."""
 
 import math
 
@@ -8,11 +8,11 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 from fmu import ERROR, build_systems
 
-# A point outside of a circle of 1 m, published with six digits, and a body on the floor.
+# A point outside a circle of 1 m, given with six digits, and a body on the floor.
 PLACES = """<system name="Places"><coordinate name="x" velocity="vx" unit="m" start="0.5"/><coordinate name="y" velocity="vy" unit="m" start="0.866025"/>
   <coordinate name="h" velocity="v" unit="m" start="-9e-7"/><particle mass="2" y="h"/><gravity y="-9.81"/><contact name="floor" gap="h" unit="m"/>
   <particle mass="1" x="x"/><particle mass="1" y="y"/><contact name="rod" gap="sqrt(x^2 + y^2) - 1" unit="m"/></system>"""
-# What rests on the floor is tied to a slide.
+# The body on the floor is coupled to a slide.
 TIED = """<system name="Tied"><coordinate name="h" velocity="v" unit="m" start="-9e-7"/><coordinate name="s" velocity="w" unit="m" start="-1.8e-6"/>
   <particle mass="2" y="h"/><particle mass="1" x="s"/><gravity y="-9.81"/><constraint name="tie" unit="m">s - 2*h</constraint>
   <contact name="floor" gap="h" unit="m"/></system>"""
@@ -33,7 +33,7 @@ def started(opened, open_fmu, version, kind):
 @pytest.mark.parametrize("kind", ["steps", "exchange"])
 @pytest.mark.parametrize("version", [2, 3])
 def test_rounded_starts_are_moved(opened, open_fmu, version, kind):
-    """By the least way in the metric of the masses: the point of the circle in its own direction. Initialization mode shows the same."""
+    """The start moves by the least amount in the mass metric: radially to the circle. Initialization mode shows the same values."""
     instance = started(opened, open_fmu, version, kind)
     (instance.fmu.setupExperiment if version == 2 else (lambda: None))()
     instance.fmu.enterInitializationMode()
@@ -59,7 +59,7 @@ def test_more_than_rounding_is_refused(open_fmu):
 
 
 def test_fixed_coordinates_stay(open_fmu):
-    """The body on the floor cannot move without the slide, whose start is fixed."""
+    """The body on the floor cannot move without the slide, whose start value is fixed."""
     instance = open_fmu("Fixed")
     with instance.fails(ERROR, "the contact 'floor' is penetrated at the start: its gap is -9e-07"):
         instance.initialize()

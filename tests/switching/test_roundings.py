@@ -1,4 +1,4 @@
-"""floor, ceil, round and mod: they switch in what moves, and are values in <set>; against closed forms."""
+"""floor, ceil, round and mod: events in motions, and values in <set>; against closed forms."""
 
 import math
 
@@ -9,10 +9,10 @@ import fmu
 from fmu import build_systems, lagc
 
 METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
-# Stairs of force under a mass that time moves: v' = floor(2 t) + round(t) + ceil(t) + mod(t, 0.3), with sums in closed form.
+# A force with steps in time: v' = floor(2 t) + round(t) + ceil(t) + mod(t, 0.3), integrated in closed form.
 STAIRS = """<system name="Stairs_{method}"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/>
 <force coordinate="x">floor(2*time) + round(time) + ceil(time) + mod(time, 0.3)</force><solver method="{method}" tolerance="1e-11"/></system>"""
-# A position in steps of an encoder holds the mass: between two steps it flies freely.
+# An encoder's position controls the mass: between two steps the acceleration is constant.
 ENCODER = """<system name="Encoder"><parameter name="d" start="0.1"/><coordinate name="x" velocity="v" start="0.05" velocityStart="1.3"/>
 <particle mass="1" x="x"/><force coordinate="x">-20*d*round(x/d)</force><input name="u"/><state name="z" rate="floor(u)"/>
 <mode name="seen"/><mode name="down"/><event when="time - 0.4" direction="rising"><set mode="seen">d*floor(x/d) + mod(-x, d)</set><set mode="down">ceil(-2.5) + round(2.5) + 10*round(-2.5)</set></event>
@@ -25,7 +25,7 @@ def built():
 
 
 def stairs_velocity(t):
-    """The integrals of the four parts from 0."""
+    """Sum of the integrals of the four terms from 0."""
     whole = lambda s: sum(max(0.0, s - k) for k in range(1, int(s) + 1))  # of floor
     saws = int(t / 0.3 + 1e-12)
     return whole(2 * t) / 2 + (whole(t + 0.5)) + whole(t) + t + saws * 0.045 + (t - 0.3 * saws) ** 2 / 2
@@ -40,7 +40,7 @@ def test_stairs(open_fmu, method):
 
 
 def encoder(t, d=0.1, x=0.05, v=1.3):
-    """Parabolas between the places where round(x/d) changes. It starts at one, from which it goes up."""
+    """Parabolas between the positions where round(x/d) changes. It starts at one of these, moving up."""
     k, time = math.floor(x / d + 0.5), 0.0
     while True:
         a, found = -20 * d * k, math.inf
@@ -69,7 +69,7 @@ def test_an_encoder(open_fmu):
 
 
 def test_inputs_that_jump_and_rest(open_fmu):
-    """The piece of an input is right at once, on whole numbers too, and far away."""
+    """The piece of an input is right at once, for integers too, and for large values."""
     instance = open_fmu("Encoder").initialize()
     for value in [0.3, 2.0, 2.7, -1.0, -0.2, 1e6 + 0.5, 3.0, -4.5]:
         instance.set(u=value)

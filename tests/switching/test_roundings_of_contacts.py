@@ -1,5 +1,7 @@
-"""Contacts and frictions where numbers are coarse: late times, long steps behind tiny bounces, gaps that are the difference of large terms, lift-off without speed,
-and dead centres."""
+"""
+Contacts and frictions at the limit of rounding: late times, long steps after tiny bounces, gaps that are differences of large terms,
+lift-off without speed, and dead centres.
+"""
 
 import math
 
@@ -48,7 +50,7 @@ def built():
 @pytest.mark.parametrize("steps", [1, 60])
 @pytest.mark.parametrize("method", ["taylor", "radau"])
 def test_a_spring_brings_a_body_to_rest_where_it_has_no_force(method, steps):
-    """The time of the impact is known to 2e-12 s, the place to 3e-12 m: it is no place from which the spring would move the body again."""
+    """The time of the impact is accurate to 2e-12 s, the position to 3e-12 m: the spring does not move the body from there."""
     instance = Instance(f"Spring_{method}").initialize(start_time=1e4)
     for k in range(steps):
         instance.fmu.doStep(1e4 + 6 * k / steps, 6 / steps)
@@ -56,7 +58,7 @@ def test_a_spring_brings_a_body_to_rest_where_it_has_no_force(method, steps):
 
 
 def test_tiny_bounces_in_a_long_step():
-    """Behind which the ball would have fallen 44 m, but for the ground: these metres hide 1e-10 of them."""
+    """Without the ground the ball would fall 44 m in the step, beside which bounces of 1e-10 m are lost in rounding."""
     instance = Instance("Tiny_erk").initialize()
     instance.step(3)
     assert instance.get("h", "v", "ground.force") == pytest.approx([0, 0, 9.81], abs=1e-12)
@@ -64,7 +66,7 @@ def test_tiny_bounces_in_a_long_step():
 
 @pytest.mark.parametrize("mass", [0.9, 1.3])
 def test_the_rest_of_forces_that_cancel_is_no_negative_friction(mass):
-    """Whatever the signs of their roundings."""
+    """The sum of forces that cancel is rounded to either sign; it is not a negative friction force."""
     instance = Instance("Balanced_taylor").initialize({"m": mass})
     instance.step(1)
     assert instance.get("x", "v") == pytest.approx([1, 1], abs=1e-12)
@@ -72,7 +74,7 @@ def test_the_rest_of_forces_that_cancel_is_no_negative_friction(mass):
 
 @pytest.mark.parametrize("a, h, mu, slope", [(0.2, 0.21, 0.9, 0.09), (0.64, 0.7, 0.77, 0.35), (0.23, 0.26, 0.74, 0.52)])
 def test_a_foot_that_parts_without_acceleration_stays_open(a, h, mu, slope):
-    """Of three, the last would have to pull where the load is near the first: the others hold it, but for rounding that would close it again."""
+    """The last of three feet would have to pull while the load is near the first. It opens, and rounding does not close it again."""
     instance = Instance("Feet_taylor").initialize({"a": a, "h": h, "z": h / 2, "mu": mu, "slope": slope})
     instance.step(0.02)
     acceleration, weight = 9.81 * (math.sin(slope) - mu * math.cos(slope)), 9.81 * math.cos(slope)
@@ -84,7 +86,7 @@ def test_a_foot_that_parts_without_acceleration_stays_open(a, h, mu, slope):
 
 @pytest.mark.parametrize("method", ["taylor", "erk", "bdf"])
 def test_sliding_over_the_earth(method):
-    """On a circle whose gap is told in pieces of 1e-9 m; about its top x = a t + O(t^3/R), at rest on it y = -x^2/2R."""
+    """On a circle whose gap is resolved to 1e-9 m; about its top x = a t + O(t^3/R), and y = -x^2/2R."""
     instance = Instance(f"Earth_{method}").initialize()
     for _ in range(20):
         instance.step(0.1)
@@ -97,7 +99,7 @@ def test_sliding_over_the_earth(method):
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-9])
 @pytest.mark.parametrize("method", ["radau", "bdf", "erk"])
 def test_errors_of_a_method_keep_no_bounces_up(method, tolerance):
-    """They lose three quarters of their energy each, and are over in 1.2 s; then the spring presses with 10 N."""
+    """The bounces lose three quarters of their energy each, and end after 1.2 s; then the spring presses with 10 N."""
     instance = Instance(f"Pressed_{method}").initialize(tolerance=tolerance)
     instance.step(3)
     assert instance.get("x", "v", "x.min.force") == pytest.approx([0, 0, 10], abs=1e-9)
@@ -105,7 +107,7 @@ def test_errors_of_a_method_keep_no_bounces_up(method, tolerance):
 
 @pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
 def test_the_friction_of_bounces_that_are_cut_short(method):
-    """Over all bounces, without end in 1.33 s, and at rest the ground pushes by m (g t - 2 m/s) in all, and friction by 0.3 of that."""
+    """Over infinitely many bounces until 1.33 s, and at rest, the ground's impulse is m (g t - 2 m/s), and that of friction 0.3 of it."""
     instance = Instance(f"Grazed_{method}").initialize(tolerance=1e-8)
     instance.step(1.4)
     assert instance.get("v", "w") == pytest.approx([5 - 0.3 * (10 * 1.4 - 2), 0], abs=1e-11)
@@ -115,7 +117,9 @@ def test_the_friction_of_bounces_that_are_cut_short(method):
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
 @pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
 def test_lift_off_without_speed(method, tolerance, speed):
-    """The dome is left where c = cos(theta) = 2/3 + v^2/3g, at sqrt(g c) along it: a parabola from there on, whose gap grows as t^3."""
+    """
+    The body leaves the dome at c = cos(theta) = 2/3 + v^2/3g with the speed sqrt(g c): a parabola from there on, whose gap grows as t^3.
+    """
     instance = Instance(f"Dome_{method}").initialize({"vx": speed}, tolerance=tolerance)
     instance.step(2)
     c = (2 + speed**2 / 9.81) / 3
@@ -126,7 +130,7 @@ def test_lift_off_without_speed(method, tolerance, speed):
 
 
 def test_a_solver_recommends_others_only():
-    """Errors of 1e-4 hide how the dome is left from bdf where a step ends just behind; taylor can tell."""
+    """At errors of 1e-4, bdf cannot resolve lift-off from the dome if a step ends just behind it; the message recommends taylor only."""
     instance = Instance("Dome_bdf").initialize({"vx": 3.0}, tolerance=1e-4)
     with instance.fails(DISCARD, "a contact opens and closes there without end$"):
         for _ in range(20):
@@ -138,7 +142,9 @@ def test_a_solver_recommends_others_only():
 
 @pytest.mark.parametrize("name", ["Crank_taylor", "Crank_radau", "Crank_bdf", "Slider_taylor"])
 def test_friction_at_a_dead_centre(name):
-    """It has no lever there, and cannot stop a crank that turns on. The way of the slider is all the energy, 0.9 J, by the force of 1 N."""
+    """
+    Friction has no moment at the dead centre, and cannot stop a crank in motion. The slider's path is the energy, 0.9 J, divided by 1 N.
+    """
     for start in (1.0, -0.5):
         instance = Instance(name).initialize({"phi": start} | ({"x": 0.3 * math.cos(start)} if "Slider" in name else {}))
         instance.step(4)
@@ -147,7 +153,7 @@ def test_friction_at_a_dead_centre(name):
 
 
 def test_friction_at_a_dead_centre_in_model_exchange():
-    """An importer comes a little past it."""
+    """An importer detects the dead centre a little late."""
     instance = Instance("Slider_taylor", kind=FMU2Model).initialize({"phi": 3.0, "x": 0.3 * math.cos(3), "w": 2.0})
     instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()

@@ -14,7 +14,7 @@ import fmu
 from fmu import DISCARD, ERROR
 
 METHODS = ["taylor", "auto", "radau", "bdf", "erk", "exact"]
-# A mass with damping, held by a sampled controller with an integral; two modes show when it was sampled.
+# A damped mass under a sampled controller with an integral; two modes count the samples and store the time of the last one.
 SERVO = """
 <system name="{name}">
   <parameter name="Ts" start="0.1" unit="s"/>
@@ -47,7 +47,7 @@ DIGITS = """
   <solver method="{method}" tolerance="1e-11"/>
 </system>
 """
-# Two rates, which exchange what they hold at common times, and a third that sets a state and a velocity.
+# Two rates that exchange their values at common times, and a third that sets a state and a velocity.
 RATES = """
 <system name="Rates">
   <parameter name="Ts" start="0.1" unit="s"/>
@@ -65,7 +65,7 @@ RATES = """
   <experiment stopTime="3"/>
 </system>
 """
-# A ball on the ground is kicked at known times, one of them in flight.
+# A ball on the ground receives impulses at known times, one of them in flight.
 KICKED = """
 <system name="Kicked">
   <coordinate name="h" velocity="v"/>
@@ -89,7 +89,7 @@ def built():
 
 
 def exact_servo(end, Ts=0.1, t0=0.0, start=0.0, state=(0.2, 0.0)):
-    """x, v, u, sum, k, at behind all samples up to the end: between them the mass is [x, v, u]' = A [x, v, u]."""
+    """x, v, u, sum, k, at after all samples up to the end; between them [x, v, u]' = A [x, v, u]."""
     A = np.array([[0.0, 1.0, 0.0], [0.0, -0.7, 1.0], [0.0, 0.0, 0.0]])
     y, total, count, at, time = np.array([*state, 0.0]), 0.0, 0, -1.0, start
     first = max(0, math.ceil((start - t0) / Ts - 1e-9))
@@ -118,7 +118,7 @@ def test_a_servo_by_every_method(method, offset, step):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("step", [0.01, 0.05, 0.1])
 def test_a_sample_a_digit_before_the_end(method, step):
-    """0.05 + 2 0.15 is a last digit below 0.35: the rest of the communication step is no step for SUNDIALS."""
+    """0.05 + 2 0.15 is one unit in the last place below 0.35: the rest of the communication step is too short a step for SUNDIALS."""
     instance = fmu.Instance(f"Digits_{method}").initialize()
     x, n, time = 1.0, 0, 0.0
     for k in range(7):
@@ -137,7 +137,7 @@ def test_the_first_sample_is_at_the_start_or_behind_it(start):
 
 
 def test_there_is_no_drift():
-    """The times are offset + k Ts as numbers, also after many samples; no step loses one or makes two of one."""
+    """Sample times are offset + k Ts without drift, even after many samples; no step loses or repeats one."""
     servo = fmu.Instance("ServoTaylor").initialize({"t0": 0.0, "kp": 0.1})
     for i in range(1, 2001):
         servo.step(0.37 * i - servo.time)
@@ -149,7 +149,7 @@ def test_there_is_no_drift():
 
 
 def test_sums_of_steps_meet_the_samples():
-    """Communication points that are the times of samples but for a last digit show what is behind them."""
+    """Communication points that equal sample times up to rounding show the state after the sample."""
     for opened in (fmu, fmi3):
         servo = opened.Instance("ServoTaylor").initialize({"t0": 0.0})
         for i in range(1, 30):
@@ -158,7 +158,7 @@ def test_sums_of_steps_meet_the_samples():
 
 
 def test_a_period_that_is_tuned():
-    """The next sample is where it was; those behind it follow with the new period."""
+    """The next sample keeps its time; those after it follow with the new period."""
     servo = fmu.Instance("ServoTaylor").initialize({"Ts": 0.3})
     times = []
     for i in range(1, 401):
@@ -177,7 +177,7 @@ def test_a_period_that_is_tuned():
 
 
 def rates_by_hand(end):
-    """By order of time, in whole numbers of 1/20 s: what is set at once comes from what was before."""
+    """Values by order of time, in units of 1/20 s; simultaneous settings use the values before."""
     a, b, x, v, z, rows = 1.0, 2.0, 0.0, 0.0, 0.0, []
     for i in range(int(end * 20) + 1):
         if i > 0:
@@ -203,7 +203,7 @@ def test_several_rates(sizes):
 
 
 def test_a_body_on_the_ground_is_kicked():
-    """From rest at 0.5 s it flies for 1 s; at 1.25 s, in flight, it is kicked again, and so on."""
+    """From rest at 0.5 s it flies for 1 s; at 1.25 s, in flight, it receives the next impulse, and so on."""
     body = fmu.Instance("Kicked").initialize()
     body.step(0.4)
     assert body.get("h", "v") == pytest.approx([0.0, 0.0], abs=1e-14)
@@ -217,7 +217,7 @@ def test_a_body_on_the_ground_is_kicked():
 
 @pytest.mark.parametrize("name", [name_of("taylor", 0.0), name_of("radau", 0.0), "Rates", "Kicked"])
 def test_states_of_fmus_are_exact(name):
-    """Bit by bit, from within a period and from a sample."""
+    """States saved within a period and at a sample give the same bits."""
     outputs = [variable.name for variable in fmu.description(name).modelVariables if variable.causality == "output"]
     instance = fmu.Instance(name).initialize()
     for first in (0.43, 0.5):
@@ -319,7 +319,7 @@ def test_two_samples_that_set_the_same(tmp_path):
 
 
 def test_many_runs_at_once():
-    """In lanes, each with a period of its own: x and v at times of samples, too."""
+    """Lanes with different periods agree with the closed form, also at the times of samples."""
     from ensemble_runs import ensemble
 
     periods, times = np.linspace(0.05, 0.3, 19), [0.3, 1.0, 2.95]
@@ -342,7 +342,7 @@ def test_many_runs_at_once():
     ('when="x - time"', None),
 ])  # fmt: skip
 def test_events_that_never_happen(event, message, tmp_path):
-    """A mode that another event sets may bring it about."""
+    """A mode that another event sets may make the event occur."""
     import re
 
     system = tmp_path / "system.xml"

@@ -1,4 +1,4 @@
-"""What sticks has velocity 0, exactly, in all that looks at it; and friction whose limits differ by direction."""
+"""Sticking bodies have a velocity of exactly 0 in all expressions; and friction whose limits depend on direction."""
 
 import fmpy
 import numpy as np
@@ -25,7 +25,7 @@ GEAR = """<system name="{name}">
   <solver method="{method}" tolerance="1e-9"/>
 </system>
 """
-# The limit of each law at rest, and as it slides back.
+# Friction, its limit at rest, and its force while it slides back.
 LAWS = {
     "If": ('coordinate="a" force="if(w1 > 0, 4, 1)"', 1, 1),
     "Sign": ('coordinate="a" force="2.5 + 1.5*sign(w1)"', 2.5, 1),
@@ -35,7 +35,7 @@ LAWS = {
     "Back": ('coordinate="a" force="4" forceBack="1"', 1, 1),
     "Stiction": ('coordinate="a" force="4" forceBack="1" stictionBack="2.5"', 2.5, 1),
 }
-# A block on a belt that starts and stops to and fro; its friction grips by 4 where the block is faster, else by 1.
+# A block on a belt that accelerates to and fro; the limit is 4 if the block is faster, and 1 otherwise.
 BELT = """<system name="Belt">
   <coordinate name="x" velocity="v"/>
   <particle mass="1" x="x"/>
@@ -44,7 +44,7 @@ BELT = """<system name="Belt">
   <output name="s">sign(slip)</output>
 </system>
 """
-# A block that is pushed to and fro: its limits are 4 and 0.5, or 5 and 2 where they hold it.
+# A block pushed to and fro: its limits are 4 and 0.5 while it slides, or 5 and 2 while it sticks.
 SHAKEN = """<system name="Shaken{name}">
   <parameter name="forth" start="4"/><parameter name="back" start="0.5"/>
   <coordinate name="x" velocity="v"/>
@@ -53,7 +53,7 @@ SHAKEN = """<system name="Shaken{name}">
   <force coordinate="x">8*sin(3*time)</force>
 </system>
 """
-# A worm drive: the friction of its teeth follows from their force, by directions.
+# A worm drive: the friction of its teeth is proportional to their force, with different factors by direction.
 TEETH = """<system name="Teeth">
   <coordinate name="a" velocity="w1" velocityStart="{speed}"/><coordinate name="b" velocity="w2" velocityStart="{speed}"/>
   <kinetic>w1^2/2 + w2^2/2</kinetic>
@@ -82,7 +82,7 @@ def built():
 
 
 def velocity_of_gear(ratio, law, time):
-    """Behind the slip, as 2 (t - 1) passes the limit at rest, against the force of sliding back."""
+    """Velocity after the slip, when 2 (t - 1) exceeds the limit at rest, against the force of sliding back."""
     _, stiction, force = LAWS[law]
     slip = 1 + stiction / 2
     impulse = (time - 1) ** 2 - (slip - 1) ** 2 - force * (time - slip)
@@ -130,7 +130,7 @@ def test_in_fmi_3():
 
 
 def test_in_ensembles():
-    """The limit at rest is passed later where the push is less."""
+    """Slip starts later for a smaller push."""
     pushes = np.linspace(1.5, 2.5, 5)
     values, _ = ensemble(gear_name("3", "Sign"), ["push"], ["w1", "sign2"], [2.0, 4.0]).run([[push] for push in pushes])
     assert not np.any(values[:, 0, 1])
@@ -147,14 +147,14 @@ def test_what_sticks_has_no_derivatives(open_fmu):
 
 
 def test_a_belt(open_fmu):
-    """It carries the block, since it accelerates by 1 at most; at rest on it the friction holds up to 2.5."""
+    """The belt carries the block, since its acceleration is at most 1; at rest on it the friction holds up to 2.5."""
     instance = open_fmu("Belt").initialize()
     for time, _, sign, force in instance.run(5, 0.05, "v", "s", "rub.force"):
         assert sign == 0 and force == pytest.approx(-np.cos(2 * time), abs=1e-12)
 
 
 def shaken(limits, end):
-    """v by small steps of the closed forms between the times at which it stops and slips; the force is 8 sin(3 t)."""
+    """v by small steps of the closed forms between stopping and slipping, under the force 8 sin(3 t)."""
     forth, back, stick_forth, stick_back = limits
     times = np.linspace(0, end, 200001)
     v, mode, step = np.zeros_like(times), 0, times[1]
@@ -185,7 +185,7 @@ def test_limits_by_direction(open_fmu, name, limits):
 
 @pytest.mark.parametrize("speed", [1, -1])
 def test_limits_by_direction_that_follow_from_a_constraint(open_fmu, speed):
-    """Of the teeth: a' = -rub + N, b' = -2 - N with a' = b', where the friction is mu |N| against the velocity."""
+    """For the teeth: a' = -rub + N, b' = -2 - N with a' = b', where the friction is mu |N| against the velocity."""
     name = "TeethForth" if speed > 0 else "TeethBack"
     build_systems(f"sticking-{name}", {name: TEETH.format(speed=speed).replace('"Teeth"', f'"{name}"')})
     instance = open_fmu(name).initialize()

@@ -1,4 +1,4 @@
-"""The systems that switch, by closed forms and integrations of our own; and what FMI says of events."""
+"""The systems of fmu/ with events, against closed forms and independent integrations; and the events of FMI."""
 
 import fmpy
 import mpmath
@@ -16,7 +16,7 @@ G = 9.81
 
 
 def value(instance, name):
-    """A variable of any type."""
+    """Value of a variable of any type."""
     variable = next(v for v in instance.description.modelVariables if v.name == name)
     read = instance.fmu.getReal if variable.type == "Real" else instance.fmu.getInteger
     return read(instance.vr(name))[0]
@@ -34,7 +34,7 @@ def to(instance, time):
 
 
 def bounces(h, e, count):
-    """Times of the bounces, and the velocities behind them."""
+    """Times of the bounces, and the velocities after them."""
     fall, speed = np.sqrt(2 * h / G), np.sqrt(2 * G * h)
     powers = e ** np.arange(1, count + 1)
     times = fall * (1 + 2 * np.concatenate([[0], np.cumsum(powers[:-1])]))
@@ -85,12 +85,12 @@ def test_a_ball_bounces_without_loss_for_long(open_fmu):
 
 
 def swings(theta0, stop, e, count):
-    """Times of the impacts of a pendulum of length 1 that is let go at theta0, and the velocities behind them."""
+    """Times of the impacts of a pendulum of length 1 released at theta0, and the velocities after them."""
     with mpmath.workdps(30):
         g = mpmath.mpf(G)
 
         def from_top(energy, angle):
-            """The time from rest on the right to an angle, with energy = sin(top/2)^2."""
+            """Time from rest on the right to an angle, with energy = sin(top/2)^2."""
             k = mpmath.sqrt(energy)
             u = mpmath.asin(mpmath.sin(mpmath.mpf(angle) / 2) / k)
             return (mpmath.ellipk(energy) - mpmath.ellipf(u, energy)) / mpmath.sqrt(g)
@@ -118,7 +118,7 @@ def test_a_pendulum_hits_its_stop_at_the_right_times(open_fmu, theta0, stop, e):
 
 
 def test_a_pendulum_grazes_its_stop_in_the_end(open_fmu):
-    """Impacts fade, each with 0.9 of the velocity of that before, until it swings between -0.2 and 0.2."""
+    """Each impact keeps 0.9 of the velocity, until the pendulum swings between -0.2 and 0.2."""
     instance = open_fmu("HardStopPendulum").initialize(tolerance=1e-11)
     to(instance, 500)
     assert instance.get("totalEnergy") == pytest.approx(-G * np.cos(0.2), rel=1e-9)
@@ -131,7 +131,7 @@ def test_a_pendulum_grazes_its_stop_in_the_end(open_fmu):
 
 @pytest.mark.parametrize("belt, static, sliding", [(0.1, 0.1, 0.05), (0.3, 0.2, 0.12), (0.02, 0.15, 0.1)])
 def test_a_block_sticks_and_slips(open_fmu, belt, static, sliding):
-    """It slips where k x = muStatic N; x - muSliding N/k swings then, until v is that of the belt again."""
+    """It slips at k x = muStatic N; x - muSliding N/k then swings until v is that of the belt again."""
     instance = open_fmu("StickSlip").initialize({"vBelt": belt, "muStatic": static, "muSliding": sliding, "v": belt}, tolerance=1e-12)
     reach, centre = 10 * static, 10 * sliding
     way = reach - centre
@@ -170,7 +170,7 @@ def test_a_cradle_hands_its_push_on(open_fmu):
     energy = instance.get("totalEnergy")
     names = [f"theta[{i}]" for i in range(1, 6)]
     for i in range(6):
-        to(instance, half * (i + 1) - 1e-3)  # at the top on the other side
+        to(instance, half * (i + 1) - 1e-3)  # at the turning point on the other side
         expected = np.zeros(5)
         expected[4 if i % 2 == 0 else 0] = (0.5 if i % 2 == 0 else -0.5) * np.cos(1e-3 * rate)
         assert instance.get(*names) == pytest.approx(expected, abs=2e-6)
@@ -186,7 +186,7 @@ def test_two_balls_let_two_balls_go(open_fmu):
 
 
 def test_a_cradle_loses_by_restitution(open_fmu):
-    """Of two balls the first passes (1 + e)/2 of what it is faster on, whichever pair closes fastest."""
+    """Of two balls, the first passes on (1 + e)/2 of the relative velocity, whichever pair closes fastest."""
     e, instance = 0.8, open_fmu("NewtonsCradle")
     instance.initialize({"e": e}, tolerance=1e-12)
     hit = float(mpmath.ellipk(mpmath.sin(0.25) ** 2) / np.sqrt(G / 0.2))
@@ -204,13 +204,15 @@ def test_a_cradle_loses_by_restitution(open_fmu):
 
 
 class Walker:
-    """Two legs as four coordinates: the hip, and the angles of the legs; feet are held by forces, and struck."""
+    """
+    Two legs in four coordinates: the hip, and the angles of the legs. Forces constrain the stance foot, and impulses act on the swing foot.
+    """
 
     m, hip, a, b = 5.0, 10.0, 0.5, 0.5
     slope = np.pi / 60
 
     def points(self, q):
-        """Jacobians of the hip and the masses of the legs, and what velocities add to their accelerations."""
+        """Jacobians of the hip and the masses of the legs."""
         jacobians = [np.array([[1, 0, 0, 0], [0, 1, 0, 0]])] + [self.on_leg(q, leg, self.b) for leg in (0, 1)]
         return jacobians
 
@@ -227,7 +229,7 @@ class Walker:
         return sum(m * J.T @ J for m, J in zip((self.hip, self.m, self.m), self.points(q)))
 
     def full(self, y):
-        """Coordinates and velocities by those of the legs (swing, stance), with the foot of the stance at 0."""
+        """Coordinates and velocities from those of the legs (swing, stance), with the stance foot at 0."""
         l = self.a + self.b
         s, w, vs, vw = y[1], y[0], y[3], y[2]
         return (np.array([-l * np.sin(s), l * np.cos(s), w, s]), np.array([-l * np.cos(s) * vs, -l * np.sin(s) * vs, vw, vs]))
@@ -259,7 +261,7 @@ class Walker:
 
 
 def test_a_walker_walks(open_fmu):
-    """Step by step as an integration with a plastic impact of four coordinates; from near the published cycle."""
+    """Each step agrees with an integration and plastic impact in four coordinates; the start is near the published cycle."""
     walker, names = Walker(), ("thetaSwing", "thetaStance", "omegaSwing", "omegaStance")
     instance = open_fmu("PassiveWalker").initialize(tolerance=1e-12)
     y, t = np.array([-0.3234, 0.2187, -0.3772, -1.0918]), 0.0
@@ -279,7 +281,7 @@ def test_a_walker_walks(open_fmu):
 
 def test_a_walker_has_the_published_cycle(open_fmu):
     walker = Walker()
-    # The start lies on the slope, of which the two angles tell: a map of three numbers.
+    # The foot lies on the slope at the start, which relates the two angles: a map of three numbers.
     extend = lambda z: np.array([-2 * walker.slope - z[0], *z])
     back = lambda z: walker.step(extend(z))[1][1:]
     cycle = fsolve(lambda z: back(z) - z, [0.2187, -0.3772, -1.0918], xtol=1e-12)
@@ -302,7 +304,7 @@ def test_a_walker_has_the_published_cycle(open_fmu):
 
 
 def test_a_ball_bounces_in_step_with_a_table(open_fmu):
-    """With g T/2 as the velocity behind the table, A w cos(phase) = (g T/2) (1 - e)/(1 + e)."""
+    """With the velocity g T/2 after the bounce, A w cos(phase) = (g T/2) (1 - e)/(1 + e)."""
     rate, e = 188.49555921538759, 0.8
     amplitude = 0.7 * G / rate**2
     period = 2 * np.pi / rate
@@ -317,7 +319,7 @@ def test_a_ball_bounces_in_step_with_a_table(open_fmu):
 
 
 def test_a_ball_bounces_on_a_table_impact_by_impact(open_fmu):
-    """The first bounces, by bisection in 40 digits; they are chaotic, so that errors grow by what the digits tell."""
+    """The first bounces, by bisection in 40 digits. They are chaotic, so that errors grow with each."""
     instance = open_fmu("VibratingTable").initialize(tolerance=1e-13)
     with mpmath.workdps(40):
         A, w, e, g = mpmath.mpf(0.001), mpmath.mpf(188.49555921538759), mpmath.mpf(0.8), mpmath.mpf(G)
@@ -418,7 +420,7 @@ def test_an_importer_that_ignores_indicators_gets_something_sane(name):
 
 
 def test_a_ball_rests_in_model_exchange_too():
-    """Fallen by 1 mm with little restitution, it is at rest for most of the time; the contact stays closed."""
+    """After a fall of 1 mm with little restitution the ball is at rest most of the time; the contact stays closed."""
     result = fmpy.simulate_fmu(str(fmu.unpacked("BouncingBall")), fmi_type="ModelExchange", stop_time=3, start_values={"h": 1e-3, "e": 0.2},
                                output=["h", "ground.closed", "ground.force"], relative_tolerance=1e-9, output_interval=0.25)  # fmt: skip
     late = result[result["time"] > 0.5]

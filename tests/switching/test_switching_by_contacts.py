@@ -1,4 +1,4 @@
-"""Contacts that open at edges, events that look at contacts, frictions and forces, and what is told as soon as an input is set."""
+"""Contacts that open at edges; events that depend on contacts, frictions and forces; and values right after an input is set."""
 
 import re
 from ctypes import c_double
@@ -99,9 +99,9 @@ def built():
 
 
 def expected(t):
-    """By hand for g = 10 at 0.45, 0.6 or 1.2 s."""
+    """Values at 0.45, 0.6 or 1.2 s, by hand for g = 10."""
     fall = max(t - 1, 0)
-    # Up to the ridge at 0.5 s with a velocity of 1 along x; in the air until 0.7 s; down, with the velocity along the roof that is left.
+    # Up to the ridge at 0.5 s with a velocity of 1 along x; in the air until 0.7 s; then down with the velocity component along the roof.
     flight, slide = t - 0.5, t - 0.7
     rx = 3 * t - 2 * t**2 if flight < 0 else 0.5 + t if slide < 0 else 1.2 + 1.4 * slide + 2 * slide**2
     ry = 0.5 + 0.5 * flight - 5 * flight**2 if flight > 0 > slide else 0.5 * (1 - abs(rx - 1))
@@ -117,7 +117,7 @@ def expected(t):
 
 
 def run(kind, names, end, opened):
-    """The values at a time, on the way to which communication steps of 0.15 s lead."""
+    """Values at a time, reached by communication steps of 0.15 s."""
     if kind == "exchange":
         words = dict(fmi_type="ModelExchange", stop_time=end, output_interval=0.15, relative_tolerance=1e-9, output=names)
         result = fmpy.simulate_fmu(str(fmu.archive("Yard_taylor")), **words)
@@ -150,7 +150,7 @@ def test_what_falls_lands_below(open_fmu):
 
 @pytest.mark.parametrize("state", [{"v": -1e-6}, {"v": 1e-6}, {"h": 1e-7, "v": -1e-5}, {"h": -1e-7}])
 def test_what_an_integrator_leaves_of_a_closed_contact_is_no_impact(open_fmu, state):
-    """A ball at rest, whose restitution is 0.8, is at rest behind event mode."""
+    """A ball at rest, with restitution 0.8, stays at rest in event mode despite the error of an integrator."""
     instance = open_fmu("BouncingBall", kind=FMU2Model).initialize({"h": 0})
     instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
@@ -162,7 +162,7 @@ def test_what_an_integrator_leaves_of_a_closed_contact_is_no_impact(open_fmu, st
 
 # --- Inputs ---
 
-# An input, and what is counted of it: rises, falls, passes, and when it came to be over 0.5.
+# An input, and counters of it: rises, falls, passes, and times it became larger than 0.5.
 TOUCHES = [
     (0, [0, 0, 0, 0]), (0.5, [0, 0, 0, 0]), (0, [0, 0, 0, 0]), (0.5, [0, 0, 0, 0]), (1, [1, 0, 1, 1]), (0.5, [1, 0, 1, 1]),
     (1, [1, 0, 1, 2]), (0, [1, 1, 2, 2]), (0.5, [1, 1, 2, 2]), (0.6, [2, 1, 3, 3]),
@@ -193,7 +193,10 @@ TOLD = ["pace", "der(cv)", "der(dv)", "brake.force", "floor.force", "over", "cv"
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_what_is_set_is_told_at_once_and_leaves_no_trace(open_fmu, opened, version):
-    """The block is held by 4 of brake at first; then it is drawn by 6, with 4 or 1 of brake. What lies on the floor is lifted from u = 0.5 on."""
+    """
+    Friction of up to 4 keeps the block sticking at first; later a force of 6 moves it against 4 or 1. The body on the floor lifts off from
+    u = 0.5 on. Reading values does not change the saved state.
+    """
     instance = (open_fmu if version == 2 else opened)("Yard_taylor").initialize()
     model = instance.fmu
     take, restore = (model.getFMUState, model.setFMUState)
@@ -219,7 +222,7 @@ def test_what_is_set_is_told_at_once_and_leaves_no_trace(open_fmu, opened, versi
         instance.step(0.02)
 
 
-# --- Work, mistakes ---
+# --- Work and mistakes ---
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])

@@ -1,4 +1,4 @@
-"""What switches, where inputs and parameters are set between steps, and where importers integrate that come to events late."""
+"""Events caused by inputs and parameters set between steps, and integrators that detect events late."""
 
 import fmpy
 import numpy as np
@@ -18,7 +18,7 @@ GUIDE = (
     '<particle mass="1" x="x" y="y"/><gravity y="-10"/><constraint name="c">x - 0.2*sin(y)</constraint>'
     '<friction name="f" coordinate="y" force="mu*abs(c.force)"/>'
 )
-# Values that are set one after the other, and what a second brings to the velocity.
+# Values set one after the other, and the resulting change of velocity per second.
 SET = {
     "More": (PUSHED + '<force coordinate="x">if(u &gt; 0, 10, 0)</force>', "v", [(0, 0), (1, 10), (0, 0), (1, 10), (0, 0), (-1, 0), (0, 0)]),
     "AtLeast": (PUSHED + '<force coordinate="x">if(u &gt;= 1, 10, 0)</force>', "v", [(0, 0), (1, 10), (0, 0), (1, 10)]),
@@ -62,7 +62,7 @@ def built():
 
 @pytest.mark.parametrize("name", SET)
 def test_what_is_set_to_a_threshold_is_there(open_fmu, name):
-    """From either side: a comparison and a sign are those of the values, not of where they came from."""
+    """Comparisons and signs at a threshold depend on the value, not on the side it came from."""
     text, velocity, steps = SET[name]
     instance = open_fmu(name).initialize()
     for value, change in steps:
@@ -98,7 +98,7 @@ def test_a_floor_does_not_come_through_a_body(open_fmu):
 
 
 def test_what_was_searched_ahead_does_not_outlast_a_change(open_fmu):
-    """The ball's first impact would come at 0.4515 s; with a tenfold gravity from 0.2 s on it comes at 0.3096 s, by the parabola."""
+    """The first impact would be at 0.4515 s; with tenfold gravity from 0.2 s on it is at 0.3096 s, by the parabola."""
     instance = open_fmu("BouncingBall").initialize()
     for _ in range(20):
         instance.step(0.01)
@@ -113,7 +113,7 @@ def test_what_was_searched_ahead_does_not_outlast_a_change(open_fmu):
 
 
 def test_an_impact_is_the_same_in_short_steps_and_long_ones(open_fmu):
-    """Searched for ahead of the step that it is in, from a state that was saved in between too."""
+    """The impact is the same for short steps and long ones, and from a state saved in between, although the search looks ahead."""
     ends = []
     for step in (1.5, 0.1, 0.03, 0.001):
         instance = open_fmu("BouncingBall").initialize()
@@ -142,7 +142,7 @@ def exchanged(name, stop, interval, *names):
 @pytest.mark.parametrize("interval", [0.03, 0.5, 3])
 @pytest.mark.parametrize("name, floor", [("Shaken", lambda t: 0.3 * np.sin(3 * t)), ("Rising", lambda t: 0.1 * t**2)])
 def test_nothing_falls_through_a_contact_in_model_exchange(open_fmu, name, floor, interval):
-    """Bounces die away on a floor that moves; no height of the body is a polynomial of its time."""
+    """Bounces fade on a moving floor; the body's height is not a polynomial of time."""
     result = exchanged(name, 3, interval, "h")
     assert np.min(result["h"] - floor(result["time"])) > -1e-6
     instance = open_fmu(name).initialize()
@@ -151,7 +151,7 @@ def test_nothing_falls_through_a_contact_in_model_exchange(open_fmu, name, floor
 
 
 def test_an_indicator_is_not_zero_behind_an_event(open_fmu):
-    """An importer that comes to an impact late finds the body at the contact, and the indicator above 0."""
+    """An importer detects an impact late; afterwards the body is at the contact, and the indicator is positive."""
     instance = open_fmu("Rising", kind=FMU2Model).initialize()
     model = instance.fmu
     model.newDiscreteStates()
@@ -166,16 +166,16 @@ def test_an_indicator_is_not_zero_behind_an_event(open_fmu):
 
 
 def test_an_importer_sees_what_leaves_zero():
-    """The switch is at the start itself."""
+    """The indicator is zero at the start itself."""
     assert exchanged("Tie", 1, 0.25, "x")["x"][-1] == pytest.approx((1 - np.cos(10)) / 100, abs=1e-5)
     assert exchanged("Left", 1, 0.25, "x")["x"][-1] == pytest.approx(-0.5, abs=1e-5)
 
 
 def test_a_bounce_that_is_tiny_beside_its_communication_step(open_fmu):
-    """The step begins just before an impact, with nothing known of the bounces before, and takes a thousand times as long as the next one."""
+    """The step starts just before an impact, without knowledge of earlier bounces, and is a thousand times as long as the next one."""
     for before in np.linspace(0, 0.01, 100):
         instance = open_fmu("Shaken").initialize(tolerance=1e-9)
-        for end in (1.1 - before, 1.101 - before, 3.0):  # at 1.1009 s it rests
+        for end in (1.1 - before, 1.101 - before, 3.0):  # it rests from 1.1009 s on
             instance.step(end - instance.time)
         assert instance.get("h") == pytest.approx(0.3 * np.sin(9), abs=1e-12)
 
@@ -185,7 +185,7 @@ def test_an_event_that_the_projection_moves_is_seen(open_fmu, interval):
     def rate(_, s):
         y, v = s
         f, d = 0.2 * np.cos(y), -0.2 * np.sin(y)
-        # The slot pushes along x with c, and y'' = -10 - f c - mu |c| sign(v), where c = x'' = f y'' + d v^2.
+        # The slot's force along x is c, and y'' = -10 - f c - mu |c| sign(v), where c = x'' = f y'' + d v^2.
         for sign in (1, -1):
             c = (-10 * f + d * v * v) / (1 + f * f + f * 0.3 * sign * np.sign(v))
             if c * sign >= 0:

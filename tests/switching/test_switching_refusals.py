@@ -1,4 +1,4 @@
-"""What switching systems ask for that has no meaning is refused by name, in co-simulation and in model exchange."""
+"""Systems whose events have no consistent result give an error that names the cause, in co-simulation and model exchange."""
 
 import re
 
@@ -36,7 +36,7 @@ REFUSED = {
     "GatheringMass": ('<kinetic>if(x &lt; 0.5, 2, 1)*v^2/2</kinetic><force coordinate="x">-1</force>', "jumps there in an energy"),
     "JumpingPlace": ('<particle name="P" mass="1" x="x" y="y + if(x &lt; 0.5, 0.5, 0)"/>' + WEIGHT.format("P.y") + '<force coordinate="x">-1</force>',
                      "jumps there in an energy"),
-    # The momentum along y would have to stay, and by the coordinates it does not.
+    # The momentum along y is conserved, but the coordinates contradict that.
     "Corner": ('<particle mass="1" x="x" y="abs(x - 0.5) + y"/><force coordinate="x">-1</force>', "abs, line .* jumps there in an energy"),
     "Grabbed": ('<mode name="on"/><constraint name="C">if(on, v - w, 0)</constraint><force coordinate="x">-1</force>'
                 '<event when="time &gt; 0.4"><set mode="on">1</set></event>', "an event sets modes so that the constraint 'C' does not hold"),
@@ -49,17 +49,17 @@ FINE = {
     "AtTheLimit": ('<friction name="F" coordinate="x" force="1" stiction="2"/><force coordinate="x">2</force>', (1, 0.5)),
     "MovedTogether": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set>'
                       '<set coordinate="y">1</set></event>', (2, 1)),
-    # The law of the impact is the author's: together they go on, at half the velocity of 0.4 of that along x.
+    # The author states the law of the impact: afterwards the bodies move together, at half the velocity of 0.4 along x.
     "GrabbedByLaw": ('<mode name="on"/><constraint name="C">if(on, v - w, 0)</constraint><force coordinate="x">-1</force>'
                      '<event when="time &gt; 0.4"><set mode="on">1</set><set velocity="v">(v + w)/2</set><set velocity="w">(v + w)/2</set></event>',
                      (0.92 - 0.2 * 2.6 - 0.25 * 2.6**2, 0.5 - 0.2 * 2.6 - 0.25 * 2.6**2)),
     "ClimbingByLaw": ('<potential>if(x &lt; 0.5, -1, 0)</potential><force coordinate="x">-1</force>'
                       '<event when="x - 0.5"><set velocity="v">-sqrt(v^2 + 2)</set></event>', (0.5 - 3**0.5 * 2 - 2, 0.5)),
-    # Bodies on a wedge: its corner turns no momentum that another body shares. What time decides on may jump.
+    # Bodies on a wedge: its corner changes no momentum that another body shares. Functions of time may jump.
     "Bead": ('<particle mass="1" x="x - 0.5" y="abs(x - 0.5)"/><force coordinate="x">-1</force>', (1 - 9 / 6, 0.5)),
     "Timed": ('<potential>if(time &gt; 1, 5, 0)*x</potential>', (1 - 5 * 2**2 / 2, 0.5)),
     "Mirror": ('<particle mass="1" x="abs(x - 3)"/><force coordinate="x">-4</force>', (1 - 4 * 9 / 4, 0.5)),
-    # A ball that rests at 0 from 0.45 s on is put up to 1 at 2 s, falls, and rests again at 2.45 s.
+    # A ball at rest at 0 from 0.45 s on is set to 1 at 2 s, falls, and rests again from 2.45 s on.
     "PutUp": ('<contact name="g" gap="x"/><event when="time &gt; 2"><set coordinate="x">1</set></event>' + WEIGHT.format("x"), (0, 0.5)),
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Small systems that switch: closed forms, SciPy from event to event, and random lines of masses by matrix exponentials."""
+"""Small systems with events: closed forms, SciPy from event to event, and random lines of masses by matrix exponentials."""
 
 import numpy as np
 import pytest
@@ -161,7 +161,7 @@ LINE = """<system name="RandomLine" description="Masses on a line between walls,
   <experiment stopTime="5"/>
 </system>"""
 
-# What rests at 0, held by others, leaves it by rounding.
+# A mass constrained to rest by others leaves 0 only by rounding.
 WATCHED = LINE.replace("RandomLine", "WatchedLine").replace(
     "</system>", '<mode name="turns"/><event when="v[2]" direction="both"><set mode="turns">turns + 1</set></event></system>')  # fmt: skip
 
@@ -244,7 +244,7 @@ def counters(instance):
 
 @pytest.mark.parametrize("depth", [0.1, 1e-6, 1e-9, 1e-12])
 def test_two_zeros_close_together_are_both_found(open_fmu, depth):
-    """x = (t - 1)^2/2 less a depth."""
+    """x = (t - 1)^2/2 minus a depth."""
     instance = open_fmu("Graze").initialize({"x0": 0.5 - depth})
     way = np.sqrt(2 * depth)
     to(instance, 1.0)
@@ -307,7 +307,7 @@ def test_events_without_end_are_refused(open_fmu):
 def test_many_bounces_between_two_walls(open_fmu):
     instance = open_fmu("Box").initialize()
     count = 100000
-    to(instance, (count + 0.2) / 7)  # from 0.3 to 1 is 0.1 s
+    to(instance, (count + 0.2) / 7)  # 0.1 s from 0.3 to 1
     assert events(instance) == int(np.floor((count + 0.2 - 0.7))) + 1
     way = (0.3 + count + 0.2) % 2
     assert instance.get("x") == pytest.approx(way if way < 1 else 2 - way, abs=1e-6)
@@ -350,7 +350,7 @@ def test_an_input_lifts_and_lowers(open_fmu):
 @pytest.mark.parametrize("e", [0.0, 0.6, 1.0])
 @pytest.mark.parametrize("seed", range(4))
 def test_two_bodies_meet_obliquely(open_fmu, e, seed):
-    """Momentum along the line of centres; what is across it stays."""
+    """Momentum changes along the line of centres only."""
     r = np.random.default_rng(seed)
     x1, x2, v1, v2 = r.uniform(-0.1, 0.1, 2), np.array([1, 0]) + r.uniform(-0.1, 0.1, 2), np.array([1.3, 0.2]), np.array([-0.9, 0.3])
     instance = open_fmu("Pair").initialize(
@@ -371,7 +371,7 @@ def test_two_bodies_meet_obliquely(open_fmu, e, seed):
 
 
 def test_a_pendulum_on_a_rod_hits_a_wall(open_fmu):
-    """As one with an angle."""
+    """A pendulum in Cartesian coordinates hits the wall as one described by its angle."""
     theta = np.arctan2(0.8, 0.6)
     wall = -np.arcsin(0.2)
     fall = solve_ivp(lambda t, y: [y[1], -G * np.sin(y[0])], (0, 3), [theta, 0], "DOP853", rtol=1e-13, atol=1e-13,
@@ -389,10 +389,10 @@ def test_a_pendulum_on_a_rod_hits_a_wall(open_fmu):
 
 @pytest.mark.parametrize("mu, vx, w", [(0.3, 1, 0), (0.01, 1, 0), (0.2, -2, 30), (0.6, 0, -25), (0.3, 1, -10), (0.05, 0.3, 50)])
 def test_a_spinning_ball_bounces_by_hand(open_fmu, mu, vx, w):
-    """The contact point slides or sticks; to stick takes 2/7 of its velocity as momentum."""
+    """The contact point slides or sticks; sticking takes an impulse of 2/7 of its velocity."""
     instance = open_fmu("Spinning").initialize({"mu": mu, "vx": vx, "w": w})
     t, speed = np.sqrt(2 * 0.5 / G), np.sqrt(G)
-    slip, momentum = vx + 0.1 * w, vx - 0.04 * w  # about the contact point
+    slip, momentum = vx + 0.1 * w, vx - 0.04 * w  # momentum about the contact point
     for _ in range(5):
         normal = 1.5 * speed
         push = -np.sign(slip) * min(mu * normal, abs(slip) * 2 / 7)
@@ -412,7 +412,7 @@ def test_a_spinning_ball_bounces_by_hand(open_fmu, mu, vx, w):
 
 
 def test_a_fast_impact_leaves_no_slip(open_fmu):
-    """Both velocities end in it: what rounding leaves of them is as large as they were, and is no sliding."""
+    """Both velocities end at 0; their rounding errors scale with the initial velocities, and do not count as sliding."""
     instance = open_fmu("Spinning").initialize({"mu": 0.6, "e": 0, "vx": 1e4, "w": 2.5e5, "vy": -1e5})
     to(instance, 1e-5)
     assert instance.get("vx", "w", "vy") == pytest.approx([0, 0, 0], abs=1e-9)
@@ -421,7 +421,9 @@ def test_a_fast_impact_leaves_no_slip(open_fmu):
 
 @pytest.mark.parametrize("a", [0.2, -0.2])
 def test_of_two_contacts_that_pull_one_opens(open_fmu, a):
-    """The lift of 20 in place of 10 pulls at both; without the nearer one the other is pressed: it turns about that."""
+    """
+    The lift of 20 in place of 10 pulls at both contacts. Once the nearer one opens, the other is pressed, and the beam rotates about it.
+    """
     instance = open_fmu("Beam").initialize({"a": a})
     to(instance, 1.1)
     near, far = ("right", "left") if a > 0 else ("left", "right")
@@ -431,7 +433,7 @@ def test_of_two_contacts_that_pull_one_opens(open_fmu, a):
 
 
 def test_what_an_event_takes_back_holds(open_fmu):
-    """A contact that a force has opened, and that the event at the same time closes again."""
+    """A force opens a contact, and a simultaneous event closes it again."""
     instance = open_fmu("Caught").initialize()
     to(instance, 1.5)
     assert instance.get("y", "v") == pytest.approx([0, 0], abs=1e-12) and value(instance, "floor.closed") == 1
@@ -463,13 +465,13 @@ def test_stribeck_slows_down_and_sticks(open_fmu, tilt):
 
 
 def at_rest(**values):
-    """Masses on a line that nothing holds but friction, contacts and what is given."""
+    """Start values at rest for masses on a line, with friction, contacts, and the given values."""
     none = {f"{letter}[{i}]": 0 for letter in "kcdfa" for i in (1, 2, 3)}
     return {**none, "w": 1, "e": 0, "x[1]": 1, "x[2]": 2, "x[3]": 3, **values}
 
 
 def test_friction_holds_what_a_wall_holds_too(open_fmu):
-    """The load -2 cos(t) presses a mass on a wall, then pulls it off once it is more than the friction."""
+    """The load -2 cos(t) presses a mass against a wall; it pulls it off once it exceeds the friction."""
     instance = open_fmu("RandomLine").initialize(at_rest(**{"x[1]": 0, "a[1]": -2, "F[1]": 1, "m[1]": 1}))
     leaves = 2 * np.pi / 3
     to(instance, leaves - 1e-9)
@@ -482,7 +484,7 @@ def test_friction_holds_what_a_wall_holds_too(open_fmu):
 
 
 def test_masses_that_touch_slip_together(open_fmu):
-    """One is pushed with 2 - 2 cos(t) against another: both slip at the sum of their frictions."""
+    """A push of 2 - 2 cos(t) acts on one mass against another: both slip at the sum of their friction limits."""
     instance = open_fmu("RandomLine").initialize(
         at_rest(**{"x[2]": 1.5, "f[1]": 2, "a[1]": -2, "F[1]": 1, "F[2]": 1.5, "m[1]": 1, "m[2]": 3}))  # fmt: skip
     slips = np.arccos(-0.25)
@@ -532,7 +534,8 @@ def line_of(p):
     return Line(mass, load, p["w"], gaps, offsets, p["e"], np.eye(3), [p[f"F[{i}]"] for i in (1, 2, 3)])
 
 
-# Of the first 100 seeds those that the reference follows to the end: where contacts and sticking hold the same, its forces are not known.
+# Those of the first 100 seeds that the reference follows to the end. In the others contacts and sticking are redundant, so that forces are
+# indeterminate.
 FOLLOWED = [2, 3, 4, 5, 7, 10, 13, 14, 15, 18, 19, 22, 25, 26, 29, 32, 33, 38, 39, 40, 44, 45, 46, 49, 50, 51, 52, 53, 55, 57, 58, 59,
             61, 63, 66, 67, 68, 71, 72, 73, 74, 75, 76, 81, 84, 85, 86, 87, 89, 90, 91, 92, 93, 95, 96, 99]  # fmt: skip
 
@@ -549,7 +552,7 @@ def test_random_lines(open_fmu, seed):
 
 @pytest.mark.parametrize("seed", range(100))
 def test_no_random_line_is_refused(open_fmu, seed):
-    """Where contacts and sticking hold the same too: to the end, with nothing penetrated, and energy that nothing brings."""
+    """Systems with redundant contacts and sticking run to the end, without penetration or gain of energy."""
     p, x, v = random_line(seed)
     names = [f"{letter}[{i}]" for letter in "xv" for i in (1, 2, 3)]
     instance = open_fmu("RandomLine").initialize({**p, **{f"a[{i}]": 0 for i in (1, 2, 3)}, **dict(zip(names, [*x, *v]))})
@@ -562,10 +565,10 @@ def test_no_random_line_is_refused(open_fmu, seed):
     assert np.all(np.diff(energies) < 1e-7)
 
 
-# Of the first 200 seeds those in which something rests so that rounding of a long series once passed for an event.
+# Seeds of the first 200 with bodies at rest whose rounding errors in long series look like events.
 @pytest.mark.parametrize("seed", [49, 60, 79, 94, 107, 123, 142, 163, 190, 191])
 def test_what_is_held_stays_in_one_long_step(open_fmu, seed):
-    """Rounding of accelerations over a long series is no event, and decides on no side of a friction without force."""
+    """Rounding errors of accelerations over a long series cause no event, and give no direction to a friction without force."""
     p, x, v = random_line(seed)
     p |= {f"F[{i}]": 0 for i in (1, 2, 3) if seed >> i & 1}
     names = [f"{letter}[{i}]" for letter in "xv" for i in (1, 2, 3)]
