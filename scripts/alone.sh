@@ -1,6 +1,6 @@
-# For scripts that must not work twice at once in one place.
+# For scripts that must not run twice at the same time in one folder.
 
-# alone FILE: holds the lock FILE until the script and all that it started have ended; waits, with a word, for others.
+# alone FILE: takes the lock FILE, which is held until the script and all its children end; waits if another process holds it.
 alone() {
   exec {lock}>"$1"
   if ! flock --nonblock "$lock"; then

@@ -1,4 +1,4 @@
-# For scripts that pack archives from a folder named by the variable content, with the program in ZIP.
+# For scripts that pack the folder ${content} into an archive with the program ${ZIP}.
 
 function(run)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${content} RESULT_VARIABLE status)
@@ -7,8 +7,8 @@ function(run)
   endif()
 endfunction()
 
-# archive(FILE FIRST): all of the folder, FIRST as the first member. All members get one and the same time and no further
-# attributes, so that the same content gives the same bytes.
+# archive(FILE FIRST): packs all files of the folder, with FIRST as the first member. All members get the same time and no extra
+# attributes, so that equal content gives equal bytes.
 function(archive file first)
   file(GLOB_RECURSE members RELATIVE ${content} ${content}/*)
   list(REMOVE_ITEM members ${first})

@@ -1,20 +1,22 @@
-# lagrange_add_fmu, for CMakeLists.txt and for projects that find the installed package. Before it: the target lagrange-fmu::lagc,
-# the target lagrange_runtime, which this machine's libraries are linked with, and the variables
-# lagrange_global_names, a file with what nm says of the runtime, lagrange_licenses, a folder of collect_licenses(), and
-# lagrange_sundials, a folder of cross.py (or none).
+# Defines lagrange_add_fmu(), for CMakeLists.txt and for projects that find the installed package. Requires
+#   lagrange-fmu::lagc     the target of lagc
+#   lagrange_runtime       the target with which this machine's libraries are linked
+#   lagrange_global_names  a file with the output of nm for the runtime
+#   lagrange_licenses      the folder of collect_licenses()
+#   lagrange_sundials      the folder of cross.py sundials, which may be missing
 get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 find_program(zip zip REQUIRED)
 find_program(python python3 REQUIRED)
 
-# What no FMU needs is left out: unused functions, and tables to unwind the stack by, which C has no use for.
+# Removes unused functions, and tables for unwinding the stack, which C does not need.
 set(lagrange_compact -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables)
 file(GLOB_RECURSE lagrange_sources CONFIGURE_DEPENDS ${lagrange_root}/include/*.h ${lagrange_root}/src/runtime/*.[ch])
 
-# append_named_files(list file): the files that a system's file names, and those that they name, each once.
+# append_named_files(LIST FILE): appends the files that a system's file names, and recursively those that they name, each once.
 function(append_named_files list file)
   set(space "[ \t\r\n]")
   file(READ ${file} text)
-  string(REGEX REPLACE "[][;]" " " text "${text}") # would mean something in lists
+  string(REGEX REPLACE "[][;]" " " text "${text}") # brackets and semicolons have a meaning in lists
   string(REGEX MATCHALL "<(include|table|linearization|shape|mesh)${space}[^>]*" elements "${text}")
   get_filename_component(directory ${file} DIRECTORY)
   foreach(element IN LISTS elements)
@@ -31,8 +33,8 @@ function(append_named_files list file)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# find_platform(platform version): sets lagrange_zig to a Python with the package ziglang, and lagrange_libraries_PLATFORM_VERSION to the
-# paths of its libraries of FMUs named NAME in binaries/, once for all FMUs.
+# find_platform(PLATFORM VERSION): sets lagrange_zig to a Python with the package ziglang, and lagrange_libraries_PLATFORM_VERSION to the
+# paths in binaries/ of the platform's libraries of an FMU named NAME; computed once for all FMUs.
 function(find_platform platform version)
   find_program(LAGRANGE_PYTHON python3 HINTS ${lagrange_root}/build/venv/bin DOC "A Python with the package ziglang, for other platforms")
   if(NOT lagrange_libraries_${platform}_${version} OR NOT "${lagrange_zig}" STREQUAL LAGRANGE_PYTHON)
@@ -46,8 +48,8 @@ function(find_platform platform version)
   endif()
 endfunction()
 
-# add_platform_libraries(list name version folder platforms): for each platform the libraries of folder/system.c by cross.py, added to the
-# list.
+# add_platform_libraries(LIST NAME VERSION FOLDER PLATFORMS): compiles FOLDER/system.c with cross.py for each platform, and appends the
+# libraries to LIST.
 function(add_platform_libraries list name version folder platforms)
   if(EXISTS "${lagrange_sundials}")
     set(sundials --sundials ${lagrange_sundials})
@@ -68,7 +70,7 @@ function(add_platform_libraries list name version folder platforms)
   set(${list} ${${list}} PARENT_SCOPE)
 endfunction()
 
-# add_library_here(name version folder): this machine's library of an FMU of this version of FMI, by the project's compiler.
+# add_library_here(NAME VERSION FOLDER): compiles this machine's library of an FMU of this version of FMI, with the project's compiler.
 function(add_library_here name version folder)
   set(library system_${name})
   set(binaries linux64)
@@ -92,7 +94,7 @@ function(add_library_here name version folder)
   set_property(TARGET ${library} PROPERTY LINK_DEPENDS ${exports})
 endfunction()
 
-# add_archive(name version folder system platforms): fmu/name.fmu, or fmi3/name.fmu.
+# add_archive(NAME VERSION FOLDER SYSTEM PLATFORMS): packs fmu/NAME.fmu, or fmi3/NAME.fmu.
 function(add_archive name version folder system platforms)
   set(library system_${name})
   set(target fmu_${name})
@@ -116,19 +118,19 @@ function(add_archive name version folder system platforms)
                              ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.py ${lagrange_root}/LICENSE
                      COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${fmu})
-  add_dependencies(${target} derive_${name}) # else each FMU would derive it
+  add_dependencies(${target} derive_${name}) # otherwise each FMU would derive the system
 endfunction()
 
-# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS]) builds fmu/NAME.fmu in the
-# folder that CMake builds the current one in, and fmi3/NAME.fmu where the version 3 is asked for; NAME is the one in SYSTEM.xml, as
-# pack.cmake checks.
-#   PLATFORMS     of linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux and, of FMI 3, wasm32, by zig; none: this machine alone, by
-#                 the project's compiler
-#   FMI_VERSIONS  2, 3 or both; none: 2
-#   SOLVER        a method of <solver> in place of the system's own, where there is anything that moves
-#   FORM          statements or tables, in place of the form that follows from the system's size
-#   ARRAYS        what <for> makes are arrays in FMI 3.0, not scalars
-# The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME, since a system may be named like another target.
+# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS])
+# builds fmu/NAME.fmu for FMI 2, and fmi3/NAME.fmu for FMI 3, in the current binary folder. NAME must be the name in SYSTEM.xml; pack.cmake
+# checks this.
+#   PLATFORMS     linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux, and for FMI 3 wasm32, compiled by zig;
+#                 default: this machine, by the project's compiler
+#   FMI_VERSIONS  2, 3 or both; default: 2
+#   SOLVER        a method of <solver> in place of the own one of a system with coordinates, a linearization or a robot
+#   FORM          statements or tables; default: chosen by the system's size
+#   ARRAYS        variables that <for> repeats are arrays in FMI 3.0, not scalars
+# The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME; the prefixes avoid clashes with other targets.
 function(lagrange_add_fmu name system)
   cmake_parse_arguments(PARSE_ARGV 2 fmu "ARRAYS" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
   if(fmu_UNPARSED_ARGUMENTS)
@@ -175,7 +177,7 @@ function(lagrange_add_fmu name system)
   add_library(equations_${name} OBJECT ${folder}/system.c)
   add_dependencies(equations_${name} derive_${name})
   set_target_properties(equations_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON C_VISIBILITY_PRESET hidden C_STANDARD 11)
-  # Generated functions of one type take arguments that not all of them need.
+  # Generated functions of one type have the same arguments, which some of them do not use.
   target_compile_options(equations_${name} PRIVATE -Wno-unused-parameter -falign-functions=64 ${lagrange_compact})
   target_link_libraries(equations_${name} PRIVATE lagrange_runtime)
 

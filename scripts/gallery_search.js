@@ -1,4 +1,4 @@
-// The site's search where its pages are files, from which browsers run no worker: the same on the page, by the index as a script.
+// The site's search for pages that are opened as files, from which browsers start no worker: it searches in the page, with the index as a script.
 "use strict";
 
 if (location.protocol === "file:") {

@@ -1,4 +1,4 @@
-# What cmake --install brings: lagc, its man page, and a CMake package, whose folder has what it needs of the tree under the same names.
+# Installs lagc, its man page, and a CMake package; the folder of the package has the needed files of the tree under the same paths.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package ${CMAKE_INSTALL_DATADIR}/lagrange-fmu)
@@ -14,7 +14,7 @@ install(FILES scripts/fmu.cmake scripts/pack.cmake scripts/archive.cmake scripts
 install(DIRECTORY scripts/wasm_component DESTINATION ${package}/scripts PATTERN __pycache__ EXCLUDE)
 install(FILES ${lagrange_global_names} DESTINATION ${package})
 install(DIRECTORY ${lagrange_licenses} DESTINATION ${package})
-# Where scripts/sundials-all has built it: erk and bdf, for all platforms.
+# SUNDIALS for all platforms, for erk and bdf, if scripts/sundials-all has built it.
 install(DIRECTORY ${lagrange_sundials} DESTINATION ${package} OPTIONAL)
 configure_package_config_file(scripts/lagrange-fmu-config.cmake.in lagrange-fmu-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/lagrange-fmu

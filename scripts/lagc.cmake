@@ -1,8 +1,8 @@
-# lagc, for CMakeLists.txt and the wheel's. Before it: libxml2 found.
+# Defines the targets compiler and lagc, for the builds of the project and of the wheel. Requires LIBXML2_LIBRARIES and LIBXML2_INCLUDE_DIRS.
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 
-# A file becomes a string in the program: the schema, and what is not formulas on an FMU's page.
+# add_string(NAME FILE): writes NAME.c, which defines the content of FILE as a string: the schema, and the style and script of an FMU's page.
 function(add_string name file)
   file(READ ${root}/${file} bytes HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
@@ -14,7 +14,8 @@ add_string(page_style modelDescription/page/page.css)
 add_string(page_script modelDescription/page/page.js)
 add_string(license_text LICENSE)
 
-# So do the names of the runtime's sources, and its rooms that every FMU has, for FMUs that carry their sources.
+# list_of_names(LIST VARIABLE): sets VARIABLE to C that defines LIST as an array of strings, which ends with a null pointer.
+# FMUs that contain their sources need the names of the runtime's sources, and of the rooms that every FMU has.
 function(list_of_names list variable)
   list(TRANSFORM ${list} REPLACE "(.+)" "\"\\1\", " OUTPUT_VARIABLE names)
   list(JOIN names "" names)

@@ -1,6 +1,6 @@
-# The licences of libraries that are linked into FMUs: collect_licenses() at configuration, copy_licenses() for each FMU.
+# Handles the licences of libraries that are linked into FMUs: collect_licenses() at configuration, copy_licenses() for each FMU.
 
-# collect_licenses(FOLDER): sundials.txt, suitesparse.txt and LGPL-2.1.txt, which is that of KLU, as the distribution has them.
+# collect_licenses(FOLDER): copies sundials.txt, suitesparse.txt and LGPL-2.1.txt, the licence of KLU, from the distribution.
 function(collect_licenses folder)
   foreach(library sundials suitesparse)
     if(EXISTS /usr/share/doc/lib${library}-dev/copyright)
@@ -12,7 +12,7 @@ function(collect_licenses folder)
   endif()
 endfunction()
 
-# copy_licenses(FILE TARGET FOLDER): lagc's license.txt, and of the folder what it names.
+# copy_licenses(FILE TARGET FOLDER): copies lagc's license.txt, and the files of FOLDER that it names, to TARGET.
 function(copy_licenses file target folder)
   file(COPY ${file} DESTINATION ${target})
   file(STRINGS ${file} lines REGEX " is linked into it: ")

@@ -1,5 +1,7 @@
-# For scripts that are given a system, sourced by them: builds its FMU. Needs $command, their name; $here, the folder they were called in;
-# and $system: a name in fmu/, or a path to a folder NAME with a system.xml in it, to that file, or to the URDF of a robot. Sets $fmu.
+# Builds the FMU of a system; sourced by scripts that take a system as an argument.
+# Input: $command, the name of the script; $here, the folder in which it was called; $needed, the argument for scripts/setup; and $system, a name
+# in fmu/, or the path of a folder with a system.xml, of such a file, or of the URDF of a robot.
+# Output: $fmu, the FMU; $name, its name; $file, the system's file; $build, the build folder.
 if [ -f "fmu/$system/system.xml" ]; then
   source=$PWD/fmu/$system
 else

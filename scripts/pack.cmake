@@ -1,12 +1,18 @@
 # Packs an FMU: cmake -D FOLDER=... -D LIBRARIES=... -D FMU=... -D VERSION=... -D SYSTEM=... -D SOURCE=... -D ZIP=... -D PYTHON=... -D NAMES=...
 #                     -P pack.cmake
-# FOLDER holds what lagc wrote; LIBRARIES are those to pack, each in a folder of its platform's name; VERSION is that of
-# FMI, 2 or 3; NAMES lists the global names of the compiled runtime; LICENSES is the folder of collect_licenses().
+#   FOLDER     the folder that lagc wrote
+#   LIBRARIES  the libraries to pack, each in a folder of its platform's name
+#   FMU        the archive to write
+#   VERSION    the version of FMI, 2 or 3
+#   SYSTEM     the system's file, for messages
+#   SOURCE     the root of the tree
+#   NAMES      a file with the global names of the compiled runtime
+#   LICENSES   the folder of collect_licenses()
 cmake_minimum_required(VERSION 3.18)
 
 include(${CMAKE_CURRENT_LIST_DIR}/archive.cmake)
 
-# Importers look for the library under the name in modelDescription.xml.
+# Importers look for the library by the modelIdentifier in modelDescription.xml.
 list(GET LIBRARIES 0 library)
 get_filename_component(name ${library} NAME_WE)
 file(STRINGS ${FOLDER}/modelDescription.xml found REGEX " modelIdentifier=")
@@ -24,7 +30,7 @@ foreach(library ${LIBRARIES})
   get_filename_component(platform ${platform} NAME)
   file(COPY ${library} DESTINATION ${content}/binaries/${platform})
   if(platform MATCHES "^wasm")
-    # The first name is the draft's, the second that of FMI 3.0 for all layered standards.
+    # The first name is that of the draft FMI-LS-WASM, the second that of FMI 3.0 for all layered standards.
     foreach(manifest manifest.xml fmi-ls-manifest.xml)
       configure_file(${CMAKE_CURRENT_LIST_DIR}/wasm_component/manifest.xml ${content}/extra/org.modelica.fmi-ls-wasm/${manifest} COPYONLY)
     endforeach()
@@ -43,7 +49,7 @@ endif()
 include(${CMAKE_CURRENT_LIST_DIR}/licenses.cmake)
 copy_licenses(${FOLDER}/documentation/licenses/license.txt ${content}/documentation/licenses ${LICENSES})
 
-# An FMU that is complete in C has its source as one file: all that system.c includes, once each.
+# An FMU without external libraries contains its source as one file, in which each file that system.c includes appears once.
 if(EXISTS ${FOLDER}/fmi3/buildDescription.xml)
   execute_process(COMMAND ${PYTHON} ${CMAKE_CURRENT_LIST_DIR}/one_file.py ${SOURCE} ${NAMES} ${VERSION} ${FOLDER}/system.c ${name}
                           ${content}/sources/${name}.c RESULT_VARIABLE status)

@@ -1,5 +1,7 @@
-# The runtime's sources, for CMakeLists.txt, lagc's and the wheel's, with paths from the root: core_sources, which every FMU has, and
-# fmi2_sources or fmi3_sources, of its version of FMI; solver_sources, of which it has those that its system names.
+# Lists the runtime's sources, relative to the root, for the builds of the project, of lagc and of the wheel:
+#   core_sources                in every FMU
+#   fmi2_sources, fmi3_sources  in FMUs of this version of FMI
+#   solver_sources              in FMUs whose system refers to them
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 set(core_rooms instance evaluation stepping fmi)
 set(solver_rooms support methods methods/sundials events contacts planes timing)
