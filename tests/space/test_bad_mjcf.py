@@ -1,4 +1,4 @@
-"""Broken MJCF files: each must give this line and this message, and leave no output."""
+"""Invalid MJCF files: each gives the expected line and message, and no output."""
 
 import re
 
@@ -6,7 +6,7 @@ import pytest
 
 from fmu import lagc
 
-# A right robot; the cases below replace one line of it (counted from 1).
+# A valid robot; the cases below replace one line of it (counted from 1).
 RIGHT = """\
 <mujoco model="arm">
   <compiler angle="radian"/>
@@ -27,7 +27,7 @@ RIGHT = """\
 """
 UNKNOWN = "is not read, and would change the motion; expected"
 
-# What is wrong, the line replaced, its new text, the line and message expected.
+# Kind of mistake, the replaced line, its new text, the expected line and message.
 CASES = [
     ("unit of angles", 2, '<compiler angle="grad"/>', 2, 'angle="grad" of <compiler> is not known; expected one of degree, radian'),
     ("global coordinates", 2, '<compiler coordinate="global"/>', 2, 'coordinate="global" of <compiler>; expected local'),

@@ -1,4 +1,4 @@
-"""Broken URDF files: each must give this line and this message, and leave no output."""
+"""Invalid URDF files: each gives the expected line and message, and no output."""
 
 import re
 
@@ -6,7 +6,7 @@ import pytest
 
 from fmu import lagc
 
-# A right robot; the cases below replace one line of it (counted from 1).
+# A valid robot; the cases below replace one line of it (counted from 1).
 RIGHT = """\
 <robot name="arm">
   <link name="stand"/>
@@ -39,7 +39,7 @@ def sole(shape):
     return f'<link name="upper"><collision><geometry>{shape}</geometry></collision>'
 
 
-# What is wrong, the line replaced, its new text, the line and message expected.
+# Kind of mistake, the replaced line, its new text, the expected line and message.
 CASES = [
     ("no name", 1, "<robot>", 1, "<robot> needs the attribute 'name'"),
     ("link without name", 2, "<link/>", 2, "<link> needs the attribute 'name'"),
@@ -107,7 +107,7 @@ def test_message(line, text, at, message, tmp_path):
 
 
 def test_mimics_whose_products_overflow(tmp_path):
-    """The message names the joint at which the chain of multipliers ends beyond all numbers."""
+    """The message names the joint whose product of multipliers overflows."""
     joints = "".join(
         f'<link name="part{i}"/><joint name="gear{i}" type="continuous"><parent link="stand"/><child link="part{i}"/>'
         f'<mimic joint="{f"gear{i - 1}" if i else "elbow"}" multiplier="1e120" offset="1"/></joint>\n'
@@ -157,7 +157,7 @@ NO_BODY = "at the start values: a principal moment is negative, or larger than t
     "tensor", [("0.1", "0", "0.1", "0.3"), ("-0.1", "0", "0.1", "0.1"), ("0.1", "0.2", "0.1", "0.1"), ("0.1", "0.06", "0.1", "0.03")]
 )
 def test_tensor_of_no_body(tensor, tmp_path):
-    """Many robots have one, and their equations hold all the same."""
+    """Many published robots have such a tensor, and their equations are still valid, so that lagc only warns."""
     lines = RIGHT.splitlines()
     lines[3] = inertial(tensor=tensor)
     result = compile_robot("\n".join(lines), tmp_path)

@@ -1,4 +1,4 @@
-"""The systems with bodies in space, against closed forms, Newton's and Euler's equations, and reduced equations of their own."""
+"""The systems with bodies in space, against closed forms, the Newton-Euler equations, and independent reduced equations."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from closed_forms import free_body_velocity, pendulum_angle, top_cosine, top_nut
 from fmu import DISCARD, ERROR, build_systems
 from mechanics import Constrained, rotation, turning, velocity
 
-# One rigid body on a fixed point, written in three ways; the parameters are those of three particles without a rod to the point.
+# One rigid body with a fixed point, described in three ways; its parameters are those of three particles on massless rods to the point.
 MASSES = np.array([0.7, 1.1, 0.4])
 PLACES = np.array([[0.5, 0.1, -0.2], [-0.3, 0.4, 0.1], [0.2, -0.3, 0.6]])
 FRAMES = {
@@ -38,7 +38,7 @@ RODS = """<system name="HungByRods" description="The same as particles that rods
   <gravity z="-g"/>
   <force on="p0" x="3" y="-2" z="1"/>
 </system>"""
-# The report's governor, and how its parameters are called here.
+# The governor of the report; its parameters have other names here.
 GOVERNOR = (fmu.ROOT / "scripts" / "numerics" / "systems" / "StiffGovernor" / "system.xml").read_text()
 
 
@@ -67,7 +67,7 @@ def systems():
 
 
 def state(instance, values):
-    """The instance in initialization mode with these values alone."""
+    """The instance in initialization mode with exactly these values."""
     instance.reset()
     instance.fmu.setupExperiment()
     instance.set(values)
@@ -81,13 +81,13 @@ def quaternion(turn):
 
 
 def rates_of(q, omega):
-    """q' = q omega/2 for an angular velocity along the body's axes."""
+    """q' = q omega/2 for an angular velocity along the body axes."""
     a, u = q[0], q[1:]
     return np.array([-u @ omega, *(a * omega + np.cross(u, omega))]) / 2
 
 
 def test_one_body_in_three_ways(open_fmu):
-    """Euler angles, a quaternion, and particles on rods: the same accelerations at random states."""
+    """Euler angles, a quaternion, and particles on rods give the same accelerations at random states."""
     angles, parts, held = (open_fmu(name) for name in ("HungByAngles", "HungByQuaternion", "HungByRods"))
     random = np.random.default_rng(7)
     for _ in range(50):
@@ -126,7 +126,7 @@ LEVER = TOP["m"] * TOP["g"] * TOP["l"]
 
 @pytest.mark.parametrize("theta, vphi, vtheta, vpsi", [(0.6, 0.0, 0.0, 160.0), (1.1, -2.0, 3.0, 90.0), (2.0, 5.0, -1.0, -60.0)])
 def test_nutation_of_the_top(theta, vphi, vtheta, vpsi, open_fmu):
-    """cos(theta) by Jacobi's elliptic function between two roots of a cubic, with its period; three integrals of motion."""
+    """cos(theta) follows Jacobi's elliptic function between two roots of a cubic, with its period; three integrals are conserved."""
     start = dict(theta=theta, vphi=vphi, vtheta=vtheta, vpsi=vpsi)
     top = (ABOUT_TIP, TOP["I3"], LEVER, theta, vphi, vtheta, vpsi)
     low, high, period = top_nutation(*top)
@@ -158,12 +158,12 @@ def test_steady_precession_of_the_top(fast, open_fmu):
 
 
 def test_poles_of_the_top(open_fmu):
-    """Upright, phi and psi are one angle: no start there, and no way through."""
+    """At theta = 0 phi and psi rotate about the same axis (gimbal lock): neither a start nor a passage is possible."""
     instance = open_fmu("HeavyTop")
     with instance.fails(ERROR, "mass matrix is singular .* depends on .*theta"):
         instance.initialize({"theta": 0.0})
     spin, theta = 20.0, 0.5
-    rate = TOP["I3"] * spin / (ABOUT_TIP * (1 + np.cos(theta)))  # equal momenta about both axes, which let it come upright
+    rate = TOP["I3"] * spin / (ABOUT_TIP * (1 + np.cos(theta)))  # equal momenta about both axes, so that the top can become upright
     instance = open_fmu("HeavyTop")
     instance.initialize(TOP | dict(theta=theta, vphi=rate, vtheta=-12.0, vpsi=spin - rate * np.cos(theta)))
     with instance.fails(DISCARD, "singularity|singular"):
@@ -176,7 +176,10 @@ BODY = dict(m=1.3, I1=0.12, I2=0.2, I3=0.27)
 
 @pytest.mark.parametrize("omega", [(4.0, 0.3, -0.2), (0.2, -0.1, -3.0), (0.01, 4.0, 0.0), (0.0, 3.0, 0.02), (1.0, 2.0, 3.0)])
 def test_free_body(omega, open_fmu):
-    """Jacobi's elliptic functions; energy and the momentum in space are kept. About the axis between, the body flips again and again."""
+    """
+    Jacobi's elliptic functions give the motion; energy and the momentum in space are conserved. About the intermediate axis the body flips
+    repeatedly.
+    """
     instance = open_fmu("FreeBody").initialize(BODY | dict(zip(["w1", "w2", "w3"], omega)), 1e-13)
     names = ["body.omegaX", "body.omegaY", "body.omegaZ", "totalEnergy", "Lx", "Ly", "Lz", "a", "b", "c", "d"]
     rows = np.array(instance.run(30, 0.1, *names))
@@ -188,7 +191,7 @@ def test_free_body(omega, open_fmu):
     np.testing.assert_allclose(rows[:, 4], rows[0, 4], rtol=1e-12)
     np.testing.assert_allclose(rows[:, 5:8], np.tile(momentum, (len(rows), 1)), atol=1e-12 * np.linalg.norm(momentum))
     np.testing.assert_allclose(np.linalg.norm(rows[:, 8:], axis=1), 1, atol=1e-15)
-    for row in rows[::20]:  # the quaternion takes the momentum of the body to that in space
+    for row in rows[::20]:  # the quaternion maps the momentum from the body axes to space
         turn = Rotation.from_quat([*row[9:], row[8]])
         np.testing.assert_allclose(turn.apply(moments * row[1:4]), momentum, atol=1e-11)
     if abs(omega[1]) > 3.5:
@@ -196,7 +199,9 @@ def test_free_body(omega, open_fmu):
 
 
 def test_free_body_falls_and_keeps_its_norm(open_fmu):
-    """A parabola beside the turning; the norm after many steps is as after one. LONG_RUNS=1 takes a million."""
+    """
+    The centre of mass follows a parabola; the norm of the quaternion after many steps is as after one. LONG_RUNS=1 takes a million steps.
+    """
     import os
 
     thrown = dict(g=9.81, x=0.2, y=-1.0, z=3.0, vx=1.0, vy=-0.4, vz=7.0)
@@ -212,7 +217,7 @@ def test_free_body_falls_and_keeps_its_norm(open_fmu):
 
 
 def test_accelerations_of_the_free_body(open_fmu):
-    """Euler's equations, for any quaternion of length 1."""
+    """Euler's equations hold for any unit quaternion."""
     random = np.random.default_rng(5)
     instance = open_fmu("FreeBody")
     for _ in range(50):
@@ -227,7 +232,7 @@ def test_accelerations_of_the_free_body(open_fmu):
         np.testing.assert_allclose(instance.get("der(va)", "der(vb)", "der(vc)", "der(vd)"), second, atol=1e-12)
 
 
-# Modified Denavit-Hartenberg (twist before, length before, offset after), centre of mass, moments of inertia: Armstrong et al. 1986.
+# Modified Denavit-Hartenberg parameters (twist and length before, offset after), centre of mass, moments of inertia: Armstrong et al. 1986.
 LINKS = [
     (0, 0, 0, (0, 0, 0), (0, 0, 0.35)),
     (-np.pi / 2, 0, 0.2435, (0.068, 0.006, -0.016), (0.13, 0.524, 0.539)),
@@ -239,7 +244,9 @@ LINKS = [
 
 
 def newton_euler(q, w, a, masses, gravity, tool):
-    """Torques at the joints, and position and velocity of the tool: Craig's recursion outwards, then inwards."""
+    """
+    Torques at the joints, and position and velocity of the tool, by Craig's recursive Newton-Euler algorithm, outwards and then inwards.
+    """
     axis, omega, alpha, pull = np.array([0, 0, 1.0]), np.zeros(3), np.zeros(3), np.array([0, 0, gravity])
     turns, arms, loads = [], [], []
     place, speed, frame = np.zeros(3), np.zeros(3), np.eye(3)
@@ -267,7 +274,7 @@ def newton_euler(q, w, a, masses, gravity, tool):
 
 
 def test_robot_arm(open_fmu):
-    """The FMU's accelerations need the torques that it was given, after motors and friction have taken theirs; the tool is where it is."""
+    """By inverse dynamics the FMU's accelerations need the given torques, less those of motors and friction; the tool's position agrees."""
     random = np.random.default_rng(11)
     instance = open_fmu("RobotArm")
     names = lambda pattern: [pattern.format(i) for i in range(1, 7)]
@@ -284,7 +291,7 @@ def test_robot_arm(open_fmu):
 
 
 def test_robot_arm_at_rest_and_free(open_fmu):
-    """With the torques that gravity needs it stays where it is; without any, and without friction, its energy stays."""
+    """With the torques that balance gravity the arm stays at rest; without torques and friction its energy is conserved."""
     names = [f"q[{i}]" for i in range(1, 7)]
     q = np.array([0.4, -0.8, 1.1, 0.5, -0.6, 0.2])
     holding, _ = newton_euler(q, np.zeros(6), np.zeros(6), [0, 17.4, 4.8, 0.82, 0.34, 0.09], 9.81, 0.2)
@@ -299,7 +306,7 @@ def test_robot_arm_at_rest_and_free(open_fmu):
 
 
 def rolling_disk():
-    """Lagrange's equation with multipliers; what touches the ground does not move: v + omega x r."""
+    """Lagrange's equation with multipliers; the velocity of the contact point, v + omega x r, is 0."""
     x, y, yaw, lean, spin, vx, vy, vyaw, vlean, vspin, m, R, g = sp.symbols("x y yaw lean spin vx vy vyaw vlean vspin m R g")
     q, v = [x, y, yaw, lean, spin], [vx, vy, vyaw, vlean, vspin]
     fork = rotation("z", yaw) * rotation("x", lean)
@@ -323,11 +330,11 @@ def test_accelerations_and_forces_of_the_rolling_disk(open_fmu):
 
 
 DISK = dict(m=0.8, R=0.25, g=9.6)
-ACROSS, ABOUT, ROLLING = DISK["m"] * DISK["R"] ** 2 * np.array([0.25, 0.5, 1.5])  # the last about the contact
+ACROSS, ABOUT, ROLLING = DISK["m"] * DISK["R"] ** 2 * np.array([0.25, 0.5, 1.5])  # the last about the contact point
 
 
 def test_steady_circles_of_the_rolling_disk(open_fmu):
-    """A W^2 sin cos - (C + m R^2) n W cos = m g R sin of the lean, with the turning rate W and the angular velocity n about the axis."""
+    """A W^2 sin cos - (C + m R^2) n W cos = m g R sin of the lean, with the precession rate W and the angular velocity n about the axis."""
     for lean, rate in ((0.3, -2.0), (-0.5, 3.0), (1.2, -6.0), (0.4, 15.0)):
         sine, cosine = np.sin(lean), np.cos(lean)
         n = (ACROSS * rate**2 * sine * cosine - DISK["m"] * DISK["g"] * DISK["R"] * sine) / (ROLLING * rate * cosine)
@@ -342,7 +349,7 @@ def test_steady_circles_of_the_rolling_disk(open_fmu):
 
 @pytest.mark.parametrize("factor", [0.9, 1.1])
 def test_straight_rolling_is_stable_when_fast(factor, open_fmu):
-    """Of a small lean, (A + m R^2) lean'' = (m g R - (C + m R^2) C n^2/A) lean: the threshold of a thin disk is v^2 = g R/3."""
+    """For a small lean, (A + m R^2) lean'' = (m g R - (C + m R^2) C n^2/A) lean; a thin disk is stable above v^2 = g R/3."""
     speed = factor * np.sqrt(DISK["g"] * DISK["R"] / 3)
     n, small = speed / DISK["R"], 1e-5
     stiffness = ROLLING * ABOUT * n**2 / ACROSS - DISK["m"] * DISK["g"] * DISK["R"]
@@ -361,7 +368,10 @@ def test_energy_of_the_rolling_disk(open_fmu):
 
 
 def bricard(alpha):
-    """Ends of the rods from one angle: with the joints by turns at a and b, sin a + sin b + sin a sin b = 0. Complex for derivatives."""
+    """
+    Ends of the rods by one angle: the joints have the angles a and b alternately, with sin a + sin b + sin a sin b = 0. Complex values
+    serve complex-step derivatives.
+    """
     beta = -np.arcsin(np.sin(alpha) / (1 + np.sin(alpha)))
     turn, ends, axes = np.eye(3), [np.zeros(3, complex)], []
     for i, (axis, rod) in enumerate(zip("yzxyz", np.array([[1, 0, 0], [0, -1, 0], [0, 0, 1], [-1, 0, 0], [0, 1, 0]]))):
@@ -376,7 +386,7 @@ def bricard(alpha):
 
 
 def bricard_energies(alpha, m=1.0, width=0.1, g=9.81):
-    """M(alpha) with T = M alpha'^2/2, and U: rods as lines by Simpson's rule, and their width by two directions across."""
+    """M(alpha) with T = M alpha'^2/2, and U; the rods are lines with rotational inertia across."""
     step = 1e-30
     (ends, turns), (moved, turned) = bricard(alpha + 0j), bricard(alpha + 1j * step)
     rates, spins = moved.imag / step, turned.imag / step
@@ -390,7 +400,10 @@ def bricard_energies(alpha, m=1.0, width=0.1, g=9.81):
 
 
 def test_bricard(open_fmu):
-    """Its one freedom by an equation of its own; one constraint too many is told and passed. IFToMM asks for the energy to 1e-3 J."""
+    """
+    The single degree of freedom follows its reduced equation. lagc reports one redundant constraint. The energy error is far below the 1e-3
+    J of the IFToMM benchmark.
+    """
     instance = open_fmu("Bricard").initialize({}, 1e-12)
     assert any("'axisZ' follows from the others" in text for _, _, text in instance.messages)
     rows = np.array(instance.run(10, 0.1, "x", "y", "z", "totalEnergy", "q[1]", "q[2]", "q[5]", "P5.x", "P5.z"))
@@ -428,7 +441,7 @@ def test_governor_without_width_is_that_by_particles(open_fmu):
 
 
 def test_governor(open_fmu):
-    """Against SciPy with SymPy's equations; the shaft's angular momentum is constant; the dampers take energy."""
+    """The motion agrees with SciPy on SymPy's equations; the shaft's angular momentum is constant; the dampers dissipate energy."""
     from systems_in_sympy import system
 
     definition = system("FlyballGovernor")
@@ -444,7 +457,7 @@ def test_governor(open_fmu):
 
 
 def test_gyrocompass(open_fmu):
-    """About north it swings as a pendulum with g/l = H W cos(latitude)/J, but for a term of W^2; Jacobi's elliptic function."""
+    """About north it swings as a pendulum with g/l = H W cos(latitude)/J, up to a term of W^2, by Jacobi's elliptic function."""
     values = dict(J=0.004, C=0.006, W=7.292115e-5, latitude=0.9, spin=3000.0, alpha=1.3)
     instance = open_fmu("Gyrocompass").initialize(values, 1e-11)
     north = values["W"] * np.cos(values["latitude"])

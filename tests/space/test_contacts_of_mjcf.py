@@ -1,4 +1,4 @@
-"""What MJCF says of contacts: friction, masks, priorities, pairs; and what touches in MuJoCo alone."""
+"""Contacts in MJCF: friction, masks, priorities, pairs; and contacts that exist in MuJoCo alone."""
 
 import math
 import re
@@ -10,7 +10,7 @@ from fmu import lagc
 
 ANGLE, DURATION, G = 0.3, 2.0, 9.81
 BOX = '<body name="{0}" pos="0 {1} 0.1"><freejoint/><geom name="g{0}" type="box" size="0.2 0.2 0.1" {2}/></body>'
-# What a box says, what it is beside, and the coefficient with which it slides; None: it falls.
+# Attributes of a box, elements beside it, and its coefficient of sliding friction; None if it falls.
 BOXES = {
     "rough": ('friction="0.2"', 0.2),
     "smooth": ('friction="0.02"', 0.05),
@@ -39,7 +39,7 @@ def built():
 
 
 def slides(instance, coefficients):
-    """From rest each box slides as Coulomb's law says, or falls freely; the ground gives way by less than a millimetre."""
+    """Check that from rest each box slides by Coulomb's law, or falls freely; the ground yields by less than 1 mm."""
     for name, friction in coefficients.items():
         x, z = instance.get(f"r.{name}_x"), instance.get(f"r.{name}_z")
         expected = DURATION**2 / 2 * G * max(0, math.sin(ANGLE) - (friction or 0) * math.cos(ANGLE))
@@ -51,7 +51,7 @@ def slides(instance, coefficients):
     "system, coefficients",
     [
         ("Slope", {name: friction for name, (_, friction) in BOXES.items()}),
-        # A plane that says nothing has MuJoCo's coefficient of 1, so that nothing slides but by priority or a pair.
+        # A plane without attributes has MuJoCo's coefficient of 1, so that boxes slide only by priority or a pair.
         ("Rough", {name: friction if name in ("prior", "frictionless", "paired") or friction is None else 1 for name, (_, friction) in BOXES.items()}),
         ("Same", {name: friction if friction is None else 0.25 for name, (_, friction) in BOXES.items()}),
     ],

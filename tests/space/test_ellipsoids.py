@@ -1,4 +1,6 @@
-"""Ellipsoids on planes: their gaps against a search for the lowest point, and a rattleback against the equations of Newton and Euler, which SciPy integrates."""
+"""
+Ellipsoids on planes: gaps against a search for the lowest point, and a rattleback against the Newton-Euler equations, integrated by SciPy.
+"""
 
 import subprocess
 from xml.etree import ElementTree
@@ -14,9 +16,9 @@ from building import LAGC, build_systems
 
 G = 9.81
 SIZES = np.array([0.2, 0.04, 0.03])  # m
-YAW = 0.1  # rad, of the shell against the axes of inertia, so that it has a preferred way to turn
+YAW = 0.1  # rad, of the shell against the principal axes of inertia, which gives it a preferred direction of spin
 MOMENTS = np.diag([1.5e-4, 1.5e-3, 1.55e-3])  # kg m2, of 1 kg
-# The shape's own axes are along the rows.
+# The rows are the shape's own axes.
 SHELL = np.diag(SIZES / 2) @ Rotation.from_euler("z", YAW).as_matrix().T
 
 FREE = "".join(f'<coordinate name="{x}" velocity="v{x}" unit="m"/>' for x in "xyz") + "".join(
@@ -27,7 +29,7 @@ BODY = f"""{FREE}<frame name="f"><translate x="x" y="y" z="z"/><rotate quaternio
 SHAPE = '<shape name="shell" in="f" type="ellipsoid" sizeX="0.2" sizeY="0.04" sizeZ="0.03" yaw="0.1"/>'
 RATTLEBACK = f"""<system name="Rattleback">{BODY}{SHAPE}<shape name="table" type="plane"/>
   <contact name="touch" between="shell" and="table" friction="10"/><experiment stopTime="2" stepSize="0.05"/></system>"""
-# The plane stands first, is tilted, and pushes with 1 N for each metre.
+# The plane is the first of the pair, is tilted, and has a stiffness of 1 N/m.
 TILTED = f"""<system name="EggOverPlane">{BODY}{SHAPE.replace('yaw="0.1"', 'yaw="0.1" x="0.02" z="-0.01"')}
   <shape name="table" type="plane" axis="x" roll="0.3" pitch="-0.9" z="2"/>
   <contact name="touch" between="table" and="shell" stiffness="1"/><experiment stopTime="2"/></system>"""
@@ -40,7 +42,7 @@ TUMBLING = f"""<system name="TumblingEgg">{FREE}<parameter name="mu" start="1"/>
   <shape name="shell" in="f" type="ellipsoid" sizeX="0.4" sizeY="0.3" sizeZ="0.2"/><shape name="slope" type="plane"/>
   <contact name="touch" between="shell" and="slope" friction="mu"/><experiment stopTime="2"/></system>"""
 
-# A ground that is tilted, in a frame; planes that are only seen, or are second ones, touch nothing.
+# A tilted ground in a frame; visual planes, and further ones, have no contacts.
 SCENE = """<mujoco model="eggs"><compiler angle="radian"/><worldbody>
   <geom type="plane" size="1 1 1" pos="0 0 9" contype="0" conaffinity="0"/>
   <frame pos="0.1 0 0.2" euler="0.3 -0.2 0.5"><geom type="plane" size="1 1 1" pos="0 0 -0.1" euler="0.2 0.1 0"/></frame>
@@ -58,28 +60,28 @@ def built():
 
 
 def quaternion(turn, spin=(0, 0, 0)):
-    """Of a turn, and its rate by an angular velocity along the axes of the base."""
+    """Quaternion of a rotation, and its rate for an angular velocity along the base axes."""
     q, w = turn.as_quat()[[3, 0, 1, 2]], np.array(spin)
     rate = 0.5 * np.r_[-w @ q[1:], q[0] * w + np.cross(w, q[1:])]
     return {f"q{i}": q[i] for i in range(4)} | {f"r{i}": rate[i] for i in range(4)}
 
 
 def to_contact(up):
-    """From the centre of the shell to its lowest point, along the body's axes."""
+    """Vector from the centre of the shell to its lowest point, along the body axes."""
     return -SHELL.T @ SHELL @ up / np.linalg.norm(SHELL @ up)
 
 
 def rolling(_, state):
     """
-    Newton and Euler with the force F of a point that stands still: v = r x w, F = m (dv/dt + g up), I dw/dt + w x I w = r x F, along
-    the body's axes, in which dr/dt follows from that of the way up.
+    Newton-Euler equations with the force F at a contact point at rest: v = r x w, F = m (dv/dt + g up), I dw/dt + w x I w = r x F, along
+    the body axes. dr/dt follows from the rate of the upward direction.
     """
     turn, w = Rotation.from_quat(state[3:7]), state[7:]
     up = turn.as_matrix()[2]
     up_rate, reach, r = np.cross(up, w), np.linalg.norm(SHELL @ up), to_contact(up)
     r_rate = -SHELL.T @ SHELL @ up_rate / reach - ((SHELL @ up) @ (SHELL @ up_rate)) / reach**2 * r
     v = np.cross(r, w)
-    without = np.cross(r_rate, w) + np.cross(w, v) + G * up  # F but for what dw/dt adds, r x dw/dt
+    without = np.cross(r_rate, w) + np.cross(w, v) + G * up  # F without the part of dw/dt, r x dw/dt
     cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
     spin_rate = np.linalg.solve(MOMENTS - cross @ cross, np.cross(r, without) - np.cross(w, MOMENTS @ w))
     x, y, z, s = state[3:7]
@@ -89,7 +91,7 @@ def rolling(_, state):
 
 @pytest.mark.parametrize("spin", [5.0, -5.0])
 def test_rattleback(spin):
-    """Spun one way it rattles and turns back, the other way it goes on, rolling without slip and without loss."""
+    """Spun in one direction it starts to rattle and reverses; in the other it continues. It rolls without slip or dissipation."""
     turn = Rotation.from_euler("y", 0.02)
     up, w = turn.as_matrix()[2], np.array([0, 0, spin])
     start = np.r_[0, 0, np.linalg.norm(SHELL @ up), turn.as_quat(), w]
@@ -109,7 +111,7 @@ def test_rattleback(spin):
 
 
 def test_gap():
-    """Where a search finds the point of the surface that is nearest to the plane."""
+    """The gap agrees with a numerical search for the point of the surface nearest to the plane."""
     chance = np.random.default_rng(1)
     base = Rotation.from_euler("xyz", [0.3, -0.9, 0])
     normal = base.apply([1, 0, 0])
@@ -129,7 +131,7 @@ def test_gap():
 
 
 def test_mjcf():
-    """How deep MuJoCo finds ellipsoids in a tilted plane, is what our springs are pressed by."""
+    """MuJoCo's penetration depths of ellipsoids in a tilted plane equal those of the springs."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(SCENE.format(""))
     data = mujoco.MjData(model)
@@ -144,7 +146,7 @@ def test_mjcf():
         mujoco.mj_forward(model, data)
         depths = np.zeros(2)
         for contact in data.contact[: data.ncon]:
-            if min(contact.geom) < 2:  # not the eggs with each other
+            if min(contact.geom) < 2:  # contacts between the ellipsoids are ignored
                 depths[max(contact.geom) - 2] = -contact.dist
         instance = fmu.Instance("EggsOfMujoco").initialize(values)
         forces = np.array(instance.get("r.egg_ground1.force", "r.rod_ground1.force"))
@@ -181,7 +183,7 @@ def test_messages(tmp_path, shapes, message):
 
 
 def flying(_, state):
-    """As rolling(), without the table: the height of the centre, its rate, the turn, and w."""
+    """The same without the table; state: height of the centre, its rate, the quaternion, and w."""
     x, y, z, s = state[2:6]
     w = state[6:]
     turn_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
@@ -197,8 +199,8 @@ gap.terminal, gap.direction = True, -1
 
 def test_an_egg_that_lands_without_a_bounce_and_lifts_off_again():
     """
-    Its turning lifts it off a smooth table at once. The error of a loose tolerance in the quaternion's norm, taken back at the
-    impact, moves the gap by more than rounding, on either side of 0.
+    Rotation lifts the egg off a smooth table at once. At a loose tolerance the norm of the quaternion has an error; its correction at the
+    impact moves the gap by more than rounding, to either side of 0.
     """
     random = np.random.default_rng(9)
     for _ in range(25):
@@ -217,7 +219,7 @@ def test_an_egg_that_lands_without_a_bounce_and_lifts_off_again():
 
 
 def test_an_egg_that_rolls_down_a_slope_and_lifts_off():
-    """Where it parts while it slides, it has neither force nor acceleration against the slope but rounding. Then it flies."""
+    """At lift-off from sliding, force and acceleration along the normal are 0 up to rounding; then the egg flies."""
     random, parted = np.random.default_rng(3), 0
     for _ in range(40):
         start = dict(zip(("z", "vx", "vy", "vz"), np.r_[0.25, random.normal(0, 2, 2), -1])) | quaternion(Rotation.random(rng=random), random.normal(0, 5, 3))
@@ -236,7 +238,7 @@ def test_an_egg_that_rolls_down_a_slope_and_lifts_off():
 
 
 def test_scene():
-    """What pages draw has its type and measures."""
+    """modelDescription.xml has type and sizes of the shapes, for drawings."""
     shapes = ElementTree.parse(fmu.unpacked("Rattleback") / "modelDescription.xml").iter("shape")
     assert {(shape.get("type"), *(shape.get(f"size{axis}") for axis in "XYZ")) for shape in shapes} == {
         ("ellipsoid", "0.2", "0.04", "0.03"), ("plane", None, None, None)}  # fmt: skip

@@ -1,4 +1,4 @@
-"""Bodies in space: frames, quaternions, torques and what is told of them, against Lagrange's equation by numbers."""
+"""Bodies in space: frames, quaternions, torques and variables of bodies, against a numerical form of Lagrange's equation."""
 
 import numpy as np
 import pytest
@@ -122,7 +122,7 @@ def systems():
 
 
 def arm_places(t, q, u):
-    """(R, position) of platform, arm, elbow's wheel, and of the tip."""
+    """(R, position) of the arm, of the elbow's wheel, and of the tip."""
     s, alpha, beta = q
     platform = rotation([0, 1, 0], 0.3 * np.sin(2 * t))
     origin = array(0, 0, 0.2 * np.cos(3 * t))
@@ -145,7 +145,7 @@ def arm_bodies(t, q, u):
 
 
 def arm_with(tau, vs):
-    """The force that depends on a velocity is given with it: it is not differentiated by it."""
+    """Mechanism with a force that depends on the velocity vs, which is an argument so that differences by velocities exclude it."""
 
     def power(velocity, spin, at):
         place = lambda name: lambda t, q, u: arm_places(t, q, u)[name][1]
@@ -171,7 +171,7 @@ def test_accelerations_of_an_arm(open_fmu):
 
 
 def test_what_is_told_of_an_arm(open_fmu):
-    """Positions and rotations by their formulas, velocities and accelerations by differences of these along the motion."""
+    """Positions and rotations agree with their formulas, velocities and accelerations with differences along the motion."""
     instance = open_fmu("SpatialArm").initialize({"va": 1.5, "vb": -2.0, "tau": 0.3}, tolerance=1e-12)
     step = 1e-3
     names = [*(f"tip.{c}{x}" for c in ("", "v", "a") for x in "xyz"), *(f"disk.{c}{x}" for c in ("omega", "alpha") for x in "XYZ"),
@@ -194,7 +194,7 @@ def test_what_is_told_of_an_arm(open_fmu):
 
 
 def test_work_in_a_frame_that_time_moves(open_fmu):
-    """nonConservativeWork of forces and torques by the trapezoidal rule over their power, with its error of h^2."""
+    """nonConservativeWork of forces and torques agrees with the trapezoidal rule over their power, up to its error of h^2."""
     instance = open_fmu("SpatialArm").initialize({"tau": 0.6})
     rows = np.array(instance.run(0.5, 2e-3, *ARM_STATES, "nonConservativeWork"))
     none = np.zeros(0)
@@ -260,7 +260,7 @@ def test_planar_body_is_a_frame(open_fmu):
 
 
 def test_bearing_of_a_rotor(open_fmu):
-    """By Newton's and Euler's laws about the origin, and alike by displacements and by driven coordinates."""
+    """Newton's and Euler's laws about the origin, by displacements and by driven coordinates."""
     random = np.random.default_rng(4)
     tensor = np.array([[0.1, 0, 0.03], [0, 0.15, 0], [0.03, 0, 0.2]])
     for _ in range(5):
@@ -298,7 +298,7 @@ def moved_power(velocity, spin, at):
 
 
 def test_frame_that_inputs_move(open_fmu):
-    """Also what moves the platform does work: the energy changes by nonConservativeWork alone."""
+    """The platform's drive does work too: the energy changes by nonConservativeWork."""
     mechanism = Mechanism(moved_bodies, (0, 0, -9.81), moved_power)
     instance, random = open_fmu("MovedFrame"), np.random.default_rng(5)
     names = ["q", "v", "u", "f", "der(u)", "der(f)", "der(der(u))", "der(der(f))"]
@@ -358,7 +358,7 @@ def test_message(text, message, tmp_path):
 @pytest.mark.parametrize("moments, told", [('Ixx="1" Iyy="1" Izz="2.3"', True), ('Ixx="1" Iyy="1" Izz="2"', False), ('Izz="1"', False),
                                            ('Ixx="1" Iyy="1" Izz="1" Ixy="0.7"', True), ("", False)])  # fmt: skip
 def test_moments_of_no_body_are_told(moments, told, tmp_path):
-    """A principal moment is at most the sum of the other two: 1 + 0.7 is more than 1 - 0.7 + 1."""
+    """A principal moment is at most the sum of the other two; 1 + 0.7 exceeds 1 - 0.7 + 1."""
     (tmp_path / "system.xml").write_text(f'''{HEAD}<frame name="f"><rotate axis="z" angle="q"/></frame>
       <particle mass="1" x="p*sin(q)" y="p*cos(q)"/><body name="b" in="f" mass="0" {moments}/></system>''')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
@@ -366,7 +366,7 @@ def test_moments_of_no_body_are_told(moments, told, tmp_path):
 
 
 def test_pole_of_euler_angles_is_refused(open_fmu):
-    """Where two axes of rotation fall together."""
+    """At gimbal lock two axes of rotation coincide."""
     instance = open_fmu("EulerPole")
     with instance.fails(ERROR, "mass matrix is singular .*'(phi|psi)'"):
         instance.initialize({"theta": 0.0, "v": 0.3, "w": 1.0})

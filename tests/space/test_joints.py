@@ -1,6 +1,6 @@
 """
-<joint>: one free body, turned by a quaternion, hangs on the base by each type. What is read of it fulfils Newton's and Euler's laws with
-the forces and torques of the joint, which are told along the axes of the frame on the base, and holds what the type holds.
+<joint>: a free body with a quaternion is attached to the base by each type. Its motion satisfies Newton's and Euler's laws with the forces
+and torques of the joint, along the axes of the frame on the base, and the constraints of the type.
 """
 
 import re
@@ -39,7 +39,7 @@ SYSTEM = """<system name="Hangs_{type}">
 </system>"""
 
 
-# Turns about x, y and z after which the joint fits too: axes that are held together point against each other.
+# Rotations about x, y and z after which the joint still fits; constrained axes then point in opposite directions.
 FLIPS = {
     "universal": [(2.5, 0, 0)],
     "revolute": [(np.pi, 0, 0)],
@@ -52,7 +52,7 @@ FLIPPED = [(kind, number) for kind, flips in FLIPS.items() for number in range(l
 
 
 def start_of(kind, flip=(0, 0, 0)):
-    """A state in which the joint fits, with a velocity that it allows: turned by angles and moved along what is free."""
+    """A state that satisfies the joint, with a velocity that it allows: rotated and moved along the free directions."""
     turns = {"spherical": (0.3, 0.5, -0.4), "universal": (0.4, 0.6, 0), "revolute": (0, 0, 0.8), "cylindrical": (0, 0, 0.8), "planar": (0, 0, 0.8)}
     moves = {"cylindrical": (0, 0, 0.3), "prismatic": (0, 0, 0.3), "planar": (0.2, -0.1, 0)}
     relative = Rotation.from_euler("XYZ", flip) * Rotation.from_euler("XYZ", turns.get(kind, (0, 0, 0)))
@@ -84,7 +84,7 @@ def simulate(name, outputs, **words):
 
 @pytest.mark.parametrize("name", [*(f"Hangs_{kind}" for kind in TYPES), *(f"Flipped_{kind}_{number}" for kind, number in FLIPPED)])
 def test_joint_obeys_newton_and_euler(joints, name):
-    """The torque of a universal joint and of a screw's force is known by its part about or along one axis, and the geometry."""
+    """One component of the torque of a universal joint, or of a screw, gives the whole torque by the geometry."""
     system, kind = name, name.split("_")[1]
     held = TYPES[kind].split()
     forces = [f"hinge.{'torque' + name[-1] if 'about' in name else 'force' + name.upper()}" for name in held]
@@ -102,7 +102,7 @@ def test_joint_obeys_newton_and_euler(joints, name):
         for name, of in zip(held, forces):
             along = -row[of] * WALL_TURNED.as_matrix()[:, "XYZ".index(name[-1].upper())]
             if kind == "universal" and name == "aboutZ":
-                # It turns about what stands across the x axis of the wall and the y axis of the grip.
+                # The torque acts about the common normal of the x axis of the wall and the y axis of the grip.
                 across = np.cross(WALL_TURNED.as_matrix()[:, 0], (body * GRIP_TURNED).as_matrix()[:, 1])
                 along = -row[of] * across / (across @ WALL_TURNED.as_matrix()[:, 2])
             if kind == "screw" and name == "z":
@@ -135,7 +135,7 @@ PINNED = """<system name="Pinned">
 
 
 def test_pin_in_the_plane(joints):
-    # A rod of length 1 that hangs on its end: w^2 = 3 g (cos phi - cos 2), and the hinge carries what turns its centre.
+    # A rod of length 1 that hangs by its end: w^2 = 3 g (cos phi - cos 2), and the hinge gives the acceleration of the centre.
     result = simulate("Pinned", ["phi", "w", "hinge.forceX", "pull"])
     phi, w, g, m, r = result["phi"], result["w"], 9.81, 3.0, 0.5
     assert w**2 == pytest.approx(3 * g * (np.cos(phi) - np.cos(2)), abs=1e-8)
@@ -148,7 +148,7 @@ EXCHANGED = '<frame name="{0}X" in="{0}"><rotate axis="1 1 1" angle="-2*pi/3"/><
 
 
 def text_about_x(kind):
-    """The same joint on frames whose axes are exchanged in a circle: x is what was z, y what was x."""
+    """The same joint on frames with cyclically permuted axes: x in place of z, y in place of x."""
     frames = EXCHANGED.format("wall") + EXCHANGED.format("grip")
     joint = f'<joint name="hinge" type="{kind}" axis="x" from="wallX" to="gripX"{THREAD[kind]}/>'
     return re.sub("<joint.*/>", frames + joint, text_of(kind)).replace("Hangs_", "Turned_")
@@ -188,7 +188,9 @@ IDLE = """<system name="Idle">
 
 
 def test_what_nothing_moves_is_held_by_no_force(joints):
-    """In a plane that leans by numbers and by a parameter all types that leave turning free are the same joint."""
+    """
+    In a plane inclined by numbers and by a parameter, all types that leave the rotation free are equivalent; forces across the plane are 0.
+    """
     names = ["a", "va", "h.forceX", "h.forceZ", "totalEnergy"]
     pin, revolute, spherical = (simulate(f"Idle_{kind}", names) for kind in ("pin", "revolute", "spherical"))
     assert np.ptp(pin["a"]) > 0.3 and np.ptp(pin["totalEnergy"]) < 1e-8
@@ -215,7 +217,7 @@ SPRUNG = """<system name="Sprung">
 
 
 def test_spring(joints):
-    # Accelerations from the forces told, along the line between the ends.
+    # Accelerations follow from the reported force, along the line between the ends.
     outputs = ["x[1]", "y[1]", "x[2]", "y[2]", "vx[1]", "vy[1]", "vx[2]", "vy[2]", "der(vx[1])", "der(vy[2])", "s.length", "s.force", "tie.force", "apart", "approach"]
     result = simulate("Sprung", outputs, start_values={"x[2]": 1.5, "y[2]": 2.0})
     between = np.array([result["x[2]"] - result["x[1]"], result["y[2]"] - result["y[1]"]])
@@ -242,14 +244,14 @@ SCREWED = """<system name="Screwed">
 
 
 def test_screw(joints):
-    """A nut falls along a rod with a left-hand thread, for many turns, by m z'' = -m g - J (2 pi/p)^2 z''."""
+    """A nut descends a rod with a left-hand thread, for many turns, by m z'' = -m g - J (2 pi/p)^2 z''."""
     result = simulate("Screwed", ["z", "vz", "nut.omegaZ", "rod.forceZ", "a", "d", "totalEnergy"])
     t, ratio = result["time"], 2 * np.pi / -0.02
     fall = 9.81 / (1 + 0.0001 * ratio**2 / 2)
     assert fall * 0.5 > 3 * 0.02
     assert result["z"] == pytest.approx(-fall * t**2 / 2, abs=1e-8)
     assert result["nut.omegaZ"] == pytest.approx(ratio * result["vz"], abs=1e-6)
-    # The thread holds at all times, not only its rate: the angle follows from the place.
+    # The thread constrains the angle itself, not only its rate.
     angle = 2 * np.arctan2(result["d"], result["a"])
     assert np.sin((angle - ratio * result["z"]) / 2) == pytest.approx(0, abs=1e-9)
     assert result["rod.forceZ"] == pytest.approx(-2 * (9.81 - fall), abs=1e-7)
@@ -276,7 +278,7 @@ ROLLS = """<system name="Rolls_{shape}">
 
 @pytest.mark.parametrize("shape", ["wheel", "sphere"])
 def test_rolling_obeys_newton_and_euler(joints, shape):
-    """The forces that are told act at the lowest point, which does not move; nothing else acts but weight."""
+    """The reported forces act at the lowest point, which is at rest; the only other force is the weight."""
     forces = [f"ground.force{axis}" for axis in "XYZ"]
     names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"wheel.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
     result = simulate(f"Rolls_{shape}", [*names, *forces, "totalEnergy"])
@@ -285,7 +287,7 @@ def test_rolling_obeys_newton_and_euler(joints, shape):
     for row in result:
         body, place = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]]), np.array([row[q] for q in "xyz"])
         axle = body.apply([0, 0, 1])
-        # Of a circle, what is lowest is down across the axle.
+        # The lowest point of a circle is along the downward direction perpendicular to the axle.
         down = -up if shape == "sphere" else np.cross(np.cross(axle, -up), axle)
         lever = RADIUS * down / np.linalg.norm(down)
         assert up @ (place + lever - WALL) == pytest.approx(0, abs=1e-9)
@@ -311,7 +313,7 @@ UPRIGHT = """<system name="Upright">
 
 
 def test_wheel_in_the_plane(joints):
-    """Coordinates keep it on the road: 3 N push a disk of 2 kg and 0.01/0.1^2 kg, which turns as it rolls."""
+    """Coordinates keep the wheel on the road: 3 N accelerate a disk of 2 kg plus 0.01/0.1^2 kg, which rotates as it rolls."""
     result = simulate("Upright", ["x", "phi", "ground.forceX"])
     assert result["x"] == pytest.approx(result["time"] ** 2 / 2, abs=1e-8)
     assert result["phi"] == pytest.approx(-10 * result["x"], abs=1e-8)
@@ -335,7 +337,7 @@ VECTORS = """<system name="Vectors">
 
 
 def test_vectors(joints):
-    """Products of what NumPy makes of the angles."""
+    """Expressions of vectors agree with NumPy's products of rotations."""
     for row in simulate("Vectors", ["p", "q", "vp", "vq", "a", "b", "c", "d"]):
         about_z = Rotation.from_euler("Z", row["p"])
         turned = about_z * Rotation.from_euler("Y", row["q"])
@@ -360,7 +362,10 @@ BUSHED = """<system name="Bushed">
 
 
 def test_bushing(joints):
-    """Forces and torques along the axes of the wall; equal torsion about all axes turns back with 4 sin(angle) about the axis of the turn."""
+    """
+    Forces and torques act along the axes of the wall; equal torsional stiffness about all axes gives 4 sin(angle) about the axis of
+    rotation.
+    """
     names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
     for row in simulate("Bushed", names):
         body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
@@ -420,7 +425,7 @@ def test_refused(tmp_path, line, message):
 
 
 def test_a_mistake_in_a_spring_is_told_once(tmp_path):
-    """Its stiffness is read for its energy, its length and its force; a negative one is warned of."""
+    """The stiffness is used for energy, length and force, and reported once; a negative one gives a warning."""
     (tmp_path / "system.xml").write_text("""<system name="Bad"><parameter name="c" start="2" unit="N"/>
 <coordinate name="x" velocity="v" unit="m"/><particle name="bob" mass="1" x="x"/>
 <spring name="s" from="base" to="bob" stiffness="c"/><spring from="base" to="bob" stiffness="-3" damping="-1"/>

@@ -1,7 +1,6 @@
 """
-Robots with loops: a URDF is a tree, and each <joint> beside its <include> closes a loop. Accelerations and forces against the constrained
-equations by Pinocchio's mass matrices and Jacobians of the same files; motions against closed forms of where the platforms of parallel
-robots are.
+Robots with loops: a URDF is a tree, and each <joint> beside its <include> closes a loop. Accelerations and forces agree with the
+constrained equations by Pinocchio's mass matrices and Jacobians; motions agree with the closed-form kinematics of parallel robots.
 """
 
 from ctypes import c_double
@@ -32,7 +31,7 @@ def joint(name, kind, parent, child, place=(0, 0, 0), axis="0 0 1", yaw=0.0):
 
 
 def turns(name, parent, child, axes):
-    """What turns about one axis after the other, with links without mass between."""
+    """Revolute joints about one axis after the other, with massless links in between."""
     links = [parent, *(f"{name}_{i}" for i in range(1, len(axes))), child]
     between = "".join(map(link, links[1:-1]))
     return between + "".join(joint(f"{name}_{'xyz'['xyz'.index(axis)]}{i}", "continuous", links[i], links[i + 1], axis=" ".join(str(int(axis == a)) for a in "xyz")) for i, axis in enumerate(axes))
@@ -42,7 +41,7 @@ def fixed(name, parent, place, yaw=0.0):
     return link(name) + joint(f"{name}_mount", "fixed", parent, name, place, yaw=yaw)
 
 
-# Two fingers, each on a crank and a rocker of one length, on a palm that leans: the axes of the hinges are the y axes of the links.
+# Two fingers, each on a crank and a rocker of the same length, on an inclined palm: the hinges' axes are the y axes of the links.
 def finger(side, sign):
     crank = link(f"{side}_crank_link", 0.05, "0 0.003 0.03", INERTIA.format(2e-5, 3e-5, 1e-5))
     rocker = link(f"{side}_rocker_link", 0.04, "0.001 0 0.03", INERTIA.format(2e-5, 2e-5, 1e-5))
@@ -59,7 +58,8 @@ def finger(side, sign):
 LEANING = '<joint name="mount" type="fixed"><parent link="wall"/><child link="palm"/><origin xyz="0.1 0.2 0.3" rpy="0.3 0.4 0.5"/></joint>'
 GRIPPER = f'<robot name="gripper">{link("wall")}{link("palm")}{LEANING}{finger("left", -1)}{finger("right", 1)}</robot>'
 
-# A delta robot: three arms, two parallel rods on each, and a platform that these keep from turning. It hangs on the first rod in the file.
+# A delta robot: three arms, two parallel rods on each, and a platform that they keep from rotating. In the file the platform is attached to
+# the first rod.
 SHOULDER, ARM, ROD, ANKLE, HALF = 0.2, 0.15, 0.4, 0.05, 0.04
 ARMS, RODS = range(3), [(arm, sign) for arm in range(3) for sign in (-1, 1)]
 
@@ -76,11 +76,11 @@ def delta():
         text += [turns(rod, f"{rod}_elbow", rod, "yx"), fixed(f"{rod}_end", rod, (0, 0, -ROD))]
         yaw = 2 * np.pi / 3 * arm
         text.append(fixed(f"{rod}_ankle", "plate", (ANKLE * np.cos(yaw) - HALF * sign * np.sin(yaw), ANKLE * np.sin(yaw) + HALF * sign * np.cos(yaw), 0)))
-    x, y = ANKLE, -HALF  # where the first rod ends in the plate
+    x, y = ANKLE, -HALF  # end of the first rod in the plate
     return f'<robot name="delta">{"".join(text)}{turns("wrist", "rod0a_end", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", (-x, -y, 0))}</robot>'
 
 
-# Stewart's platform: six legs, each a cylinder with a piston, from the floor to a platform, which is on the first of them in the file.
+# Stewart's platform: six legs, each a cylinder with a piston, from the floor to a platform, which in the file is attached to the first leg.
 LEGS = range(6)
 FLOOR = [np.array([0.5 * np.cos(a), 0.5 * np.sin(a), 0.0]) for a in np.radians([10, 110, 130, 230, 250, 350])]
 CEILING = [np.array([0.3 * np.cos(a), 0.3 * np.sin(a), -0.02]) for a in np.radians([50, 70, 170, 190, 290, 310])]
@@ -95,9 +95,9 @@ def stewart():
     return f'<robot name="stewart">{"".join(text)}{turns("neck", "piston0", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", -CEILING[0])}</robot>'
 
 
-# Two legs as a runner's: a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh, and a crank that turns the foot by
-# another rod. The rods weigh nothing; they hold the distance of their ends.
-BONES = {  # of each joint: the one above, its place there, its axis, the link's mass and centre
+# Two legs of a running robot: a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh, and a crank that
+# moves the foot by another rod. The rods are massless distance constraints.
+BONES = {  # of each joint: its parent, its position there, its axis, mass and centre of its link
     "roll": (None, (0.02, 0.135, 0), "1 0 0", 1.8, "-0.02 0 -0.04"),
     "yaw": ("roll", (0, 0, -0.07), "0 0 1", 1.2, "0 0 -0.03"),
     "pitch": ("yaw", (0, 0, -0.09), "0 1 0", 5.5, "0.06 0.03 0"),
@@ -128,7 +128,7 @@ def legs():
 
 
 URDF = {"Gripper": GRIPPER, "Delta": delta(), "Stewart": stewart(), "Legs": legs()}
-# The two links that each <joint> holds together, and its type.
+# The two links that each <joint> connects, and its type.
 LOOPS = {
     "Gripper": [(f"{side}_end", f"{side}_pin", 'type="revolute" axis="y"') for side in ("left", "right")],
     "Delta": [(f"rod{arm}{'ab'[sign > 0]}_end", f"rod{arm}{'ab'[sign > 0]}_ankle", 'type="spherical"') for arm, sign in RODS[1:]],
@@ -156,7 +156,7 @@ def robots():
 
 
 class Reference:
-    """Pinocchio's tree with the loops as constraints, at states that fulfil them."""
+    """Pinocchio's tree with the loops as constraints, at states that satisfy them."""
 
     def __init__(self, name):
         urdf = URDF[name].replace("continuous", "revolute").replace("<axis", '<limit lower="-9" upper="9" effort="9" velocity="9"/><axis')
@@ -179,14 +179,14 @@ class Reference:
         return np.concatenate([of(other) - of(one) for one, other in self.loops])
 
     def closed(self, q):
-        """The nearest configuration in which the loops are closed."""
+        """Nearest configuration in which the loops are closed."""
         for _ in range(50):
             q = q - np.linalg.pinv(self.jacobian(q), rcond=1e-9) @ self.misfit(q)
         assert np.max(np.abs(self.misfit(q))) < 1e-12
         return q
 
     def accelerations(self, q, v, torques):
-        """And the force of each loop's other link on its first one, along the axes of the world."""
+        """Accelerations, and the force of each loop's second link on its first one, along the world axes."""
         mass = pin.crba(self.model, self.data, q)
         mass = np.triu(mass) + np.triu(mass, 1).T
         bias = pin.nonLinearEffects(self.model, self.data, q, v)
@@ -197,7 +197,7 @@ class Reference:
         return solution[:n], solution[n:].reshape(len(self.loops), -1)
 
     def parting(self, q, v):
-        """How fast the ends of each loop part, and the change of that while the joints' velocities stay as they are."""
+        """Relative velocities of the ends of each loop, and their rates at constant joint velocities."""
         pin.forwardKinematics(self.model, self.data, q, v, np.zeros_like(v))
         pin.updateFramePlacements(self.model, self.data)
         axes = pin.LOCAL_WORLD_ALIGNED
@@ -237,7 +237,7 @@ class Legs(Reference):
 
 
 def start_of(name, reference, random):
-    """An open robot in a usual position, moved about."""
+    """Random open configuration near the usual one."""
     start = {joint: random.uniform(-0.2, 0.2) for joint in reference.names}
     for joint in reference.names:
         if name == "Gripper" and "knuckle" not in joint:
@@ -288,7 +288,7 @@ def test_accelerations_and_forces(name, open_fmu):
 
 
 def run(instance, reference, name, end):
-    """The energy's change, and where the robot is in the end."""
+    """Simulate; return the change of the energy, and check that the loops stay closed."""
     random = np.random.default_rng(3)
     instance.initialize({f"r.{joint}": float(q) for joint, q in zip(reference.names, start_of(name, reference, random))})
     energy = instance.get("totalEnergy")
@@ -299,9 +299,9 @@ def run(instance, reference, name, end):
 
 
 def test_gripper_keeps_its_fingers_parallel(open_fmu):
-    """And its energy; what the hinges hold across the plane of motion, they hold by no force."""
+    """The fingers stay parallel and the energy is constant; reaction forces across the plane of motion are 0."""
     instance = open_fmu("Gripper")
-    assert abs(run(instance, Reference("Gripper"), "Gripper", 0.125)) < 1e-9  # from 0.136 s on its parallelograms lie flat, where they could fold
+    assert abs(run(instance, Reference("Gripper"), "Gripper", 0.125)) < 1e-9  # from 0.136 s on the parallelograms lie flat, where they could fold
     for side in ("left", "right"):
         turned = instance.get(f"r.{side}_crank") + instance.get(f"r.{side}_knuckle")
         assert abs(np.sin(turned)) < 1e-9
@@ -310,7 +310,7 @@ def test_gripper_keeps_its_fingers_parallel(open_fmu):
 
 
 def test_delta_by_inverse_kinematics(open_fmu):
-    """Each arm's angle follows from the plate's place: the tip of the arm is on a circle, and a rod's length from the plate's ankle."""
+    """Each arm's angle follows from the plate's position: the arm's tip is on a circle, and a rod's length from the plate's ankle."""
     reference, instance = Reference("Delta"), open_fmu("Delta")
     assert abs(run(instance, reference, "Delta", 1.0)) < 1e-8
     plate = np.array([instance.get(f"r.plate.{axis}") for axis in "xyz"])
@@ -342,11 +342,11 @@ START = '<system name="W"><include file="a.xml" as="r">{}</include></system>'
 
 @pytest.mark.parametrize("axis", "xyz")
 def test_a_weld_has_one_pose(axis, tmp_path):
-    """A half turn fulfils its constraints too: it is the pose only where relpose says so."""
+    """A half rotation satisfies the constraints of a weld too; only relpose excludes it."""
     quaternion = [float(name == f"q{axis}") for name in ("qw", "qx", "qy", "qz")]
 
     def compiled(pose, angle):
-        """With the body turned by an angle from where the file places it."""
+        """Compile with the body rotated by an angle from its placement in the file."""
         parts = zip(("qw", f"q{axis}"), (np.cos(angle / 2), np.sin(angle / 2)))
         (tmp_path / "a.xml").write_text(WELD.format(" ".join(map(str, pose))))
         (tmp_path / "system.xml").write_text(START.format("".join(f'<coordinate name="a_{name}" start="{value!r}"/>' for name, value in ((n, float(v)) for n, v in parts))))

@@ -1,4 +1,4 @@
-"""Meshes as shapes: a cube against a box, depths of hulls against SciPy's, what stands on a face, and what the readers say of files that are wrong."""
+"""Meshes as shapes: a cube against a box, depths of hulls against SciPy's, rest on a face, and messages for invalid files."""
 
 import ctypes
 import re
@@ -27,7 +27,7 @@ CRATES = {
     "CrateOfStl": 'type="mesh" file="cube.stl" scale="0.4 0.6 0.2" z="0.03" roll="0.2"',
     "CrateOfObj": 'type="mesh" file="cube.OBJ" scale="-0.4 0.6 0.2" z="0.03" roll="0.2"',
 }
-# More corners than the hull has, in no order, and one that no triangle has.
+# More points than hull vertices, in random order, and one that no triangle uses.
 STONE = np.random.default_rng(7).normal(size=(40, 3)) * [0.3, 0.2, 0.1]
 FILES = {
     "CrateOfStl/cube.stl": stl_text(CUBE, triangles_of(CUBE)),
@@ -53,7 +53,7 @@ def started(name, place, turn):
 
 
 def test_a_cube_is_a_box():
-    """As text, and by squares that count back from the last point; the mirror turns its triangles over."""
+    """A text file, and squares with relative indices; a mirror reverses the orientation of triangles."""
     ends = []
     for name in CRATES:
         instance = started(name, [0, 0, 0.4], Rotation.from_euler("xyz", [0.3, 0.5, 0.1]))
@@ -70,7 +70,7 @@ def test_a_cube_is_a_box():
 
 
 def test_depths():
-    """The force of corners of the hull alone, in many positions."""
+    """The force is that of the hull's vertices, in many positions."""
     corners, chance = STONE[ConvexHull(STONE).vertices], np.random.default_rng(3)
     assert 8 < len(corners) < 32
     for turn in Rotation.random(20, random_state=5):
@@ -84,7 +84,7 @@ def test_depths():
 
 
 def test_a_tetrahedron_comes_to_rest():
-    """On a face: its centre is as high as the inscribed ball's, but for what three corners sink in."""
+    """It comes to rest on a face, with its centre at the radius of the inscribed sphere, less the penetration of three vertices."""
     instance = started("Die", [0, 0, 0.4], Rotation.from_euler("xyz", [0.4, 0.2, 0]))
     try:
         instance.run(4.0, 0.01)
@@ -102,7 +102,7 @@ class Mesh(ctypes.Structure):
 
 @pytest.fixture(scope="module")
 def library():
-    """The room of lagc alone."""
+    """Compile the room of lagc that reads meshes as a library."""
     sources = [*(ROOT / "src/compiler/read/meshes").glob("*.c"), ROOT / "src/compiler/model/mesh.c"]
     sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "paths", "platform", "sorting")]
     path = BUILD / "meshes" / "room.so"
@@ -112,7 +112,7 @@ def library():
 
 
 def corners_of(library, points):
-    """The corners and the lack; none for what is flat."""
+    """Hull vertices and the residual, the distance of points beyond their hull; none for flat meshes."""
     points = np.ascontiguousarray(points, dtype=float)
     mesh = Mesh(points=points.ctypes.data, point_count=len(points))
     found = library.mesh_find_corners(ctypes.byref(mesh)) & 0xFF
@@ -121,14 +121,14 @@ def corners_of(library, points):
 
 
 def grid_on_cube(count):
-    """Points on the faces, those of edges and corners often; the corners come first."""
+    """Points on the faces of a cube, with repeated points on edges and corners; the corners come first."""
     marks = np.linspace(-0.5, 0.5, count)
     faces = [np.roll([side, a, b], axis) for axis in range(3) for side in (-0.5, 0.5) for a, b in product(marks, marks)]
     return np.vstack([CUBE, faces])
 
 
 def test_hulls(library):
-    """The same corners as SciPy's, wherever they are and however large, but for those that are within the tolerance of the others' hull."""
+    """The vertices are SciPy's at any position and scale, except those within the tolerance of the others' hull."""
     chance, left_out = np.random.default_rng(11), 0
     for i in range(300):
         points = chance.normal(size=(chance.integers(4, 25), 3)) * chance.uniform(0.1, 1, 3)
@@ -144,8 +144,8 @@ def test_hulls(library):
 
 def test_hulls_of_planes(library):
     """
-    However many points lie in the faces and edges, the corners are those of the cube, also of one that is turned, and of one whose faces
-    bulge by half of the tolerance.
+    However many points lie on faces and edges, the hull vertices are the corners of the cube, also of a rotated one, and of one whose faces
+    bulge by half the tolerance.
     """
     points = grid_on_cube(12)
     bulging = points * (1 + 5e-6 * np.prod(1 - np.sort(np.abs(2 * points))[:, :2] ** 2, axis=1, keepdims=True))
@@ -158,7 +158,7 @@ def test_hulls_of_planes(library):
 
 
 def test_hulls_of_many_points(library):
-    """32 corners at most, and how far the points are beyond their hull."""
+    """The hull has at most 32 vertices; the residual is the distance of points beyond it."""
     points = np.random.default_rng(4).normal(size=(3000, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
     corners, lack = corners_of(library, points)
@@ -176,7 +176,7 @@ def written(tmp_path, name, content, more=""):
 
 
 def test_text_and_binary_are_the_same(tmp_path):
-    """To the last byte, and other content is another GUID."""
+    """Text and binary files give identical results; other content gives another GUID."""
     points, triangles = np.float32(STONE).astype(float), triangles_of(STONE)
     guids = []
     for content in (stl_text(points, triangles), stl_bytes(points, triangles), b"solid" + stl_bytes(points, triangles)[5:], stl_bytes(2 * points, triangles)):
@@ -218,7 +218,10 @@ def test_files_that_are_wrong(name, content, message, tmp_path):
 
 
 def test_what_other_programs_write(tmp_path):
-    """Comments, colours, texture and normals, lines that go on, capital letters, ends of lines as on Windows, points behind the polygons' ones, and numbers that count back."""
+    """
+    lagc reads comments, colours, textures and normals, continued lines, capital letters, Windows line ends, points after the polygons, and
+    relative indices.
+    """
     lines = [f"v {x} {y} {z} 0.5 0.5 0.5" for x, y, z in CUBE]
     text = "# made\r\nmtllib a.mtl\r\no cube\r\n" + "\r\n".join(lines) + "\r\nvn 0 0 1\r\nvt 0 0\r\ns off\r\nusemtl red\r\n"
     text += "".join(f"f {a + 1}/1/1 {b + 1}//1 \\\r\n {c + 1}/1 {d + 1} # a square\r\n" for a, b, c, d in SQUARES)
@@ -251,7 +254,7 @@ def test_messages(attributes, message, tmp_path):
 
 
 def test_planes_alone(tmp_path):
-    """A sphere or another mesh cannot touch a mesh."""
+    """A mesh has contacts with planes only, not with spheres or other meshes."""
     (tmp_path / "a.stl").write_text(STL)
     text = DROP.format("Told", FREE, 'type="mesh" file="a.stl"', inertia="1").replace('name="floor" type="plane"', 'name="floor" type="sphere" radius="1"')
     (tmp_path / "system.xml").write_text(text)

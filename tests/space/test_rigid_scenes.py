@@ -1,4 +1,4 @@
-"""Rigid boxes that are thrown onto floors, onto a plate that swings, and beside a ball: they go on to the end, and energy never grows."""
+"""Rigid boxes thrown onto floors, onto a swinging plate, and beside a ball: simulations complete, and energy never grows."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ HEAD = '<parameter name="m" start="2" unit="kg"/><parameter name="mu" start="0.3
 
 
 def free(name, place, shape):
-    """A body that moves and turns freely, with a shape."""
+    """A freely moving body with a shape."""
     quaternion = "".join(f'<coordinate name="{name}q{i}" velocity="{name}r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4))
     places = "".join(f'<coordinate name="{name}{x}" velocity="{name}v{x}" unit="m" start="{start}"/>' for x, start in zip("xyz", place))
     return f"""{places}{quaternion}
@@ -27,7 +27,7 @@ PLATE = """<coordinate name="h" velocity="vh" unit="m"/><coordinate name="p" vel
 TEXTS = {
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
-    # How far the ball is from the box has roots, so that events are looked for in windows.
+    # The distance of ball and box contains a square root, so that the search for events uses windows.
     "BoxBesideBall": FLOOR + free("b", (0.05, 0, 0.6), 'type="sphere" radius="0.1"') + CONTACT.format("far", "bShape", "aShape"),
 }
 
@@ -43,13 +43,14 @@ def velocities(*numbers, name="a"):
     return dict(zip([f"{name}{part}" for part in ("vx", "vy", "vz", "r1", "r2", "r3")], numbers))
 
 
-# Each was refused once: what is at its limit and stops at once, what is stopped altogether by an impact, what lies balanced on two corners.
+# Difficult cases: a corner at its friction limit that stops at once, a body that an impact stops completely, a body balanced on two
+# corners.
 THROWN = [(1.2, 0.1, -1.5, 1.1, -0.3, 0.3), (-0.1, 0.1, 0.0, -0.7, -1.4, 0.3), (0.3, 0.0, 1.3, -0.5, -1.8, 0.8), (-0.9, -1.4, 1.2, -0.1, 1.0, -2.0),
           (-0.3, 1.4, -0.4, -0.8, -0.1, -0.9)]  # fmt: skip
 
 
 def run(name, values, time):
-    """To a time, or until it stops; returns the energies."""
+    """Simulate to a time, or until the simulation stops; return the energies."""
     instance = fmu.Instance(name).initialize(values)
     energies = [instance.get("totalEnergy")]
     while instance.time < time - 1e-9:
@@ -78,11 +79,11 @@ def test_thrown_boxes(thrown):
     ],
 )
 def test_box_on_plate(mu, e, thrown, time):
-    """The plate moves away from corners that would stick, by friction on one corner and on several."""
+    """The plate moves away from corners that would stick, with friction on one corner and on several."""
     run("BoxOnPlate", {"mu": mu, "e": e, "az": 0.4} | velocities(*thrown), time)[0].free()
 
 
 def test_box_beside_ball():
-    """Just before a corner sticks, the direction of its friction is little more than rounding, in which no event hides."""
+    """Just before a corner sticks, the direction of its friction is dominated by rounding, which causes no event."""
     values = {"mu": 1.0} | velocities(0.352, -1.12, -1.495, 1.846, 0.157, 0.711) | velocities(1.447, 1.117, -0.632, 1.866, 1.575, -0.805, name="b")
     run("BoxBesideBall", values, 0.5)[0].free()

@@ -1,4 +1,4 @@
-"""Rigid contacts of shapes with friction: closed forms of what rolls, slides, stops, sticks and tips over, and conserved quantities."""
+"""Rigid contacts of shapes with friction: closed forms of rolling, sliding, stopping, sticking and tipping, and conserved quantities."""
 
 import math
 import subprocess
@@ -21,7 +21,7 @@ CONTACT = '<contact name="touch" between="{}" and="{}" restitution="e" friction=
 
 
 def free(name, inertia, height):
-    """A frame that moves and turns freely, with a body."""
+    """A freely moving frame with a body."""
     quaternion = " ".join(f'<coordinate name="{name}q{i}" velocity="{name}r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4))
     places = " ".join(f'<coordinate name="{name}{x}" velocity="{name}v{x}" unit="m" start="{height if x == "z" else 0}"/>' for x in "xyz")
     return f"""{places}{quaternion}
@@ -30,7 +30,7 @@ def free(name, inertia, height):
 
 
 WEIGHT = '<gravity x="9.81*sin(slope)" z="-9.81*cos(slope)"/>'
-# The plane stands before the ball, its axis is x, turned up, and its tangents are turned by an angle.
+# The plane is the first of the pair; its normal is its x axis, rotated up, and its tangents are rotated by an angle.
 ON_PLANE = f"""<system name="OnPlane">{HEAD}<parameter name="turned" start="0" unit="rad"/>{free("a", BALL, "r")}{WEIGHT}
   <shape name="floor" type="plane" axis="x" roll="turned" pitch="-pi/2"/><shape name="ball" in="a" type="sphere" radius="r"/>
   {CONTACT.format("floor", "ball")}<experiment stopTime="2" stepSize="0.01"/></system>"""
@@ -52,14 +52,14 @@ IN_PLANE = f"""<system name="InPlane">{HEAD}<coordinate name="x" velocity="vx" u
   <body name="solid" in="f" mass="m" {BALL}/>{WEIGHT}
   <shape name="ball" in="f" type="sphere" radius="r"/><shape name="floor" type="plane"/>
   {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
-# Its two corners on the floor slide along one line, so that one of them alone could hold it.
+# Its two lower corners slide along one line, so that one of them alone could carry the friction.
 BOX_IN_PLANE = f"""<system name="BoxInPlane">{HEAD}{SIDES}<parameter name="tilt" start="0" unit="rad/s"/>
   <coordinate name="x" velocity="vx" unit="m"/><coordinate name="z" velocity="vz" unit="m" start="C/2"/><coordinate name="phi" velocity="w" unit="rad"/>
   <frame name="f"><translate x="x" z="z"/><rotate axis="y" angle="phi"/></frame><body name="solid" in="f" mass="m" {BOX}/>
   <force on="solid" x="m*9.81*sin(slope + tilt*time)" z="-m*9.81*cos(slope + tilt*time)"/>
   <shape name="box" in="f" type="box" sizeX="A" sizeZ="C"/><shape name="floor" type="plane"/>
   {CONTACT.format("box", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
-# A ball whose centre of mass is below its middle.
+# A ball whose centre of mass is below its centre.
 TOP = f"""<system name="TippeTop">{HEAD}{free("a", BALL, "r").replace("<body", '<body z="-0.15*r"')}{WEIGHT}
   <shape name="ball" in="a" type="sphere" radius="r"/><shape name="floor" type="plane"/>
   {CONTACT.format("ball", "floor")}<experiment stopTime="2" stepSize="0.01"/></system>"""
@@ -71,7 +71,7 @@ CRADLE = f"""<system name="Cradle3D">{HEAD}<for index="i" from="1" to="4"><coord
 
 
 def column(boxes):
-    """Boxes, each with a sole that stands on the plane which is the top of the one below."""
+    """Boxes stacked on each other; the sole of each stands on a plane at the top of the one below."""
     every = "".join(
         free(f"b{k}", BOX, f"{k - 0.5}*C")
         + f'''<shape name="sole{k}" in="b{k}" type="box" sizeX="A" sizeY="B" z="-C/2"/><shape name="top{k}" in="b{k}" type="plane" z="C/2"/>
@@ -79,7 +79,7 @@ def column(boxes):
         for k in range(1, boxes + 1)
     )
     return f"""<system name="Column{boxes}">{HEAD}{SIDES}{WEIGHT}<shape name="top0" type="plane"/>{every}<experiment stopTime="2"/></system>"""
-# A stone that the ball could touch: how far they are apart has a root, so that events are looked for in windows.
+# A stone near the ball: their distance contains a square root, so that the search for events uses windows.
 BESIDE_STONE = ON_PLANE.replace("OnPlane", "BesideStone").replace("<experiment", """<coordinate name="h" velocity="vh" unit="m" start="3"/>
   <particle name="stone" mass="m" x="0.5" y="1" z="h"/><shape name="pebble" in="stone" type="sphere" radius="r"/>
   <contact name="hit" between="ball" and="pebble"/><solver tolerance="1e-8"/><experiment""")
@@ -97,7 +97,7 @@ def column_of_five():
 
 
 class Running:
-    """An FMU that is freed at the end."""
+    """Context manager that frees the FMU."""
 
     def __init__(self, name, values):
         self.instance = fmu.Instance(name)
@@ -115,7 +115,7 @@ def whole(instance, *names):
 
 
 def pose(name, turn, spin=(0, 0, 0)):
-    """The quaternion of a turn, and its rate by an angular velocity along the axes of the base."""
+    """Quaternion of a rotation, and its rate for an angular velocity along the base axes."""
     q = turn.as_quat()[[3, 0, 1, 2]]
     w = np.array(spin)
     rate = 0.5 * np.r_[-w @ q[1:], q[0] * w + np.cross(w, q[1:])]
@@ -128,7 +128,10 @@ def rotation(instance, name):
 
 @pytest.mark.parametrize("turned", [0.0, 0.7])
 def test_thrown_ball(turned):
-    """Its path is a parabola until it rolls, with 5/7 of its velocity and 2/7 of that of rolling with its spin (CueBall of the reference)."""
+    """
+    The path is a parabola until the ball rolls, with 5/7 of its velocity and 2/7 of that of rolling with its spin (CueBall of the
+    reference).
+    """
     r, mu, speed, spin = 0.1, 0.3, np.array([1.0, 0.4]), np.array([3.0, -8.0])
     with Running("OnPlane", {"avx": speed[0], "avy": speed[1], "turned": turned} | pose("a", Rotation.identity(), [*spin, 5.0])) as instance:
         rolling = r * np.array([spin[1], -spin[0]])
@@ -148,7 +151,7 @@ def test_thrown_ball(turned):
 
 @pytest.mark.parametrize("name, velocity", [("OnPlane", "avx"), ("InPlane", "vx")])
 def test_ball_on_a_slope(name, velocity):
-    """It rolls exactly where mu >= 2/7 tan(slope), and does not creep."""
+    """It rolls exactly if mu >= 2/7 tan(slope), without creep."""
     slope = 0.3
     for mu, rolls in ((2 / 7 * math.tan(slope) * 1.001, True), (2 / 7 * math.tan(slope) * 0.999, False)):
         with Running(name, {"mu": mu, "slope": slope}) as instance:
@@ -159,7 +162,7 @@ def test_ball_on_a_slope(name, velocity):
 
 
 def test_ball_that_falls_along_a_slope():
-    """From rest above it: as it flies, however fast, its friction has nothing to do."""
+    """From rest above the slope: during the flight friction has no effect at any speed."""
     slope, time = -0.5, 0.45
     with Running("OnPlane", {"slope": slope, "turned": 1, "az": 1.1}) as instance:
         instance.run(time, 0.1)
@@ -168,11 +171,13 @@ def test_ball_that_falls_along_a_slope():
 
 
 def test_box_that_slides_and_stops():
-    """Flat, after v^2/(2 mu g), under the forces of corners that the moment of the friction presses down; at rest these share the weight."""
+    """
+    It stops after v^2/(2 mu g) without rotation. The moment of friction changes the forces at the corners; at rest these share the weight.
+    """
     m, mu, speed, sizes = 2.0, 0.3, np.array([1.0, 0.5]), np.array([0.4, 0.6, 0.2])
     corners = np.array([[x, y] for y in (-1, 1) for x in (-1, 1)]) * sizes[:2] / 2
     with Running("RigidCrate", {"avx": speed[0], "avy": speed[1]}) as instance:
-        # Of least norm: n = a + b x + c y, whose moments are those of the friction at the height of the centre.
+        # Forces of least norm: n = a + b x + c y, whose moments balance those of the friction about the centre.
         slowing = mu * G * speed / np.linalg.norm(speed)
         slopes = [m * slowing[i] * sizes[2] / 2 / (corners[:, i] @ corners[:, i]) for i in (0, 1)]
         forces = m * G / 4 + corners @ np.array(slopes)
@@ -187,7 +192,7 @@ def test_box_that_slides_and_stops():
 
 @pytest.mark.parametrize("stick, height", [(1.0, 0.2), (1.2, 1e-4)])
 def test_box_on_a_slope(stick, height):
-    """It sticks up to tan(slope) = the coefficient of stiction, and slides beyond."""
+    """It sticks up to tan(slope) equal to the coefficient of stiction, and slides beyond."""
     for factor, slides in ((0.999, False), (1.001, True)):
         slope = math.atan(0.3 * stick * factor)
         with Running("RigidCrate", {"slope": slope, "stick": stick, "C": height, "az": height / 2}) as instance:
@@ -199,7 +204,10 @@ def test_box_on_a_slope(stick, height):
 
 @pytest.mark.parametrize("slope, mu, speed", [(0.3, 0.32, 0), (0.3, 0.5, 0), (0.3, 2, 0), (0.2, 0.25, 0), (0.2, 0.32, 0.5), (-0.2, 0.32, -0.5)])
 def test_box_in_a_plane_on_a_slope(slope, mu, speed):
-    """It stands, or comes to rest, where tan(slope) < mu and < width/height, though half of its friction is too much for the corner with less load."""
+    """
+    It stands, or comes to rest, if tan(slope) < mu and tan(slope) < width/height, although half of the friction exceeds the limit of the
+    corner with less load.
+    """
     m, width, height = 2.0, 0.2, 0.6
     with Running("BoxInPlane", {"slope": slope, "mu": mu, "A": width, "C": height, "z": height / 2, "vx": speed}) as instance:
         instance.run(1.0, 0.1)
@@ -213,7 +221,7 @@ def test_box_in_a_plane_on_a_slope(slope, mu, speed):
 
 
 def test_box_in_a_plane_on_a_slope_that_tilts():
-    """It slides off exactly where tan(slope) = mu."""
+    """It starts to slide exactly at tan(slope) = mu."""
     tilt, mu, time = 0.1, 0.32, 4.0
     with Running("BoxInPlane", {"tilt": tilt, "mu": mu, "A": 0.2, "C": 0.6, "z": 0.3}) as instance:
         instance.run(time, 0.1)
@@ -224,7 +232,7 @@ def test_box_in_a_plane_on_a_slope_that_tilts():
 
 
 def test_box_that_tips_over():
-    """Where its weight passes beyond its edge: tan(slope) = width/height; as a pendulum does, about the edge."""
+    """It tips once tan(slope) > width/height, as a pendulum about the edge."""
     width, height = 0.4, 0.8
     sizes = {"A": width, "C": height, "az": height / 2, "mu": 2.0}
     with Running("RigidCrate", sizes | {"slope": math.atan(0.5) - 1e-3}) as instance:
@@ -246,8 +254,8 @@ def test_box_that_tips_over():
 
 def test_rocking_block():
     """
-    Housner's block, in space: as the edge on which it stands changes, its angular velocity falls to 1 - 1.5 sin(a)^2 of itself, where
-    tan(a) = width/height.
+    Housner's block in space: when the supporting edge changes, the angular velocity is multiplied by 1 - 1.5 sin(a)^2, where tan(a) =
+    width/height.
     """
     width, height = 0.2, 0.8
     a, start = math.atan2(width, height), 0.1
@@ -270,7 +278,10 @@ def test_rocking_block():
 
 
 def test_ball_rolls_off_a_ball():
-    """Without slipping it leaves a fixed one at cos = 10/17 of that at the start, in any direction: axes of the friction have no part."""
+    """
+    Rolling without slipping it leaves a fixed ball at cos = 10/17 of that at the start, in any direction: the axes of the friction do not
+    matter.
+    """
     start = 0.1
     for way in (0.0, 2.0):
         place = 0.6 * np.array([math.sin(start) * math.cos(way), math.sin(start) * math.sin(way), math.cos(start)])
@@ -285,7 +296,9 @@ def test_ball_rolls_off_a_ball():
 
 
 def test_balls_that_meet():
-    """Obliquely, with spins: momentum and angular momentum stay, and energy is lost; where they stick they part rolling on each other."""
+    """
+    Oblique impact with spins: momentum and angular momentum are conserved, energy decreases; sticking balls separate rolling on each other.
+    """
     values = {"ax": -1.0, "az": 0.0, "by": 0.1, "bz": 0.05, "avx": 2.0, "e": 0.5} | pose("a", Rotation.from_euler("x", 1.0), [6, 3, 5])
     values |= pose("b", Rotation.from_euler("y", 0.5), [0, 4, -2])
     for mu, sticks in ((0.1, False), (2.0, True)):
@@ -303,7 +316,7 @@ def test_balls_that_meet():
                     rims.append((place, speed, spin))
                 momenta.append((*linear, *angular, energy))
             assert momenta[1][:6] == pytest.approx(momenta[0][:6], abs=1e-12) and momenta[1][6] < 0.95 * momenta[0][6]
-            # As they were when they parted, 1 - t ago, t found by going back to where they touched.
+            # Values at separation, 1 - t ago; t follows from the time at which the balls touched.
             (a, va, wa), (b, vb, wb) = rims
             away, speed = a - b, va - vb
             back = np.roots([speed @ speed, -2 * speed @ away, away @ away - 0.04]).real.min()
@@ -315,7 +328,7 @@ def test_balls_that_meet():
 
 @pytest.mark.parametrize("seed", range(4))
 def test_dice(seed):
-    """Thrown with spin it tumbles, loses energy at each impact and gains none, and comes to rest on a face."""
+    """Thrown with spin it tumbles, loses energy at each impact, and comes to rest on a face."""
     chance = np.random.default_rng(seed)
     mu, e = [(0.3, 0.0), (1.0, 0.3), (0.1, 0.5), (0.6, 0.4)][seed]
     turn = Rotation.from_quat(chance.normal(size=4))
@@ -333,7 +346,9 @@ def test_dice(seed):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_hostile_starts(seed):
-    """Boxes that start on a corner, an edge or a face, with no friction or far too much: energy never grows, or they are refused with a reason."""
+    """
+    Boxes that start on a corner, an edge or a face, without friction or with very much: energy never grows, or the message gives the cause.
+    """
     chance = np.random.default_rng(seed)
     turn = [Rotation.from_euler("zyx", [chance.uniform(0, 6), *angles]) for angles in (chance.uniform(0.1, 1.4, 2), (chance.uniform(0.1, 1.4), 0), (0, 0))][seed % 3]
     corners = np.array([[x, y, z] for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (-0.1, 0.1)])
@@ -354,7 +369,10 @@ def test_hostile_starts(seed):
 
 @pytest.mark.parametrize("slip", [0.02, 0.0])
 def test_tippe_top(slip):
-    """Its spin turns it over, losing energy, while Jellett's integral stays: the angular momentum times the way from the centre of mass to the pole."""
+    """
+    The spin inverts the top and dissipates energy; Jellett's integral, the angular momentum times the vector from the centre of mass to the
+    contact point, is conserved.
+    """
     m, r, moment = 1.0, 0.02, 0.4 * 0.02**2
     values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": slip} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])
     with Running("TippeTop", values) as instance:
@@ -372,7 +390,7 @@ def test_tippe_top(slip):
 
 
 def test_row_of_balls():
-    """One that hits a row of equal ones that touch hands its velocity on to the last, and stands still, in any direction of the row."""
+    """A ball that hits a row of equal touching balls passes its velocity to the last and stops, for any direction of the row."""
     way = np.array([2.0, -1.0, 2.0]) / 3
     values = {f"{x}[{i}]": 0.2 * i * way[k] for i in (2, 3, 4) for k, x in enumerate("xyz")}
     values |= {f"{x}[1]": -0.3 * way[k] for k, x in enumerate("xyz")} | {f"v{x}[1]": way[k] for k, x in enumerate("xyz")}
@@ -384,7 +402,10 @@ def test_row_of_balls():
 
 @pytest.mark.parametrize("mu, shake", [(0.3, 0.05), (1.0, 0.1)])
 def test_box_on_a_shaken_plate(mu, shake):
-    """All its corners come to their limit at once, where the plate is faster than mu g; it slides until the plate is as slow, and sticks again."""
+    """
+    All corners reach their friction limit together, when the plate's acceleration exceeds mu g; the box slides until the velocities are
+    equal, and sticks again.
+    """
     speed = lambda t: 10 * shake * math.cos(10 * t)
     begins = math.asin(mu * G / (100 * shake)) / 10
     slides = lambda t: speed(begins) - mu * G * (t - begins)
@@ -396,7 +417,7 @@ def test_box_on_a_shaken_plate(mu, shake):
 
 
 def check_column(boxes, time):
-    """At rest each corner bears a quarter of what is above it, and nothing creeps."""
+    """Check that at rest each corner carries a quarter of the weight above, without creep."""
     places = [f"b{k}{x}" for k in range(1, boxes + 1) for x in ("x", "y", "z", "q1", "q2", "q3")]
     with Running(f"Column{boxes}", {"mu": 0.5}) as instance:
         before = [instance.get(name) for name in places]
@@ -407,20 +428,20 @@ def check_column(boxes, time):
 
 
 def test_column():
-    """Also on a slope, and where the upper one is thrown along the lower, which it drags as far as friction does: momentum says how far."""
+    """Also on a slope; and the upper box, thrown along the lower one, stops after the distance given by friction."""
     check_column(2, 10.0)
     with Running("Column2", {"mu": 0.5, "slope": 0.4}) as instance:
         instance.run(1.0, 0.1)
         assert [instance.get(f"b{k}v{x}") for k in (1, 2) for x in "xyz"] == pytest.approx([0] * 6, abs=1e-12)
     with Running("Column2", {"mu": 0.1, "b2vx": 0.2}) as instance:
-        # The upper one slows down by mu g and moves the lower one by nothing: below it are two weights.
+        # The upper box decelerates by mu g; the lower one stays, since two weights press it to the ground.
         instance.run(1.0, 0.1)
         assert [instance.get("b1x"), instance.get("b2x")] == pytest.approx([0, 0.2**2 / (2 * 0.1 * G)], abs=1e-9)
 
 
 @pytest.mark.release
 def test_column_of_five(column_of_five):
-    """For 100 s."""
+    """A column of five stays at rest for 100 s."""
     check_column(5, 100.0)
 
 

@@ -1,4 +1,4 @@
-"""Robots from URDF files, against energies with many digits, closed forms, and formulas by hand."""
+"""Robots from URDF files, against accelerations from energies in high precision, closed forms, and formulas by hand."""
 
 import subprocess
 
@@ -14,8 +14,8 @@ from robots_by_energies import Robot
 TENSOR = '<inertia ixx="0.021" ixy="0.002" ixz="-0.003" iyy="0.026" iyz="0.004" izz="0.013"/>'
 BALL = '<inertia ixx="0.004" ixy="0" ixz="0" iyy="0.004" iyz="0" izz="0.004"/>'
 
-# Each joint type but floating, origins that turn, axes between those of coordinates, a part that is fixed to a moving one, and joints
-# that mimic others: a turn a slide, and through another.
+# Each joint type except floating, rotated origins, oblique axes, a link fixed to a moving one, and mimicking joints: a revolute one by a
+# prismatic one, and one through another.
 ARM = f"""<robot name="RobotHand">
   <link name="world"/>
   <link name="stand"><inertial><mass value="7"/>{TENSOR}</inertial></link>
@@ -40,7 +40,7 @@ ARM = f"""<robot name="RobotHand">
   <joint name="close" type="revolute"><parent link="finger"/><child link="thumb"/><axis xyz="0 1 0"/><mimic joint="grip" multiplier="3"/></joint>
 </robot>
 """
-# On its side, so that the plane is not that of x and y.
+# Lying on its side, so that its plane is not that of x and y.
 CART = f"""<robot name="RobotCart">
   <link name="base"/>
   <link name="cart"><inertial><origin xyz="0.1 0 0.2"/><mass value="4"/>{TENSOR}</inertial></link>
@@ -49,7 +49,7 @@ CART = f"""<robot name="RobotCart">
   <joint name="hinge" type="revolute"><origin xyz="0 0 0.2"/><parent link="cart"/><child link="pole"/><axis xyz="1 0 0"/><limit lower="-1"/></joint>
 </robot>
 """
-# A block on a slope of 0.6 in 0.8 with losses, and a disk with losses that a mimicking one adds to.
+# A block on a slope with sine 0.6 and cosine 0.8, with damping and friction; and a disk with both, increased by a mimicking one.
 LOSSES = f"""<robot name="RobotLosses">
   <link name="floor"/>
   <link name="block"><inertial><mass value="2"/>{BALL}</inertial></link>
@@ -62,7 +62,7 @@ LOSSES = f"""<robot name="RobotLosses">
   </joint>
 </robot>
 """
-# A box with a balanced wheel in its centre of mass, in a fixed world and as it stands.
+# A box with a balanced wheel in its centre of mass, on a fixed base; and the same with a floating base.
 ROTOR = f"""<robot name="RobotRotor">
   <link name="box">
     <inertial><origin xyz="0 0 0.5"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.15"/></inertial>
@@ -75,7 +75,7 @@ FLYING = ROTOR.replace("RobotRotor", "RobotFlying").replace("</robot>", """  <li
   <joint name="flight" type="floating"><parent link="sky"/><child link="box"/></joint>
 </robot>""")
 FREE = '<system name="RobotFree"><include file="../RobotRotor/system.xml" as="rotor" base="floating" tool="box"/></system>'
-# A rod of mass m and length l at a hinge, in the air at the end of another.
+# A rod of mass m and length l at a hinge, free in the air at the end of another.
 ROD = """<robot name="RobotRod">
   <link name="wall"><inertial><mass value="50"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
   <link name="rod">
@@ -95,7 +95,7 @@ PAIR = """<system name="RobotPair" description="two of them, which a spring betw
   <force on="right.tool" x="-k*stretch"/>
 </system>
 """
-# Two disks about vertical axes, one of which another mimics at half its angle, and a block along a rail that begins at 0.2.
+# Two disks about vertical axes, one of which mimics the other at half its angle, and a block on a rail that starts at 0.2.
 REAL = f"""<robot name="RobotReal">
   <link name="floor"/>
   <link name="disk"><inertial><mass value="1"/>{BALL}</inertial></link>
@@ -149,12 +149,12 @@ def test_accelerations(name, open_fmu):
             n = len(coordinates)
             expected = robot.accelerations(state[:n], state[n : 2 * n], state[2 * n :])
         ours = instance.get(*[f"der({c}_velocity)" for c in coordinates])
-        # Angles of 1.57079632679 are pi/2 here, which is 5e-12 away.
+        # Angles of 1.57079632679 are read as pi/2, which differs by 5e-12.
         np.testing.assert_allclose(ours, expected, rtol=1e-9)
 
 
 def test_places(open_fmu):
-    """Origins and axes of frames, also of what is fixed, and the positions of what mimics."""
+    """Origins and axes of all frames agree, including those of fixed links and mimicking joints."""
     robot, instance = Robot(ARM), open_fmu("RobotHand")
     coordinates, inputs = MOTORS["RobotHand"]
     values = random_state(np.random.default_rng(2), coordinates, inputs)
@@ -173,7 +173,7 @@ def test_limits(open_fmu):
         assert instance.get("shoulder_beyond") == pytest.approx(beyond, abs=1e-15)
     outputs = fmu.names_of("RobotHand", "output")
     assert [name for name in outputs if name.endswith("_beyond")] == ["shoulder_beyond"]
-    # The missing one of two limits is 0.
+    # A missing limit is 0.
     other = open_fmu("RobotCart").initialize({"hinge": 0.25})
     assert other.get("hinge_beyond") == 0.25
 
@@ -191,20 +191,20 @@ def test_losses(open_fmu):
 
 
 def test_stops_stiction_and_effort(open_fmu):
-    """Motors push with their effort, friction holds what is pushed by less, and stops hold: also what is mimicked, by the ratio."""
+    """Motors are limited by their effort, friction sticks below its limit, and stops act, also through mimicking joints by the ratio."""
     instance = open_fmu("RobotStops")
     modes = [f"r.{name}" for name in ("phi_bearing.sliding", "chi_bearing.sliding", "x.min.closed", "phi.max.closed", "chi_max.closed")]
     instance.initialize({"r.phi_torque": 1.0, "r.psi_torque": 0.0014, "r.x_force": -1e9})
     assert instance.get("r.x") == 0.2
     until = 0.5
     instance.step(until)
-    # 0.02 of effort less 0.008 of friction, on J = 0.004; the mimicking disk's friction of 0.003 acts by half.
+    # Effort 0.02 minus friction 0.008, on J = 0.004; the mimicking disk's friction of 0.003 acts by half.
     assert instance.get("r.phi", "r.phi_velocity") == pytest.approx([3 * until**2 / 2, 3 * until], rel=1e-12)
     assert instance.get("r.psi", "r.psi_velocity", "r.x", "r.x.min.force", "r.phi_bearing.force") == pytest.approx([0, 0, 0.2, 5, 0.008], abs=1e-14)
     assert instance.fmu.getInteger(instance.vr(*modes)) == [1, 0, 1, 0, 0]
     instance.set({"r.psi_torque": 0.0015 + 0.0005})
     instance.step(1.0)
-    # Of the disk and a quarter of the one that mimics.
+    # Inertia of the disk and a quarter of that of the mimicking one.
     rate = 0.0005 / 0.005
     assert instance.get("r.psi") == pytest.approx(rate * 1.0 / 2, rel=1e-12)
     instance.step(4.0)
@@ -218,7 +218,7 @@ def test_stops_stiction_and_effort(open_fmu):
 
 @pytest.mark.parametrize("name, base, spin", [("RobotFlying", "flight", "spin"), ("RobotFree", "rotor.base", "rotor.spin")])
 def test_free_motion(name, base, spin, open_fmu):
-    """Turning about the axis of the largest moment of inertia, while the centre of mass, 0.5 above the origin of the link, falls."""
+    """The body rotates about the axis of largest moment of inertia, while its centre of mass, 0.5 above the link's origin, falls."""
     instance, rate, t = open_fmu(name), 0.8, 1.5
     moving = {f"{base}_qy_velocity": rate / 2, f"{base}_x_velocity": -0.5 * rate, f"{base}_z_velocity": 2.0}
     instance.initialize(moving)
@@ -234,7 +234,7 @@ def test_free_motion(name, base, spin, open_fmu):
 
 
 def test_pair(open_fmu):
-    """Each falls by one gravity; the spring pulls at the ends."""
+    """Each falls with one gravity; the spring acts on the ends."""
     instance = open_fmu("RobotPair")
     left, right = -0.4, 0.7
     instance.initialize({"left.hinge": left, "right.hinge": right})
@@ -254,7 +254,7 @@ def test_energy_is_kept(open_fmu):
 
 
 def test_names_of_joints_and_links_are_apart():
-    """A joint may be called like a link, and either like what each robot has anyway."""
+    """A joint may have the name of a link, and either may have the name of a variable that each robot has."""
     names = {v.name for v in fmu.description("RobotCart").modelVariables}
     assert {"base_.x", "cart.x"} <= names
     assert {"wheel", "wheel.x"} <= {v.name for v in fmu.description("RobotHand").modelVariables}
@@ -269,7 +269,7 @@ def test_joint_that_is_called_like_a_word_of_the_language(tmp_path):
 
 
 def test_a_file_of_any_name_makes_an_fmu(tmp_path):
-    """The FMU is named as the robot, in letters of C."""
+    """The FMU is named after the robot, converted to a C identifier."""
     bring_up_to_date(ROOT / "build")
     (tmp_path / "arm.urdf").write_text('<?xml version="1.0"?>\n' + ROD.replace("RobotRod", "2nd arm-6.x"))
     (tmp_path / "scene.xml").write_text('<!-- By include. -->\n<mujoco>\n<include file="arm.xml"/></mujoco>')

@@ -1,4 +1,4 @@
-"""Accelerations of robots in MJCF at random states, against MuJoCo's from the same files, with contacts, limits and friction left out."""
+"""Accelerations of robots in MJCF at random states, against MuJoCo's for the same files, without contacts, limits and friction."""
 
 from ctypes import c_double
 
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.release
 
 STATES = 20
 CAMPAIGN = 100
-# One of each: units of angles, sequences of angles, places, classes that inherit, joints with anchors and refs, shapes, actuators.
+# Covers units of angles, sequences of angles, positions, inherited classes, joints with anchors and refs, shapes and actuators.
 EACH = """\
 <mujoco model="each">
   <compiler angle="degree" eulerseq="XYz"/>
@@ -69,7 +69,7 @@ EACH = """\
 
 
 def in_parts():
-    """The same in files that include each other, relative to the first and to the one that names it."""
+    """The same model in files that include each other, with paths relative to the first file and to the including one."""
     text, parts = EACH, {}
     for name, begin, end in [("parts/classes.xml", '<default class="stiff">', "</default></default>"), ("parts/settings.xml", "<compiler", "  <worldbody>"), ("bodies.xml", '<body name="drone"', "  </worldbody>")]:
         first = text.index(begin)
@@ -97,7 +97,7 @@ COUPLED = """\
 </mujoco>
 """
 
-# Loops: a body is connected to another and to the world, welded by its place in the file, by a pose, and sites by both.
+# Loops: a body connected to another and to the world, welded by its placement, by a pose, and sites by both.
 LOOPED = """\
 <mujoco model="looped">
   <compiler angle="radian"/>
@@ -131,7 +131,7 @@ EQUALITIES = {
     "Held": '<weld name="hold" body1="d"/>',
 }
 
-# A U, of which not all of the surface is seen from its centre of mass; MuJoCo's usual way to weigh meshes is not exact there.
+# A U-shaped mesh, part of whose surface is hidden from its centre of mass, so that MuJoCo's default computation of inertia is inexact.
 OUTLINE = [(0, 0), (0.3, 0), (0.3, 0.2), (0.25, 0.2), (0.25, 0.05), (0.05, 0.05), (0.05, 0.2), (0, 0.2)]
 FACES = [(1, 2, 5), (1, 5, 6), (2, 3, 4), (2, 4, 5), (1, 6, 7), (1, 7, 8)]
 U = "\n".join(
@@ -156,7 +156,7 @@ MESHED = """\
 """
 
 
-# Tendons of each kind, which follow one another or stay.
+# Tendons of each kind, coupled to others or fixed.
 LINKED = """\
 <mujoco model="linked">
   <compiler angle="radian"/>
@@ -180,7 +180,7 @@ LINKED = """\
 """
 
 
-# Between two lengths the spring of its tendon is slack.
+# Between two lengths the tendon's spring is slack.
 SLACK = """\
 <mujoco model="slack">
   <compiler angle="radian"/>
@@ -277,7 +277,7 @@ class Generator:
     def tendon(self):
         joints = self.random.permutation(self.singles)[: self.random.integers(1, 4)]
         pulls = "".join(f'<joint joint="{joint}" coef="{self.numbers(1)}"/>' for joint in joints)
-        # MuJoCo leaves out how the inertia of a tendon couples joints of different branches.
+        # MuJoCo omits the coupling of different branches by a tendon's inertia.
         ways = {"stiffness": 9, "damping": 2} | ({"armature": 0.5} if len(joints) == 1 else {})
         given = " ".join(f'{way}="{self.numbers(1, 0, high)}"' for way, high in ways.items() if self.random.random() < 0.6)
         relaxed = self.choice("", f'springlength="{self.numbers(1)}"')
@@ -327,12 +327,12 @@ def robots(tmp_path_factory):
 
 
 def product(a, b):
-    """Of quaternions, the real part first."""
+    """Product of quaternions, the real part first."""
     return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
 
 
 def turning(quaternion, angular_velocity):
-    """Of a quaternion, by the angular velocity along the body's axes."""
+    """Rate of a quaternion for an angular velocity along the body axes."""
     return product(quaternion, np.array([0, *angular_velocity])) / 2
 
 
@@ -346,7 +346,7 @@ class Reference:
         self.data = mujoco.MjData(self.model)
 
     def names(self):
-        """Of the FMU's coordinates, each with its place in qpos."""
+        """Names of the FMU's coordinates, each with its index in qpos."""
         names = []
         for i in range(self.model.njnt):
             joint = self.model.joint(i)
@@ -356,7 +356,7 @@ class Reference:
         return names
 
     def draw(self, random):
-        """A state of MuJoCo's and its controls."""
+        """Set a random state and controls of MuJoCo's model."""
         self.data.qpos, self.data.qvel = random.uniform(-1, 1, self.model.nq), random.uniform(-2, 2, self.model.nv)
         mujoco.mj_normalizeQuat(self.model, self.data.qpos)
         self.data.ctrl = random.uniform(-3, 3, self.model.nu)
@@ -386,7 +386,7 @@ class Reference:
 
 
 def enter_and_leave_events(instance):
-    """Where the limits of controls and forces are seen."""
+    """Enter and leave event mode, which updates the limits of controls and forces."""
     instance.fmu.enterEventMode()
     instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
@@ -427,7 +427,7 @@ def test_included_files(open_fmu):
 
 
 def test_hand(open_fmu):
-    """Shadow's, with 24 joints, 20 servomotors with limits, and tendons."""
+    """The Shadow hand, with 24 joints, 20 servomotors with limits, and tendons."""
     if hand.source() is None:
         pytest.skip("gymnasium-robotics is not installed")
     text = hand.text()
@@ -436,7 +436,7 @@ def test_hand(open_fmu):
 
 
 def test_slack_tendon(open_fmu):
-    """A state that is set jumps over the ends of what is slack: each is one to start from here."""
+    """A new state may lie beyond either end of the slack interval; each state starts the simulation anew."""
     reference, random, lengths = Reference(SLACK), np.random.default_rng(1), set()
     for _ in range(STATES):
         reference.draw(random)
@@ -449,12 +449,12 @@ def test_slack_tendon(open_fmu):
 
 
 def test_inertia_of_meshes(open_fmu):
-    """MuJoCo keeps the corners of meshes in 32 bits."""
+    """MuJoCo stores the vertices of meshes in 32 bits, which limits the agreement."""
     check_accelerations("Meshed", MESHED, open_fmu("Meshed", kind=FMU2Model), 2e-6)
 
 
 def test_joints_that_follow_others(open_fmu):
-    """MuJoCo's own constraint is soft: here its mass matrix and forces are reduced to the velocities that the constraint leaves."""
+    """MuJoCo's constraint is soft; the reference reduces its mass matrix and forces to the velocities that the constraint allows."""
     reference, instance = Reference(COUPLED), open_fmu("Coupled", kind=FMU2Model)
     model, data = reference.model, reference.data
     share = np.array([[1.0, 0.0], [-0.5, 0.0], [0.0, 1.0]])
@@ -484,7 +484,7 @@ def test_joints_that_follow_others(open_fmu):
 
 
 class Links:
-    """The constraints of a model's linked tendons, and their Jacobian, from MuJoCo's lengths: its own are soft."""
+    """Constraints of a model's coupled tendons and their Jacobian, from MuJoCo's lengths, since MuJoCo's constraints are soft."""
 
     def __init__(self, reference):
         self.model, self.data = reference.model, reference.data
@@ -532,14 +532,14 @@ def test_tendons_that_follow_others(open_fmu):
 
 
 class Loops:
-    """The constraints of a model's connects and welds: MuJoCo's own are soft, and its Jacobians are not."""
+    """Constraints of a model's connects and welds: MuJoCo's are soft, but its Jacobians are exact."""
 
     def __init__(self, reference):
         self.model, self.data = reference.model, reference.data
         self.ends = [self.ends_of(i) for i in range(self.model.neq) if self.model.eq_active0[i]]
 
     def ends_of(self, i):
-        """Of a constraint two bodies, each with a point and with axes in it, and whether the axes are held."""
+        """For a constraint: two bodies, each with a point and axes, and True if the axes are constrained."""
         model, data = self.model, self.model.eq_data[i]
         fixed, pair = model.eq_type[i] == mujoco.mjtEq.mjEQ_WELD, (model.eq_obj1id[i], model.eq_obj2id[i])
         if model.eq_objtype[i] == mujoco.mjtObj.mjOBJ_SITE:
@@ -551,7 +551,7 @@ class Loops:
         return [(pair[0], data[3:6] + posed.apply(data[:3]), posed), (pair[1], data[:3], one)], True
 
     def evaluate(self, position):
-        """What the constraints lack, and their Jacobian."""
+        """Residuals of the constraints, and their Jacobian."""
         self.data.qpos = position
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_comPos(self.model, self.data)
@@ -586,7 +586,7 @@ class Loops:
         return position
 
     def drift(self, position, velocity):
-        """The change of the Jacobian along the motion times the velocity, by differences of the fourth order."""
+        """Rate of the Jacobian along the motion times the velocity, by differences of fourth order."""
         of = lambda time: self.evaluate(self.moved(position, velocity, time))[1] @ velocity
         h = 1e-3
         return (8 * (of(h) - of(-h)) - (of(2 * h) - of(-2 * h))) / (12 * h)
@@ -628,7 +628,7 @@ def test_loops(name, open_fmu):
 
 
 def test_keyframe(open_fmu):
-    """The states and controls of a key, as MuJoCo sets them."""
+    """The states and controls of a key are those that MuJoCo sets."""
     reference, instance = Reference(LOOPED.format("")), open_fmu("Started")
     mujoco.mj_resetDataKeyframe(reference.model, reference.data, reference.model.key("home").id)
     instance.initialize({})

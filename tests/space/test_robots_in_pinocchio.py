@@ -1,4 +1,4 @@
-"""Accelerations of real robots at random states, against Pinocchio's from the same URDF files."""
+"""Accelerations of real robots at random states, against Pinocchio's for the same URDF files."""
 
 import xml.etree.ElementTree as ET
 from ctypes import c_double
@@ -16,7 +16,7 @@ from numerics.space.accelerations import chain
 pytestmark = pytest.mark.release
 
 ROBOTS = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots"
-# The file, and whether the robot flies.
+# The file, and True for a floating base.
 FILES = {
     "Ur5": ("ur_description/urdf/ur5_robot.urdf", False),
     "Panda": ("panda_description/urdf/panda.urdf", False),  # one finger mimics the other
@@ -40,7 +40,7 @@ def robots():
 
 
 def product(a, b):
-    """Of quaternions, the real part first."""
+    """Product of quaternions, the real part first."""
     return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
 
 
@@ -50,8 +50,8 @@ def vector(v):
 
 class Reference:
     """
-    Pinocchio's model in the FMU's coordinates. It has a coordinate for each joint, also for what mimics another one, an angle without end as its
-    cosine and sine, and the velocity of a free base along its own axes.
+    Pinocchio's model in the FMU's coordinates. Pinocchio has a coordinate for each joint, also for mimicking ones, describes an unlimited
+    angle by its cosine and sine, and the velocity of a free base along its own axes.
     """
 
     def __init__(self, name):
@@ -62,7 +62,7 @@ class Reference:
         joints = [*self.model.names[2 if self.floats else 1 :]]
         self.joints = [joint for joint in joints if joint not in mimics]
         free = 6 if self.floats else 0
-        # Velocities of all joints, and their positions less an offset, are these times those of the ones that are free.
+        # Velocities of all joints, and their positions minus an offset, are this matrix times those of the independent ones.
         self.shares = np.zeros((self.model.nv, free + len(self.joints)))
         self.shares[:free, :free] = np.eye(free)
         self.offsets = np.zeros(len(self.joints + [*mimics]))
@@ -104,7 +104,7 @@ class Reference:
 
 
 class Evaluation:
-    """The FMU's derivatives of the states at any state, for model exchange."""
+    """Derivatives of the FMU's states at any state, in model exchange."""
 
     def __init__(self, name, open_fmu):
         self.instance = open_fmu(name, kind=FMU2Model)
@@ -151,13 +151,13 @@ def test_accelerations(name, open_fmu):
         expected = reference.accelerations(position, velocity, torques)
         np.testing.assert_array_equal(derivatives[: len(names)], velocity)
         error = np.max(np.abs(derivatives[len(names) :] - expected))
-        digits = 1e-8 if name == "Chain" else 1e-10  # the mass matrix of so many joints is hard to solve with
+        digits = 1e-8 if name == "Chain" else 1e-10  # the mass matrix of so many joints is ill-conditioned
         assert error < digits * np.max(np.abs(expected)), error / np.max(np.abs(expected))
 
 
 @pytest.mark.parametrize("path", ["talos_data/robots/talos_full_v2.urdf", "centauro_description/urdf/centauro.urdf", "tiago_description/robots/tiago_dual.urdf"])
 def test_robots_of_forty_joints_and_more_are_derived(path, tmp_path):
-    """Their mass matrices have a thousand elements, which are not to be expanded each from the beginning."""
+    """Their mass matrices have a thousand elements, which must share their common factors."""
     (tmp_path / "system.xml").write_text(f'<system name="R"><include file="{ROBOTS / path}" as="robot" base="floating"/></system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

@@ -1,4 +1,4 @@
-"""Robots that stand: the shapes of a URDF's <collision>, on the ground that an <include> asks for."""
+"""Robots on the ground: the shapes of a URDF's <collision>, and the ground of an <include>."""
 
 import math
 import re
@@ -45,7 +45,7 @@ LIMB = """<link name="thigh{0}"><inertial><origin xyz="0 0 -0.1"/><mass value="0
 LIMBS = "".join(LIMB.format(k, INERTIA.format(0.002), INERTIA.format(0.0006), *place) for k, place in enumerate([("-0.15 -0.024 0", "1 0 0"), ("0.15 -0.014 0", "0 1 0")]))
 LIMP = f"""<robot name="limp"><link name="trunk"><inertial><mass value="3"/>{INERTIA.format(0.05)}</inertial></link>{LIMBS}</robot>"""
 FALLING = '<system name="Falling"><include file="limp.urdf" as="r" base="floating" ground="true" limits="stops" friction="sticks"/></system>'
-# A puck on a table, which its joint holds half a millimetre deep in the ground.
+# A puck on a table, whose joint fixes its height 0.5 mm deep in the ground.
 PUCK = f"""<robot name="puck"><link name="table"/><link name="puck"><inertial><mass value="2"/>{INERTIA.format(0.1)}</inertial>
 <collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision></link>
 <joint name="slide" type="planar"><parent link="table"/><child link="puck"/><origin xyz="0 0 0.0995"/><axis xyz="0 0 1"/></joint></robot>"""
@@ -59,7 +59,7 @@ def built():
 
 
 def test_a_quadruped_stands():
-    """Its feet bear its weight, and the moments of their forces about its centre of mass are 0; it does not drift."""
+    """The feet carry the weight, the moments of their forces about the centre of mass are 0, and the robot does not drift."""
     instance = fmu.Instance("Standing", logging=False)
     try:
         instance.initialize()
@@ -79,8 +79,8 @@ def test_a_quadruped_stands():
 @pytest.mark.parametrize("start", [0, 1, 2, 3, 4, 5, 11])
 def test_limbs_fall_against_their_stops(start, open_fmu):
     """
-    Joints that stops hold have dry friction too, and stiff feet let Radau take over: neither rounding nor errors of the method turn back
-    what begins to slide, over some 200 events.
+    Joints at their stops have dry friction too, and stiff feet make the solver switch to Radau. Over some 200 events neither rounding nor
+    integration errors reverse an impending slip.
     """
     random = np.random.default_rng(start)
     instance = open_fmu("Falling").initialize({"r.base_z": random.uniform(0.5, 0.6), "r.base_qy": random.uniform(-0.3, 0.3)})
@@ -91,7 +91,7 @@ def test_limbs_fall_against_their_stops(start, open_fmu):
         angles, forces = np.array(instance.get(*joints)), np.array(instance.get(*(f"{joint}_bearing.force" for joint in joints)))
         assert np.all(angles > np.array([-0.6, -0.6, -2.5, -2.5]) - 1e-9) and np.all(angles < np.array([0.6, 0.6, -0.5, -0.5]) + 1e-9)
         assert np.all(np.abs(forces) < 0.2 + 1e-9)
-        # What a foot stores in the ground is no part of the energy.
+        # The energy excludes that stored in the ground at a foot.
         energies.append(instance.get("totalEnergy"))
         was_in_air, in_air = in_air, instance.get("r.calf0_ground1.force", "r.calf1_ground1.force") == [0, 0]
         assert energies[-1] < energies[-2] + 1e-9 or not (was_in_air and in_air)
@@ -99,12 +99,12 @@ def test_limbs_fall_against_their_stops(start, open_fmu):
 
 
 def test_where_shapes_are():
-    """A cylinder by its origin and rpy: how deep the points of its rims are in the ground says it."""
+    """A cylinder with origin and rpy: its force gives the depths of points on its rims in the ground."""
     instance = fmu.Instance("Roller", logging=False)
     try:
         place = {"r.base_z": 0.1, "r.base_qw": math.cos(0.2), "r.base_qx": math.sin(0.2)}
         instance.initialize(place)
-        # As the reference of URDF says: about the fixed axes x, y, z.
+        # By the URDF reference, rotations are about the fixed axes x, y, z.
         own, base = Rotation.from_euler("xyz", [math.pi / 2, 0, 0.3]), Rotation.from_euler("x", 0.4)
         rims = [[0.2 * math.cos(k * math.pi / 4), 0.2 * math.sin(k * math.pi / 4), end] for k in range(8) for end in (-0.3, 0.3)]
         heights = 0.1 + base.apply(np.array([0.1, 0, 0.05]) + own.apply(rims))[:, 2]
@@ -116,7 +116,7 @@ def test_where_shapes_are():
 
 
 def test_links_that_stand_are_named(tmp_path):
-    """Only these touch; a name that is none, or of a link without a shape, is told."""
+    """Only the named links have contacts; an unknown name, or a link without a shape, gives a message."""
     (tmp_path / "dog.urdf").write_text(DOG)
 
     def read(names):
@@ -138,7 +138,7 @@ POSE = {f"{foot}_{joint}": angle * (1 if foot[1] == "F" else -1) for foot in FEE
 
 @pytest.fixture(scope="module")
 def anymal():
-    """The path of ANYmal's URDF, of which the FMU stands on its feet."""
+    """Path of ANYmal's URDF; builds an FMU that stands on its feet."""
     pin = pytest.importorskip("pinocchio")
     path = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots" / ANYMAL
     servo = '<coordinate name="{0}" start="{1}"/><input name="{0}_torque" value="kp*({1} - dog.{0}) - kd*dog.{0}_velocity"/>'
@@ -153,8 +153,8 @@ def anymal():
 @pytest.mark.release
 def test_anymal_stands(anymal, open_fmu):
     """
-    At rest the weights of all links, the forces on the feet and the torques of the motors balance along each of its 18 velocities, by
-    Pinocchio; little friction lets the feet slide apart until they push sideways no more.
+    At rest the weights of all links, the forces on the feet and the torques of the motors balance along each of the 18 velocities, by
+    Pinocchio. With little friction the feet slide apart until no horizontal forces remain.
     """
     import pinocchio as pin
 
@@ -170,7 +170,7 @@ def test_anymal_stands(anymal, open_fmu):
     pin.updateFramePlacements(model, data)
     forces = [instance.get(f"dog.{foot}_FOOT_ground1.force") for foot in FEET]
     for foot, force in zip(FEET, forces):
-        # The middle of its sphere, along the axes of the world.
+        # Moment arm of the centre of the foot's sphere, along the world axes.
         frame = model.getFrameId(f"{foot}_FOOT", pin.FrameType.BODY)
         jacobian = pin.getFrameJacobian(model, data, frame, pin.LOCAL_WORLD_ALIGNED)
         lever = data.oMf[frame].rotation @ [0, 0, 0.02325]
@@ -181,7 +181,7 @@ def test_anymal_stands(anymal, open_fmu):
 
 
 def test_a_puck_slides(open_fmu):
-    """Its four corners press with k/2 mm each, where k = m g/mm, though no coordinate moves it along the normal."""
+    """Each of the four corners presses with k times 0.5 mm, where k = m g/mm, though no coordinate moves the puck along the normal."""
     slower = 0.8 * (4 * 2 * 9.81 / 2) / 2
     instance = open_fmu("Sliding").initialize({"r.slide_x_velocity": 10.0})
     for time, speed, force in instance.run(0.5, 0.125, "r.slide_x_velocity", "r.puck_ground1.force"):
@@ -189,7 +189,7 @@ def test_a_puck_slides(open_fmu):
 
 
 def test_a_mesh_that_is_missing(tmp_path):
-    """It is told where it touches nothing, though there is a ground; without one, all that is left out is told in a line."""
+    """With a ground a warning says that the mesh has no contact; without one, a single line lists all ignored elements."""
     mesh = re.sub("<geometry>.*</geometry>", '<geometry><mesh filename="roller.stl"/></geometry>', ROUND.format(INERTIA.format(0.1)))
     (tmp_path / "roller.urdf").write_text(mesh)
     (tmp_path / "system.xml").write_text(ROLLER)
@@ -201,7 +201,7 @@ def test_a_mesh_that_is_missing(tmp_path):
 
 
 def test_a_shape_without_size(tmp_path):
-    """It cannot stand on a ground; without one it is left out."""
+    """It cannot have contacts, which is an error with a ground; without one it is ignored."""
     (tmp_path / "roller.urdf").write_text(re.sub("<geometry>.*</geometry>", '<geometry><sphere radius="0"/></geometry>', ROUND.format(INERTIA.format(0.1))))
     (tmp_path / "system.xml").write_text(ROLLER)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)

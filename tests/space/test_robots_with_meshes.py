@@ -1,4 +1,4 @@
-"""Robots whose links are meshes: where these are found, what touches and what is drawn, and that mistakes in what is only drawn are none."""
+"""Robots whose links are meshes: search paths, contacts, drawings; mistakes in purely visual elements are no errors."""
 
 import re
 from xml.etree import ElementTree
@@ -36,7 +36,7 @@ def built():
 
 
 def test_a_cube_is_a_box():
-    """The same force in every position."""
+    """The force is the same in every position."""
     for i, turn in enumerate(Rotation.random(8, random_state=1)):
         forces = []
         for name in ("RollerOfBox", "RollerOfMesh"):
@@ -51,7 +51,7 @@ def test_a_cube_is_a_box():
 
 
 def scene_of_file(tmp_path, robot, system, ground):
-    """What is drawn, and what lagc says."""
+    """The shapes drawn, and the messages of lagc."""
     (tmp_path / "system.xml").write_text(system.format("Told", robot).replace(*([WITHOUT_GROUND, ""] if not ground else ["", ""])))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
@@ -65,7 +65,7 @@ def scene_of(tmp_path, parts, ground=False):
 
 
 def test_visuals_are_drawn(tmp_path):
-    """In their colours, in place of what touches; a mesh that is named twice is there once."""
+    """Visuals are drawn in their colours in place of collision shapes; a mesh used twice is stored once."""
     (tmp_path / "cube.obj").write_text(CUBE_OBJ)
     parts = COLLISION.format('<sphere radius="0.3"/>')
     parts += SEEN.format(ORIGIN, '<mesh filename="cube.obj"/>', '<material name="sand"/>') + SEEN.format("", '<mesh filename="file://cube.obj"/>', "")
@@ -80,7 +80,7 @@ def test_visuals_are_drawn(tmp_path):
 
 @pytest.mark.parametrize("folder", ["roller_description/meshes", "meshes", "../roller_description/meshes", "../../meshes", "../meshes"])
 def test_packages(tmp_path, folder):
-    """Beside the robot's file and upwards, with the package's name and without."""
+    """Packages are found beside the robot's file and above, with the package's name and without."""
     home = tmp_path / "a" / "b"
     (home / folder).mkdir(parents=True)
     (home / folder / "cube.stl").write_text(CUBE_STL)
@@ -104,7 +104,7 @@ def test_packages(tmp_path, folder):
     ],
 )  # fmt: skip
 def test_visuals_that_are_wrong(tmp_path, mesh, problem):
-    """A robot needs none; what it touches with is drawn then."""
+    """A robot needs no visuals; its collision shapes are drawn instead."""
     for name, text in {"arm.dae": "<COLLADA/>", "short.stl": "", "cube.obj": CUBE_OBJ}.items():
         (tmp_path / name).write_text(text)
     good = SEEN.format("", '<sphere radius="0.2"/>', "")
@@ -116,7 +116,7 @@ def test_visuals_that_are_wrong(tmp_path, mesh, problem):
 
 
 def test_what_cannot_touch(tmp_path):
-    """A flat mesh is drawn, and touches nothing; a round one touches at some of its corners, which is told."""
+    """A flat mesh is drawn without contact; a round one has contact at some of its vertices, with a message."""
     (tmp_path / "cube.obj").write_text(obj_text(CUBE * [1, 1, 0], SQUARES))
     things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'))
     assert len(things) == 2 and told == ""
@@ -143,7 +143,7 @@ def mjcf_scene_of(tmp_path, parts, ground=False):
 
 
 def test_geoms_that_are_meshes(tmp_path):
-    """What cannot touch is drawn in place of what can; colours are those of geoms and materials."""
+    """Geoms without contact are drawn in place of those with contact; colours are those of geoms and materials."""
     seen = '<geom type="mesh" mesh="cube" contype="0" conaffinity="0" material="sand" pos="0.1 0 0"/><geom contype="0" conaffinity="0" size="0.1" rgba="0 0 1 0.5"/>'
     things, told = mjcf_scene_of(tmp_path, f'{seen}<geom type="mesh" mesh="cube"/>', ground=True)
     assert [(thing.tag, thing.get("color")) for thing in things] == [("mesh", None), ("shape", "#ff8000ff"), ("shape", "#0000ff80")] and told == ""
@@ -153,7 +153,7 @@ def test_geoms_that_are_meshes(tmp_path):
 
 
 def test_meshes_of_mjcf_that_are_lost(tmp_path):
-    """They are told, and no errors where the motion does not depend on them."""
+    """Missing meshes give a message, and an error only if the motion depends on them."""
     lost = '<geom type="mesh" mesh="lost"/>'
     assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost)[1]
     assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost, ground=True)[1]

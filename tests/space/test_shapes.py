@@ -1,4 +1,4 @@
-"""Shapes that touch: gaps against a search for the nearest points, forces and motions against closed forms and conserved quantities."""
+"""Shapes in contact: gaps against a search for the nearest points, forces and motions against closed forms and conserved quantities."""
 
 import math
 import random
@@ -18,7 +18,7 @@ HEAD = """<constant name="g" value="9.81" unit="m/s2"/><parameter name="m" start
 
 
 def free(name, x="0", velocity=""):
-    """A frame that moves and turns freely, with a body like a solid ball."""
+    """A freely moving frame with a body like a solid ball."""
     quaternion = " ".join(f'<coordinate name="{name}q{i}" velocity="{name}r{i}" unit="1" start="{int(i == 0)}"/>' for i in range(4))
     return f"""<coordinate name="{name}x" velocity="{name}vx" unit="m" start="{x}"/><coordinate name="{name}y" velocity="{name}vy" unit="m"/>
   <coordinate name="{name}z" velocity="{name}vz" unit="m"/>{quaternion}
@@ -54,7 +54,7 @@ CRATE = f"""<system name="Crate">{HEAD}{SIDES}{free("a").replace('Ixx="0.4*m*r^2
   <shape name="block" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" type="plane"/><gravity z="-g"/>
   <contact name="touch" between="block" and="floor"/><solver method="taylor"/><experiment stopTime="2" stepSize="0.01"/></system>"""
 
-# A crate that moves in a plane alone, sunk by d into a floor that may heave.
+# A crate in planar motion, at depth d in a floor that may move up and down.
 FLAT = """<system name="Flat"><constant name="a" value="0.4" unit="m"/><constant name="h" value="0.2" unit="m"/>
   <parameter name="m" start="2" unit="kg"/><parameter name="I" start="0.3" unit="kg.m2"/><parameter name="k" start="1e4" unit="N/m"/><parameter name="c" start="0.5" unit="s/m"/>
   <parameter name="mu" start="0.3" unit="1"/><parameter name="d" start="1e-3" unit="m"/><parameter name="heave" start="0" unit="m"/><parameter name="rate" start="3" unit="rad/s"/>
@@ -88,7 +88,7 @@ def built():
 
 
 class Running:
-    """An FMU that is freed at the end."""
+    """Context manager that frees the FMU."""
 
     def __init__(self, name, values):
         self.instance = fmu.Instance(name, logging=False)
@@ -106,7 +106,7 @@ def pose(name, place, turn):
     return dict(zip((f"{name}x", f"{name}y", f"{name}z"), place)) | dict(zip((f"{name}q{i}" for i in range(4)), (w, x, y, z)))
 
 
-# The solids without their round edges, in their own axes: the nearest of their points to a place, which for all of them is that of clamped coordinates.
+# The solids without their rounding, in their own axes: the point nearest to a given one, by clamped coordinates.
 def nearest(kind, place):
     x, y, z = place
     if kind == "Sphere":
@@ -124,7 +124,7 @@ RADIUS = {"Sphere": 0.3, "Capsule": 0.2, "Box": 0.0, "Cylinder": 0.0}
 
 
 def distance(kinds, places, turns):
-    """By projections to and fro between the two convex solids, which come to the nearest points."""
+    """Distance by alternating projections onto the two convex solids, which converge to the nearest points."""
     point = np.array(places[0], dtype=float)
     for _ in range(2000):
         other = places[1] + turns[1].apply(nearest(kinds[1], turns[1].inv().apply(point - places[1])))
@@ -134,14 +134,14 @@ def distance(kinds, places, turns):
 
 @pytest.mark.parametrize("kinds", PAIRS, ids="".join)
 def test_depths(kinds):
-    """Without damping the force is the stiffness times the depth."""
+    """Without damping the force is stiffness times depth."""
     chance, deep = random.Random(1), 0
     for _ in range(60):
         turns = [Rotation.from_quat([chance.gauss(0, 1) for _ in range(4)]) for _ in range(2)]
         places = [np.zeros(3), np.array([chance.uniform(-0.8, 0.8) for _ in range(3)])]
         gap = distance(kinds, places, turns)
         if gap < -0.9 * sum(RADIUS[kind] for kind in kinds):
-            continue  # one's middle may be in the other
+            continue  # one centre may be inside the other solid
         with Running("".join(kinds), pose("a", places[0], turns[0]) | pose("b", places[1], turns[1])) as instance:
             assert instance.get("touch.force") == pytest.approx(1e5 * max(0.0, -gap), rel=1e-6, abs=1e-3)
         deep += gap < 0
@@ -163,8 +163,8 @@ def momenta(instance, moment=0.4 * 2 * 0.1**2):
 
 def test_impact_of_spheres():
     """
-    Head on and without damping, equal balls exchange their velocities; oblique, with friction and damping, momentum and angular momentum
-    stay, and energy is lost.
+    Head-on without damping, equal balls exchange their velocities. Oblique, with friction and damping, momentum and angular momentum are
+    conserved and energy decreases.
     """
     still = {"ax": -1.0, "avx": 2.0, "bx": 0.6}
     with Running("SphereSphere", still) as instance:
@@ -180,7 +180,7 @@ def test_impact_of_spheres():
 
 
 def test_nothing_sticks():
-    """What is pulled apart faster than 1/damping is not held back."""
+    """Contacts that open faster than 1/damping have no tensile force."""
     deep = {"ax": 0.5, "bx": 1.0, "c": 0.5}
     for speed, factor in ((1.0, 0.5), (3.0, 0.0)):
         with Running("SphereSphere", deep | {"avx": -speed}) as instance:
@@ -190,7 +190,7 @@ def test_nothing_sticks():
 
 @pytest.mark.parametrize("mu", [0.4, 0.05])
 def test_ball_on_a_slope(mu):
-    """It rolls at 5/7 g sin a where mu >= 2/7 tan a, but for the creep that the friction needs; else it slides as friction lets it."""
+    """It rolls at 5/7 g sin a if mu >= 2/7 tan a, up to the creep of the friction; otherwise it slides."""
     g, slope, m, r = 9.81, 0.3, 2.0, 0.1
     weight = m * g * math.cos(slope)
     with Running("Slope", {"mu": mu, "z": r - weight / 1e5, "c": 0.5}) as instance:
@@ -201,7 +201,7 @@ def test_ball_on_a_slope(mu):
             needed = 2 / 7 * m * g * math.sin(slope)
             assert instance.get("der(vx)") == pytest.approx(5 / 7 * g * math.sin(slope), rel=1e-4)
             assert creeping == pytest.approx(1e-3 * needed / math.sqrt((mu * weight) ** 2 - needed**2), rel=1e-2)
-            # Where it creeps, its friction is stiff: auto goes on by Radau IIA.
+            # Creep makes the friction stiff, so that auto continues by Radau IIA.
             assert instance.fmu.getInteger(instance.vr("jacobianEvaluations"))[0] > 0
         else:
             assert instance.get("der(vx)") == pytest.approx(g * (math.sin(slope) - mu * math.cos(slope)), rel=1e-6)
@@ -209,14 +209,14 @@ def test_ball_on_a_slope(mu):
 
 
 def test_a_size_that_is_tuned():
-    """What a radius is taken from cannot be set below 0, with which the ball would be turned inside out."""
+    """A radius in use cannot be set below 0, which would turn the ball inside out."""
     with Running("Slope", {}) as instance:
         with instance.fails(DISCARD, "-0.1 for 'r' is below its minimum, 0"):
             instance.set({"r": -0.1})
 
 
 def test_shapes_of_a_loop_and_of_included_files():
-    """Each by its own name."""
+    """Each shape has its own name."""
     with Running("Twice", {f"a.z[{i}]": 0.05 for i in (1, 2, 3)} | {f"b.z[{i}]": 0.3 for i in (1, 2, 3)}) as instance:
         assert [instance.get(f"a.c[{i}].force") for i in (1, 2, 3)] == pytest.approx([500, 1500, 2500])
         assert [instance.get(f"b.c[{i}].force") for i in (1, 2, 3)] == pytest.approx([0, 0, 0], abs=1e-9)
@@ -224,16 +224,16 @@ def test_shapes_of_a_loop_and_of_included_files():
 
 
 def test_where_shapes_of_bodies_are():
-    """At the centre of mass, shifted along the axes of the frame."""
+    """A body's shape is at its centre of mass, shifted along the axes of the frame."""
     values = {"turn": 0.7, "z": 0.1}
     with Running("Lever", values) as instance:
-        # The body is 0.3 along the frame's y, its shape 0.05 beyond, the particle's 0.2 before it.
+        # Along the frame's y the body is at 0.3, its shape 0.05 beyond it, and the particle's at 0.2 minus it.
         heights = [0.1 + length * math.sin(0.7) for length in (0.35, 0.25)]
         assert [instance.get(f"{name}.force") for name in ("one", "two")] == pytest.approx([1e4 * (0.4 - height) for height in heights])
 
 
 def test_a_block_that_stands():
-    """Dropped flat, with damping, it rests on four corners which bear its weight, and does not turn."""
+    """Dropped flat, with damping, it rests on four corners that carry its weight, and does not rotate."""
     with Running("Stand", {"az": 0.11, "c": 5.0, "mu": 0.5}) as instance:
         instance.run(3.0, 0.01)
         assert instance.get("touch.force") == pytest.approx(2 * 9.81, rel=1e-6)
@@ -243,8 +243,8 @@ def test_a_block_that_stands():
 
 def test_hard_contacts():
     """
-    A block that falls on a corner and tumbles on a smooth floor: its energy never grows, nothing of it is below the floor, and the eight
-    forces bear the weight at rest. Flat, it bounces like a ball.
+    A block falls on a corner and tumbles on a smooth floor: its energy never grows, no part is below the floor, and at rest the eight
+    forces carry the weight. A flat block bounces like a ball.
     """
     turn = Rotation.from_euler("xyz", [0.4, 0.3, 0.1])
     corners = np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.3, 0.3) for z in (-0.1, 0.1)])
@@ -266,7 +266,7 @@ def test_hard_contacts():
 
 
 def test_a_block_that_falls_flat():
-    """From any height it rests on four corners at once: the roundings by which it turns cost no steps."""
+    """From any height it rests on four corners at once: rotations by rounding cost no steps."""
     for sides in np.random.default_rng(5).uniform(0.1, 1.0, (25, 3)).round(2):
         with Running("Crate", dict(zip("ABC", sides)) | {"az": 2 * sides[0] + 1.0}) as instance:
             instance.run(1.5, 0.1)
@@ -275,7 +275,7 @@ def test_a_block_that_falls_flat():
 
 
 def test_friction_where_nothing_moves_along_the_normal(open_fmu):
-    """Four corners press with k d each: the crate slows by mu N/m, or turns ever slower by mu N R/I."""
+    """Four corners press with k d each: the crate decelerates by mu N/m, or its rotation by mu N R/I."""
     pressing = 4 * 1e4 * 1e-3
     rows = open_fmu("Flat").initialize({"vx": 6.0, "vy": -8.0}).run(1, 0.25, "touch.force", "vx", "vy", "w", "x")
     for time, force, vx, vy, w, x in rows:
@@ -288,7 +288,7 @@ def test_friction_where_nothing_moves_along_the_normal(open_fmu):
 
 
 def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
-    """k d (1 + c d') where the floor has risen into the crate, and 0 where it has left it."""
+    """The force is k d (1 + c d') while the floor penetrates the crate, and 0 otherwise."""
     for time, force in open_fmu("Flat").initialize({"heave": 0.01, "d": 0.0, "mu": 0.0}).run(2, 0.125, "touch.force"):
         depth, rate = 0.01 * math.sin(3 * time), 0.03 * math.cos(3 * time)
         assert force == pytest.approx(max(0, 4e4 * depth * (1 + 0.5 * rate)), abs=1e-9)

@@ -1,6 +1,6 @@
 """
-Bodies on two points of a line, whose frictions along the line are not determined singly: they stick as long as any that Coulomb's
-cones allow carry the load, whatever the part of each.
+Bodies on two points of a line, whose frictions along the line are indeterminate one by one: they stick if any forces in the Coulomb cones
+carry the load, however it is shared.
 """
 
 import itertools
@@ -47,19 +47,19 @@ def whole(instance, *names):
 
 
 def forces(instance, contact):
-    """The pressing force, and the friction along x and y."""
+    """Normal force, and friction along x and y."""
     name = f"c[{contact}]"
     return np.array(instance.get(f"{name}.force", f"{name}.friction.force", f"{name}.friction.across.force"))
 
 
-AXIS = 0.9  # from the line of fall to the axis of the capsule
+AXIS = 0.9  # from the line of steepest descent to the axis of the capsule
 ALONG, ROLLING = M * G * np.sin(SLOPE) * np.cos(AXIS), M * G * np.sin(SLOPE) * np.sin(AXIS) / 3
-LEAN = 2 * ALONG * RADIUS / LENGTH  # what the lower point presses more than the upper one
+LEAN = 2 * ALONG * RADIUS / LENGTH  # excess of the lower point's normal force over the upper one's
 PRESSING = np.array([1, -1]) * LEAN / 2 + M * G * np.cos(SLOPE) / 2
 
 
 def left_along(mu):
-    """What the two cones leave along the axis, beside the friction that lets it roll, less what is needed."""
+    """Capacity of the two cones along the axis, beside the friction needed for rolling, minus the friction needed along the axis."""
     return np.sqrt(np.maximum((mu * PRESSING) ** 2 - ROLLING**2 / 4, 0)).sum() - ALONG
 
 
@@ -72,13 +72,13 @@ def lying_capsule(mu):
 
 
 def test_halves_would_not_do():
-    """At the least friction that does, half of the load on the upper point is more than its limit."""
+    """At the least sufficient friction, half of the load at the upper point exceeds its limit."""
     assert np.hypot(ALONG / 2, ROLLING / 2) > 1.02 * LEAST * PRESSING[1]
 
 
 @pytest.mark.parametrize("share", [1 + 1e-9, 1.001, 1.01, 1.5])
 def test_capsule_rolls(share):
-    """Down a slope, obliquely, without slipping along its axis: a hollow cylinder's acceleration but for the moment of inertia."""
+    """Oblique rolling down a slope without slip along the axis, with the acceleration 2/3 g sin(slope) sin(axis) of a solid cylinder."""
     mu = share * LEAST
     instance = lying_capsule(mu)
     instance.step(0.5)
@@ -94,7 +94,7 @@ def test_capsule_rolls(share):
 
 
 def test_capsule_slips():
-    """A thousandth below the least friction it begins to slip along its axis, by both points at once."""
+    """A thousandth below the least friction it starts to slip along its axis at both points."""
     instance = lying_capsule(0.999 * LEAST)
     instance.step(0.5)
     assert np.array(instance.get("x", "y")) @ np.array([np.cos(AXIS), np.sin(AXIS)]) > 1e-6
@@ -103,7 +103,10 @@ def test_capsule_slips():
 
 
 def accelerations(mu, inertia, points, y, creep):
-    """Of the place and the rotation of a body whose points stay on the floor, with the friction mu N v/sqrt(v^2 + creep^2); y: place, turn, velocities."""
+    """
+    Accelerations of a body whose points stay on the floor, with the friction mu N v/sqrt(v^2 + creep^2); y: position, quaternion,
+    velocities.
+    """
     turn, velocity, spin = Rotation.from_quat(y[3:7]).as_matrix(), y[7:10], y[10:13]
     moments = turn @ np.diag(inertia) @ turn.T
     mass = np.block([[M * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), moments]])
@@ -118,7 +121,7 @@ def accelerations(mu, inertia, points, y, creep):
 
 
 def creeping_box(mu, turn, height, end, creep):
-    """Where a box comes to on its lower edge, with friction that creeps in place of sticking: place and velocity."""
+    """Final position and velocity of a box on its lower edge, with friction that creeps instead of sticking."""
     inertia, points = np.array([0.02, 0.03, 0.04]), HALF * np.array([[-1, -1, -1], [1, -1, -1]])
 
     def slopes(time, y):
@@ -132,7 +135,7 @@ def creeping_box(mu, turn, height, end, creep):
 
 @pytest.mark.parametrize("mu, slides, error", [(0.3, True, 4e-5), (0.4, False, 2e-6)])
 def test_box_tips(mu, slides, error):
-    """On its edge, which lies obliquely on the slope: with little friction it begins to slip on the way. Creep errs by `error`."""
+    """Tipping on an edge oblique to the slope; with little friction it starts to slip on the way. Creep errs by `error`."""
     turn, end = Rotation.from_euler("xz", [60, 20], degrees=True), 0.12
     height = np.abs(turn.as_matrix()[2]) @ HALF
     instance = at_rest("TippingBox", turn, height, mu)
@@ -150,7 +153,7 @@ def feet(count):
 
 
 def table_on(count, friction):
-    """A table on a ring of feet, which is pushed and tilted, with its centre of mass in the ground."""
+    """A table on a ring of feet, pushed and tilted, with its centre of mass at ground level."""
     parameters = "".join(f'<parameter name="{name}" start="0"/>' for name in ("Fx", "Fy", "Fz", "Tz", "Tx", "Ty"))
     coordinates = "".join(f'<coordinate name="{name}" velocity="v{name}"/>' for name in ("x", "y", "z", "yaw", "pitch", "roll"))
     turns = "".join(f'<rotate axis="{axis}" angle="{angle}"/>' for axis, angle in {"z": "yaw", "y": "pitch", "x": "roll"}.items())
@@ -164,7 +167,7 @@ def table_on(count, friction):
 
 
 def pressing_forces(count, weight, tilting):
-    """Of least norm, by the moments about x and y."""
+    """Normal forces of least norm, by the moments about x and y."""
     places = feet(count)
     return np.linalg.lstsq(np.array([np.ones(count), places[:, 1], -places[:, 0]]), [weight, -tilting[0], -tilting[1]], rcond=None)[0]
 
@@ -175,7 +178,7 @@ def tables():
 
 
 def test_pressing_forces_are_of_least_norm(tables):
-    """Also where a foot would lift off, but for the others."""
+    """Normal forces have least norm, also where a foot alone would lift off."""
     for tilting in itertools.product(np.arange(0, 6, 0.5), repeat=2):
         expected = pressing_forces(12, M * G, tilting)
         if min(expected) < 0.01:
@@ -186,7 +189,10 @@ def test_pressing_forces_are_of_least_norm(tables):
 
 
 def test_pushed_feet_keep_their_load(tables):
-    """Frictions share what grows; at 1 s forces of friction in their cones still carry it, as another program has found. What presses does not change."""
+    """
+    Frictions share the growing load. At 1 s friction forces in the cones still carry it, as a separate program has found. Normal forces
+    stay constant.
+    """
     values = {"Fx": 3.169332221483987, "Fy": 5.365724363902007, "Tz": 3.764532498141972, "Fz": 2.8736791329964166, "mu": 0.4878756629363105}
     tilting = {"Tx": -1.8820708939303965, "Ty": 0.39850565083107337}
     expected = pressing_forces(8, M * G - values["Fz"], [*tilting.values()])

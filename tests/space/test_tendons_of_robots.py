@@ -1,4 +1,7 @@
-"""Tendons of MJCF from site to site, what links two of them, and their friction: against closed forms; MuJoCo's own are in test_robots_in_mujoco.py."""
+"""
+Tendons of MJCF between sites, couplings of two of them, and their friction, against closed forms; test_robots_in_mujoco.py compares others
+with MuJoCo.
+"""
 
 import math
 
@@ -8,7 +11,7 @@ from fmpy.fmi2 import FMU2Model
 from fmu import build_systems
 
 G, L0, H = 9.81, 0.4, 0.3
-# A slide on a rail, held by a spring to a post beside the rail; two weights on one rope over a pulley; a tendon of two slides that rubs.
+# A slider on a rail with a spring to a post beside the rail; two weights on one rope over a pulley; a tendon of two sliders with friction.
 FILE = f"""<mujoco model="m"><option gravity="0 0 {-G}"/><worldbody>
   <site name="post" pos="0 {H} 0"/><site name="pulley" pos="2 0 1"/>
   <body name="slider"><joint name="s" type="slide" axis="1 0 0" ref="0.4"/><geom size="0.1" mass="2"/><site name="eye"/></body>
@@ -44,14 +47,14 @@ def test_a_spring_from_site_to_site(open_fmu):
 
 
 def test_weights_on_a_rope(open_fmu):
-    """Atwood's machine."""
+    """The acceleration and force are those of Atwood's machine."""
     instance = open_fmu("Creeps").initialize({"m.u": 0.2, "m.v": -0.2})
     assert instance.get("der(m.u_velocity)", "der(m.v_velocity)") == pytest.approx([-G / 2, G / 2], rel=1e-12)
     assert instance.get("m.long.force") == pytest.approx(2 * 3 * 1 * G / 4, rel=1e-12)
 
 
 def test_friction(open_fmu):
-    """Of two equal masses, which the tendon shares by 1 and 2: sliding, creeping, and sticking up to the force."""
+    """Two equal masses, coupled by a tendon as 1 to 2: sliding, creeping, and sticking up to the limit."""
     instance = open_fmu("Creeps").initialize({"m.p_velocity": 1e-4})
     drag = 4 * math.tanh(0.1)
     assert instance.get("der(m.p_velocity)", "der(m.q_velocity)") == pytest.approx([-drag, -2 * drag], rel=1e-12)

@@ -1,4 +1,4 @@
-"""Deep trees of joints, whose accelerations articulated inertias give: against energies by mpmath, a closed form, and the balance of energy."""
+"""Deep kinematic trees with the articulated-body algorithm: against energies by mpmath, a closed form, and the energy balance."""
 
 import re
 
@@ -16,7 +16,7 @@ LINKS = 10  # of the pendulum
 
 
 def joint(number, parent, kind, random):
-    """A joint and the link that it carries."""
+    """A joint and its child link."""
     numbers = lambda low, high, count=3: " ".join(f"{x:.6f}" for x in random.uniform(low, high, count))
     a, b, c = random.uniform(0.02, 0.05, 3)
     return f"""
@@ -35,7 +35,7 @@ def robot_of_many_joints():
 
 
 def pendulum():
-    """Particles on a chain of frames that turn against each other."""
+    """Particles on a chain of frames that rotate relative to each other."""
     lines = ['<parameter name="l" start="0.7" unit="m"/>', '<parameter name="m" start="0.4" unit="kg" min="0"/>']
     for i in range(1, LINKS + 1):
         inside, shift = ("", "") if i == 1 else (f' in="rod{i - 1}"', '<translate y="-l"/>')
@@ -45,7 +45,7 @@ def pendulum():
 
 
 ROBOT, NUMBERS = robot_of_many_joints()
-# A hinge in the middle of the chain is driven.
+# A hinge in the middle of the chain has a prescribed acceleration.
 DRIVEN = pendulum().replace('name="q5" velocity="w5" unit="rad"', 'name="q5" velocity="w5" unit="rad" acceleration="push"')
 DRIVEN = DRIVEN.replace("FoldingPendulum", "DrivenPendulum").replace("<coordinate", '<constant name="push" value="2" unit="rad/s2"/><coordinate', 1)
 
@@ -62,7 +62,7 @@ def test_mass_matrix_is_not_formed(name):
 
 
 def test_long_function_is_written_in_parts():
-    """Its values are those of the robot below; here it is made sure that there are several."""
+    """The function derivatives is split into several C functions; the tests of the robot below check its values."""
     assert "derivatives_2(" in (fmu.archive("DeepRobot").parent.parent / "systems" / "DeepRobot" / "system.c").read_text()
 
 
@@ -78,8 +78,11 @@ def test_robot(open_fmu):
 
 
 def test_cost_grows_as_the_chain(tmp_path):
-    """Of what is written of a chain of joints, its frames and bodies included; and an evaluation takes about what the articulated-body algorithm does
-    for a joint, 224 multiplications and 205 additions where offsets have a component of 0 (Featherstone 2008, table 10.1), which these have not."""
+    """
+    The C source grows linearly with the length of a chain of joints, frames and bodies. An evaluation takes about as many operations per
+    joint as the articulated-body algorithm: 224 multiplications and 205 additions if one component of each offset is 0 (Featherstone 2008,
+    table 10.1), which is not the case here.
+    """
     sizes, operations = [], []
     for count in (100, 200):
         assert fmu.lagc(chain(count), "-o", tmp_path).returncode == 0
@@ -91,9 +94,9 @@ def test_cost_grows_as_the_chain(tmp_path):
 
 
 def absolute_accelerations(angles, rates, held=None):
-    """Of the angles from the vertical; held: the joint that is driven, and its acceleration."""
+    """Accelerations of the angles from the vertical; held: the driven joint, and its acceleration."""
     n = LINKS
-    share = n - np.maximum.outer(np.arange(n), np.arange(n))  # how many bobs two rods carry both
+    share = n - np.maximum.outer(np.arange(n), np.arange(n))  # number of bobs that both rods carry
     apart = np.subtract.outer(angles, angles)
     mass, right = share * np.cos(apart), -(share * np.sin(apart)) @ rates**2 - 9.81 / 0.7 * np.diag(share) * np.sin(angles)
     if held is None:
@@ -117,7 +120,10 @@ def test_pendulum(name, open_fmu):
 
 @pytest.mark.parametrize("solver", ["taylor", "radau"])
 def test_arm(solver, open_fmu):
-    """The energy of a gantry that moves along three axes at once, motors, a slider in its frame, and damping; radau has the Jacobian from directions."""
+    """
+    Energy balance of a gantry that moves along three axes, with motors, a slider in its frame, and damping; radau computes the Jacobian by
+    directional derivatives.
+    """
     name = f"BranchedArm_{solver}"
     text = (fmu.ROOT / "tests" / "support" / "branched_arm.xml").read_text()
     build_systems(f"trees-{solver}", {name: text.replace("BranchedArm", name).replace("<work/>", f'<work/><solver method="{solver}"/>')})
@@ -130,7 +136,7 @@ def test_arm(solver, open_fmu):
 
 
 def check_direction(instance):
-    """What the accelerations change by along a random direction, against difference quotients of the fourth order."""
+    """Compare the directional derivative of the accelerations with difference quotients of fourth order."""
     random, states = np.random.default_rng(3), [name for name in fmu.states_of(instance.description.modelName) if name != "nonConservativeWork"]
     place, direction = random.uniform(-1, 1, (2, len(states)))
     accelerations = [f"der({name})" for name in states if name[0] in "vw"]
@@ -156,7 +162,7 @@ def wrist(axes):
 
 
 def test_pole_about_oblique_axes(open_fmu):
-    """The first and the third axis of the hand are parallel at 0: what is left there of the inertia is rounding."""
+    """The first and the third axis of the hand are parallel at 0, where the inertia is 0 up to rounding."""
     build_systems("trees-pole", {"Wrist": wrist(["1 2 -0.5", "-2 1 0.3", "1 2 -0.5"])})
     instance = open_fmu("Wrist")
     with instance.fails(fmu.ERROR, "singular .* in coordinate 'q7'"):
@@ -171,7 +177,7 @@ def test_two_hinges_about_one_axis(tmp_path):
 
 
 def test_constraints_that_follow_from_each_other(open_fmu):
-    """Both hold the same two coordinates of the gantry, which moves as with one of them."""
+    """Two dependent constraints on two coordinates of the gantry give the motion of one of them."""
     constraints = ['<constraint name="k">q1 - q2/2</constraint>', '<constraint name="l">2*q1 - q2</constraint>']
     text = wrist(["x", "y", "z"]).replace("<gravity", "{}<gravity")
     texts = {name: text.replace("Wrist", name).format("".join(parts)) for name, parts in {"HeldOnce": constraints[:1], "HeldTwice": constraints}.items()}

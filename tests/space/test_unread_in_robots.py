@@ -1,4 +1,4 @@
-"""What files of robots say beyond geometry and inertia: each attribute that changes the motion is read, or warned of with a remedy."""
+"""Attributes of robot files beyond geometry and inertia: each one that changes the motion is read, or gives a warning with a remedy."""
 
 import math
 import re
@@ -34,7 +34,7 @@ def built():
 
 @pytest.mark.parametrize("torque", [0.0, 3.0])
 def test_a_spring_and_an_effort_that_is_not_known(torque, open_fmu):
-    """The spring of <dynamics> turns the rotor about its reference; a limit of 0 limits nothing."""
+    """The spring of <dynamics> acts about its reference; an effort limit of 0 means no limit."""
     instance = open_fmu("Sprung").initialize({"r.hinge_torque": torque}, tolerance=1e-10)
     instance.run(1.0, 0.1)
     middle = 0.3 + torque / 2
@@ -42,7 +42,7 @@ def test_a_spring_and_an_effort_that_is_not_known(torque, open_fmu):
 
 
 def test_groups_of_actuators_and_geoms(open_fmu):
-    """Actuators of disabled groups do nothing; geoms of other groups weigh nothing. The box has m (a^2 + c^2)/3 = 0.1 kg.m2."""
+    """Actuators of disabled groups have no effect; geoms of other groups have no mass. The box has m (a^2 + c^2)/3 = 0.1 kg.m2."""
     controls = {f"r.{name}_control": value for name, value in (("one", 0.1), ("two", 5.0), ("three", 4.0), ("four", 3.0))}
     instance = open_fmu("Wheel").initialize(controls, tolerance=1e-10)
     instance.run(1.0, 0.1)
@@ -89,7 +89,7 @@ def test_elements_of_simulators_that_do_nothing(text, tmp_path):
     assert warnings_of("rotor.urdf", ROTOR.replace("</robot>", f"<gazebo>{text}</gazebo></robot>"), QUIET, tmp_path) == []
 
 
-# An attribute of an element, what the <include> says, the remedy.
+# An attribute of an element, attributes of the <include>, and the remedy.
 MJCF_CASES = [
     ("geom", 'margin="0.1"', 'ground="true"', "shapes that are larger"),
     ("geom", 'solref="0.01 1"', 'ground="true"', "ground_stiffness and ground_damping of the robot"),
@@ -105,7 +105,9 @@ MJCF_CASES = [
 
 @pytest.mark.parametrize("element, attribute, asked, remedy", MJCF_CASES, ids=[f"{case[0]}-{case[1].split('=')[0]}" for case in MJCF_CASES])
 def test_warnings_of_mjcf(element, attribute, asked, remedy, tmp_path):
-    """Once, in the element or its <default>; not where the <include> asks for nothing that it would change, or it is 0."""
+    """
+    The warning appears once, for the element or its <default>; it does not if the attribute has no effect for this <include>, or is 0.
+    """
     name = attribute.split("=")[0]
     message = f"{name} of <{element}> {UNREAD} {remedy}"
     for pattern in (rf"<{element} (?!group=\"7)", "<default>"):

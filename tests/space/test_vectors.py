@@ -1,4 +1,6 @@
-"""Vectors in expressions: products with numbers, sums, and angular velocities along the base's axes, against closed forms for Euler angles."""
+"""
+Vectors in expressions: products with numbers, sums, and angular velocities along the base axes, against closed forms for Euler angles.
+"""
 
 import numpy as np
 import pytest
