@@ -1,4 +1,4 @@
-"""The page that plays what scripts/run simulated, in headless Chromium: things are where closed forms say."""
+"""The page that animates the simulation of scripts/run, in headless Chromium: positions agree with closed forms."""
 
 import math
 import re
@@ -30,7 +30,7 @@ ARM = """<system name="SceneArm">
   <experiment stopTime="3" stepSize="0.01"/>
 </system>"""
 
-# Where a thing is in the picture's space: its matrix, by columns.
+# JavaScript: the pose of an object in the scene, a matrix by columns.
 MATRIX = "name => live.scene.objects[live.scene.byName.get(name)].matrix.elements"
 
 
@@ -46,7 +46,7 @@ def arm():
 
 
 def at(page, sample):
-    """Moves the bar to a sample, and waits for its picture; its time."""
+    """Move the slider to a sample, wait for its picture, and return its time."""
     page.evaluate("place => { const bar = document.getElementById('past'); bar.value = place; bar.dispatchEvent(new Event('input')); }", sample)
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page.evaluate("place => live.history.time(place)", sample)
@@ -57,7 +57,7 @@ def place_of(page, name):
 
 
 def axes_of(page, name):
-    return np.array(page.evaluate(MATRIX, name)).reshape(4, 4)[:3, :3]  # a row for each axis
+    return np.array(page.evaluate(MATRIX, name)).reshape(4, 4)[:3, :3]  # one row per axis
 
 
 def paused(page):
@@ -66,7 +66,10 @@ def paused(page):
 
 
 def test_a_pendulum(browser, tmp_path):
-    """By scripts/simulate.py: the bob and its rod at any time of the bar, whatever was recorded. It plays from the start, and fetches nothing."""
+    """
+    scripts/simulate.py writes a page that shows the bob and its rod at any time, whatever was recorded. It plays from the start, and loads
+    nothing from elsewhere.
+    """
     words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("SimplePendulum"), "theta=2", "l=0.5"]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout
     assert re.search(r"^animation +/.*/build/results/SimplePendulum-motion\.html$", printed, re.M)
@@ -95,7 +98,10 @@ def test_a_pendulum(browser, tmp_path):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_frames(browser, arm, tmp_path, version):
-    """An arm that turns about the upward y axis, a block that slides along it, a load above, where z of the slide points down; from either FMI."""
+    """
+    An arm that rotates about the upward y axis, a block that slides along it, and a load above it, in a frame whose z points down; for both
+    versions of FMI.
+    """
     path = fmu.BUILD / "animation" / ("fmu" if version == 2 else "fmi3") / "SceneArm.fmu"
     written = write_results(simulate(path, {"l": 0.7}), tmp_path)
     with opened(browser, written["animation"]) as page:
@@ -116,7 +122,9 @@ def test_frames(browser, arm, tmp_path, version):
 
 
 def test_formulas(browser, arm, tmp_path):
-    """Masses and moments in the scene are formulas of parameters: all functions of the language are known, and of other names nothing is made up."""
+    """
+    Masses and moments in the scene are formulas of parameters. The page evaluates all functions of the language, and no unknown names.
+    """
     functions = [line.split()[1] for line in fmu.lagc("--words").stdout.splitlines() if line.startswith("function")]
     file = tmp_path / "page.html"
     motion = simulate(fmu.archive("SceneArm"), {}, stop_time=0.1)
@@ -124,7 +132,7 @@ def test_formulas(browser, arm, tmp_path):
     with opened(browser, file) as page:
         value = lambda formula: page.evaluate("formula => live.valueOf(formula)", formula)  # noqa: E731
         known = {name: value(f"{name}({'1, 2' if name in ('pow', 'atan2', 'min', 'max') else '1'})") for name in functions}
-        forms = {"der", "sum", "if", "and", "or", "not", "diff", "integral"}  # and what scenes have as others
+        forms = {"der", "sum", "if", "and", "or", "not", "diff", "integral"}  # and have other forms in scenes
         assert {name for name, number in known.items() if number is None or math.isnan(number)} == forms | {"round", "mod", "gauss", "uniform"}
         assert known["atanh"] == math.inf and known["atan2"] == pytest.approx(math.atan2(1, 2))
         assert value("m*l^2/12 + 1e-3") == pytest.approx(2 * 0.25 / 12 + 1e-3) and value("-a^2") == pytest.approx(-0.09)
@@ -133,7 +141,7 @@ def test_formulas(browser, arm, tmp_path):
 
 
 def test_size(tmp_path):
-    """Long simulations of many variables are thinned out; short and long ones take as long to be seen."""
+    """Long simulations of many variables are thinned out; animations of any simulation take the same time."""
     times = np.linspace(0, 300, 60_001)
     motion = simulate(fmu.archive("DoublePendulum"), {}, stop_time=0.1)
     values = np.zeros(len(times), dtype=motion.values.dtype)

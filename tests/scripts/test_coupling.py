@@ -1,4 +1,4 @@
-"""Our FMUs coupled with one another and with those of others, by masters of ours and of others."""
+"""FMUs of this project coupled with each other and with those of other tools, by masters of this project and of others."""
 
 import subprocess
 import zipfile
@@ -17,13 +17,13 @@ pytestmark = pytest.mark.release
 
 
 def test_gains_of_the_archive_are_those_of_lqr():
-    """The SSP holds numbers; they are right for the cart as it is, to the digits that are written there."""
+    """The gains stored in the SSP are those of the LQR for the cart, to their printed digits."""
     for name, gain in balance.lqr_gains().items():
         assert balance.gains_of_ssp()[name] == pytest.approx(gain, rel=1e-11)
 
 
 def test_lqr_is_optimal():
-    """The cost of the linear closed loop, a Lyapunov equation's solution, grows whichever gain is changed."""
+    """The cost of the linear closed loop, the solution of a Lyapunov equation, increases when any gain changes."""
     from scipy.linalg import solve_continuous_lyapunov
 
     A, B = balance.linearization()
@@ -42,7 +42,7 @@ def test_lqr_is_optimal():
 
 
 def late_force(forces_at_first, start, gains, step, count):
-    """A master that gives the cart the force of one step earlier, as parallel masters do."""
+    """Simulate with a master that applies the force of the previous step, as parallel masters do."""
     cart, feedback = Slave(FMUS / "InvertedPendulumCart.fmu", **start), Slave(FMUS / "StateFeedback.fmu", **gains)
     rows, pending, late = [], list(forces_at_first), 0.0
     for k in range(1, count + 1):
@@ -57,7 +57,7 @@ def late_force(forces_at_first, start, gains, step, count):
 @pytest.mark.parametrize("start", balance.STARTS.values(), ids=balance.STARTS)
 @pytest.mark.parametrize("by, initial", [(balance.by_fmpy_ssp, "zero"), (balance.by_libcosim, "first")])
 def test_players_of_the_archive(by, initial, start):
-    """FMPy's player has no force in the first two steps, libcosim that of the start."""
+    """FMPy's player applies no force in the first two steps, libcosim that of the start in the first."""
     gains, step = balance.gains_of_ssp(), 0.005
     demand = -(gains["ktheta"] * start["theta"] + gains["komega"] * start["omega"])
     rows = by(start, gains, step)
@@ -72,14 +72,14 @@ def test_archive_is_valid_and_complete():
 
 
 def units(elements):
-    """The exponents of units, by name."""
+    """Exponents of base units, by name of the unit."""
     return {unit.get("name"): dict(unit[0].attrib) for unit in elements}
 
 
 def test_units_of_the_archive_are_defined():
     """
-    SSP 1.0: a unit must be defined in the Units of the file that contains it, which for parameter values is their set. Each unit
-    is that of the FMUs.
+    SSP 1.0 requires units to be defined in the Units of the file that uses them, for parameter values in their set. Each unit agrees with
+    that of the FMUs.
     """
     space = "{http://ssp-standard.org/SSP1/SystemStructure%s}"
     ssc, ssd, ssv = (space % name for name in ("Common", "Description", "ParameterValues"))
@@ -97,8 +97,8 @@ def test_units_of_the_archive_are_defined():
 
 def test_the_archive_names_a_master_for_omsimulator():
     """
-    Its command line takes the master from its own annotation of the system, in SSP 1.0 by the literal prefixes. It gives
-    the tolerance to the FMUs.
+    OMSimulator's command line takes the master from its own annotation of the system, in SSP 1.0 by literal prefixes; it passes the
+    tolerance to the FMUs.
     """
     spaces = {"ssd": "http://ssp-standard.org/SSP1/SystemStructureDescription",
               "ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
@@ -115,7 +115,7 @@ def test_the_archive_names_a_master_for_omsimulator():
 
 
 def test_push():
-    """The force that the script adds moves the cart, and the feedback brings it back."""
+    """The force that the script adds moves the cart, and the feedback returns it."""
     gains = balance.lqr_gains()
     push = lambda t: 5.0 * (1.0 <= t < 1.2)
     calm, pushed = (balance.by_fmpy_script(dict(theta=0.0), gains, 0.01, push=p) for p in (None, push))
@@ -126,7 +126,7 @@ def test_push():
 @pytest.mark.parametrize("degree", oscillator.DEGREES)
 @pytest.mark.parametrize("scheme", oscillator.SCHEMES)
 def test_orders(scheme, degree):
-    """Degree of the force's polynomial plus one."""
+    """The order is the degree of the force's polynomial plus one."""
     master = Master(oscillator.M1, oscillator.M2, oscillator.K, oscillator.C, oscillator.OWN)
     errors = []
     for steps in (160, 320):
@@ -146,8 +146,8 @@ def limit(scheme, degree, damping=0.2, ratio=1.0):
 @pytest.mark.parametrize("ratio", [1.0, 100.0])
 def test_limits_of_stability(ratio):
     """
-    A force held over the step lags by half of it, which is a damping of -k H / 2: H omega = 4 zeta. With Newton's
-    method and a linear force H omega = sqrt(12), where k H^2 / 6 mu = 2 without damping.
+    A force held over the step lags by half a step, which acts as a damping of -k H / 2: the limit is H omega = 4 zeta. With Newton's method
+    and a linear force it is H omega = sqrt(12), where k H^2 / 6 mu = 2 without damping.
     """
     assert limit("jacobi", 0, ratio=ratio) == pytest.approx(0.8, rel=0.02)
     assert limit("newton", 1, ratio=ratio) == pytest.approx(np.sqrt(12), rel=0.02)
@@ -171,14 +171,14 @@ def hinged_pendulum():
     ("newton", 2, np.inf),
 ])  # fmt: skip
 def test_limits_of_the_hinge(hinged_pendulum, scheme, degree, ratio):
-    """z^(p+1) = -m/M ((p+1) z^p - ...): for Gauss-Seidel z = -1 at m/M = 1 / (2^(p+1) - 1). No step is short enough beyond it."""
+    """z^(p+1) = -m/M ((p+1) z^p - ...): for Gauss-Seidel z = -1 at m/M = 1 / (2^(p+1) - 1). Beyond this ratio no step is short enough."""
     assert hinge.theory(scheme, degree) == pytest.approx(ratio, rel=0.01)
     assert hinge.limit(scheme, degree) == pytest.approx(ratio, rel=0.03)
 
 
 @pytest.mark.parametrize("scheme, ratio", [("fixed_point", 0.5), ("newton", 0.5), ("newton", 2.0)])
 def test_orders_at_the_hinge(hinged_pendulum, scheme, ratio):
-    """Against the equations of the whole system."""
+    """The error against the equations of the whole system has the order degree + 1."""
     for degree in oscillator.DEGREES:
         coarse, fine = (hinge.error_of(ratio, scheme, degree, steps) for steps in (200, 400))
         assert np.log2(coarse / fine) == pytest.approx(degree + 1, abs=0.25)
@@ -186,7 +186,7 @@ def test_orders_at_the_hinge(hinged_pendulum, scheme, ratio):
 
 @pytest.mark.parametrize("by", [foreign.by_fmpy, foreign.by_libcosim, foreign.by_ecos])
 def test_controller_of_others(by):
-    """A controller that PythonFMU built, under three masters."""
+    """A controller built by PythonFMU balances the cart under three masters."""
     states = by(foreign.python_controller(), balance.lqr_gains())
     assert np.max(np.abs(states)) < 1e-3
 

@@ -1,4 +1,4 @@
-"""Events and constraints of many runs at once (src/ensemble/lane_events.c): as the FMU goes through them alone."""
+"""Events and constraints of many runs at once (src/ensemble/lane_events.c), against single runs of the FMU."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from building import build_systems
 from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemble, starts, states
 
-# What varies, in which ranges, and the end. Contacts, stops, frictions, events that set modes, loops, wheels.
+# Ranges of the varied values, and the end. Covers contacts, stops, frictions, events that set modes, loops, wheels.
 SYSTEMS = {
     "BouncingBall": ({"h": (0.2, 2), "v": (-2, 2), "e": (0, 0.9)}, 3),
     "HardStopPendulum": ({"theta": (-0.1, 1), "omega": (-2, 2), "e": (0, 1)}, 3),
@@ -24,7 +24,7 @@ SYSTEMS = {
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_each_run_is_that_of_the_fmu_alone(name):
-    """Also behind events; more runs than lanes."""
+    """Each run agrees after events too; there are more runs than lanes."""
     assert_as_alone(name, *SYSTEMS[name], 2 * HERE + 1, 2e-8)
 
 
@@ -34,7 +34,7 @@ def test_a_run_has_the_same_bits_among_any_others(name):
 
 
 def test_long_runs_keep_to_their_constraints():
-    """At a rough tolerance, whose errors would take the motion off its circle, and more with time."""
+    """At a loose tolerance, whose errors would let the motion drift off its circle."""
     rows, asked = starts({"l": (0.5, 1), "g": (5, 10)}, 20), ["x", "y", "vx", "vy"]
     values, _ = ensemble("PendulumCartesian", ["l", "g"], asked, [30.0], tolerance=1e-6).run(rows)
     expected = [alone("PendulumCartesian", dict(zip(("l", "g"), row)), asked, 30.0, tolerance=1e-6)[-1] for row in rows]
@@ -42,7 +42,7 @@ def test_long_runs_keep_to_their_constraints():
 
 
 def ball(height, e, time, g=9.81):
-    """The height of a ball that was dropped, and its velocity: flights that are shorter by e each, and then rest."""
+    """Height and velocity of a dropped ball: flights, each shorter by the factor e, and then rest."""
     t, speed = np.sqrt(2 * height / g), np.sqrt(2 * g * height)
     if time < t:
         return height - g * time**2 / 2, -g * time
@@ -56,7 +56,7 @@ def ball(height, e, time, g=9.81):
 
 
 def test_balls_in_closed_form():
-    """Some still fly at the end, others have come to rest behind bounces without end."""
+    """At the end some balls still fly; others rest after infinitely many bounces."""
     rows, times = starts({"h": (0.2, 2), "e": (0.1, 0.95)}, 60), [0.1, 0.9, 2.2, 3.0]
     values, is_left = ensemble("BouncingBall", ["h", "e"], ["h", "v"], times).run(rows)
     exact = np.array([[ball(*row, time) for time in times] for row in rows])
@@ -66,7 +66,7 @@ def test_balls_in_closed_form():
 
 
 def test_an_impact_at_the_start():
-    """What is told at the start is behind it."""
+    """Values at the start are those after the impact."""
     values, _ = ensemble("BouncingBall", ["h", "v", "e"], ["h", "v"], [0.0, 0.1]).run([[0.0, -2.0, 0.5]])
     np.testing.assert_allclose(values[0], [[0, 1], [0.1 - 9.81 * 0.005, 1 - 0.981]], atol=1e-12)
 
@@ -87,7 +87,7 @@ def of_tests():
 
 
 def test_a_narrow_wall_is_not_passed_over(of_tests):
-    """A gap that a hill closes, flat where a particle starts: it comes back from 1 - w sqrt(ln 1.5)."""
+    """A narrow hill closes a gap that is flat where the particle starts: it is reflected at 1 - w sqrt(ln 1.5)."""
     rows = np.array([[speed, w] for speed in (0.7, 1.0, 3.0) for w in (1e-2, 1e-4)])
     values, is_left = ensemble("NarrowWall", ["v", "w"], ["x", "v"], [4.0]).run(rows)
     wall = 1 - rows[:, 1] * np.sqrt(np.log(1.5))
@@ -96,7 +96,7 @@ def test_a_narrow_wall_is_not_passed_over(of_tests):
 
 
 def test_events_that_set_modes(of_tests):
-    """A force that acts up to x = 1, where the velocity is halved."""
+    """A force acts up to x = 1, where an event halves the velocity."""
     rows = np.array([[0.5, 1.0], [1.0, 0.0], [2.0, 0.3], [8.0, 0.0]])
     values, is_left = ensemble("Door", ["force", "v"], ["x", "v"], [3.0]).run(rows)
     force, start = rows.T
@@ -107,7 +107,7 @@ def test_events_that_set_modes(of_tests):
 
 
 def test_what_the_fmu_refuses_is_left_to_it(of_tests):
-    """A ball below the ground, and bounces that an <event> makes and that gather without end; their neighbours are not spoiled."""
+    """A ball below the ground, and an <event> with Zeno behaviour, are left to the FMU; other runs are unaffected."""
     assert list(ensemble("BouncingBall", ["h"], ["h"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
     values, is_left = ensemble("Chatter", ["x", "v"], ["x"], [5.0]).run([[1.0, 0.0], [20.0, 1.0], [0.0, 0.5]])
     assert list(is_left) == [True, False, True] and values[1, 0, 0] == pytest.approx(20 + 5 - 12.5, abs=1e-9)

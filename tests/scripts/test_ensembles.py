@@ -1,4 +1,7 @@
-"""Many runs at once (src/ensemble): as the FMU does each alone, whatever their neighbours and the processor; and what lanes leave to it."""
+"""
+Many runs at once (src/ensemble) agree with single runs of the FMU, whatever the other runs and the processor; unsupported runs are left to
+the FMU.
+"""
 
 import ctypes
 import subprocess
@@ -13,7 +16,7 @@ from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemb
 from fmu import ROOT, archive
 from scripts.ensembles import includes, source_of
 
-# Of each system what varies, in which ranges, and the end. F is an input, and the pivot turns with time.
+# Ranges of the varied values for each system, and the end. F is an input, and the pivot rotates with time.
 SYSTEMS = {
     "DoublePendulum": ({"theta1": (-3, 3), "theta2": (-3, 3), "m2": (0.5, 2), "l1": (0.5, 2)}, 2),
     "SimplePendulum": ({"theta": (-3, 3), "l": (0.3, 3), "m": (0.1, 3)}, 10),
@@ -27,15 +30,15 @@ SYSTEMS = {
     "DampedPendulum": ({"theta": (-3, 3), "tau": (-3, 3), "b": (0, 1)}, 5),  # by auto, but not stiff; so are the next two
     "ElasticPendulum": ({"theta": (-1, 1), "k": (10, 100), "c": (0, 5)}, 2),
     "Gyrocompass": ({"alpha": (-1, 1), "b": (0, 1e-3)}, 0.1),
-    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # whose masses are factored as it runs, as are the next one's
-    "RobotArm": ({"q[1]": (-0.5, 0.5), "w[3]": (-1, 1)}, 0.5),  # in tables
+    "ChainPendulum": ({"m": (0.5, 2), "l": (0.5, 2)}, 0.5),  # mass matrix factored at run time, as for the next one
+    "RobotArm": ({"q[1]": (-0.5, 0.5), "w[3]": (-1, 1)}, 0.5),  # as tables
 }
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_each_run_is_that_of_the_fmu_alone(name):
-    """More runs than lanes; each takes its own number of steps."""
-    # A planet near its sun changes its velocity by its own size in 0.04 s: 2e-10 s are 5e-9 of it.
+    """There are more runs than lanes; each takes its own number of steps."""
+    # Near its sun a planet's velocity changes by its own magnitude in 0.04 s: 2e-10 s are 5e-9 of it.
     assert_as_alone(name, *SYSTEMS[name], 3 * HERE + 1, 8e-9 if name == "ParticlePolar" else 2e-9)
 
 
@@ -45,7 +48,7 @@ def test_a_run_has_the_same_bits_among_any_others(name):
 
 
 def test_pendulums_in_closed_form():
-    """Released at rest, each with an angle and a length of its own."""
+    """Released at rest, with different angles and lengths."""
     rows, times = starts({"theta": (-3, 3), "l": (0.3, 3)}, 60), [0.1, 1.0, 7.0]
     values, _ = ensemble("SimplePendulum", ["theta", "l"], ["theta"], times).run(rows)
     exact = [[pendulum_angle(theta, np.sqrt(9.81 / l), t) for t in times] for theta, l in rows]
@@ -53,7 +56,7 @@ def test_pendulums_in_closed_form():
 
 
 def test_orbits_in_closed_form():
-    """From their pericentres, with masses of the centre of their own."""
+    """Start at the pericentre, with different masses of the centre."""
     rows, time = starts({"mu": (0.5, 0.9), "omega": (1, 1.2)}, 60), 10.0
     rows = rows[rows[:, 1] ** 2 < 1.8 * rows[:, 0]]
     values, _ = ensemble("ParticlePolar", ["mu", "omega"], ["r", "theta"], [time]).run(rows)
@@ -82,7 +85,7 @@ def of_tests():
 
 
 def test_a_narrow_hill_is_not_passed_over(of_tests):
-    """On which exp is flat where a particle starts: it takes longer by the integral of 1/sqrt(v0^2 - 2 V) - 1/v0, or is turned back."""
+    """exp is flat where the particle starts. The hill delays it by the integral of 1/sqrt(v0^2 - 2 V) - 1/v0, or reflects it."""
     values, is_left = ensemble("Hill", ["v"], ["x", "v"], [2.0]).run([[1.3], [1.4143], [1.5], [2.0], [3.0]])
     assert not is_left.any()
     assert values[0, 0, 1] == pytest.approx(-1.3, abs=1e-8) and values[0, 0, 0] < 0
@@ -92,7 +95,7 @@ def test_a_narrow_hill_is_not_passed_over(of_tests):
 
 
 def test_what_follows_from_accelerations(of_tests):
-    """The push of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start alone."""
+    """The force of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start only."""
     rows = [[0.95], [1.02], [0.0]]
     values, is_left = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
     assert list(is_left) == [False, False, True]
@@ -101,27 +104,32 @@ def test_what_follows_from_accelerations(of_tests):
 
 
 def test_a_stiff_run_is_left_alone(of_tests):
-    """x' = -1000 x nearly, which takes a million steps; the FMU says what is the matter. Its neighbour moves freely."""
+    """
+    Nearly x' = -1000 x, which takes a million steps: the run is left to the FMU, whose message gives the cause. The other run is
+    unaffected.
+    """
     values, is_left = ensemble("Stiff", ["b", "x", "v"], ["x"], [10.0]).run([[1e5, 1e-3, 0.0], [0.0, 1.0, 2.0]])
     assert list(is_left) == [True, False] and values[1, 0, 0] == pytest.approx(21, rel=1e-14)
 
 
 def test_where_auto_may_hand_over_is_left_to_it():
-    """Springs so stiff that they bound the steps of the series, beside soft ones."""
+    """Springs so stiff that they limit the steps of the series are left to the FMU, beside soft ones."""
     rows = np.array([[1e6, 1e4], [50.0, 1.0], [1e5, 1e4]])
     values, is_left = ensemble("ElasticPendulum", ["k", "c"], states("ElasticPendulum"), [2.0]).run(rows)
     assert list(is_left) == [True, False, True] and np.all(np.isfinite(values[1]))
 
 
 def test_what_the_fmu_refuses_is_left_to_it():
-    """A length below its minimum, with which there would be a motion; and masses so different that there is none to 14 digits."""
+    """
+    A length below its minimum, for which the equations do have a motion; and masses so different that the matrix is singular to 14 digits.
+    """
     assert list(ensemble("SimplePendulum", ["l"], ["theta"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
     one = ensemble("DoublePendulum", ["m1", "theta1", "theta2"], ["theta1"], [0.1])
     assert list(one.run([[1e-15, 1.0, 1.0], [1.0, 1.0, 1.0]])[1]) == [True, False]
 
 
 def test_tolerances_beyond_rounding():
-    """Defects that rounding explains do not end a run; sums of many steps carry along what it takes from them."""
+    """A defect within rounding does not end a run; long sums of steps use compensated summation."""
     rows, time = starts({"theta": (-3, 3)}, 30), 20.0
     values, is_left = ensemble("SimplePendulum", ["theta"], ["theta"], [time], tolerance=1e-16).run(rows)
     exact = [pendulum_angle(theta, np.sqrt(9.81), time) for (theta,) in rows]
@@ -130,7 +138,7 @@ def test_tolerances_beyond_rounding():
 
 
 def test_runs_without_a_solution_are_left_alone():
-    """A particle on the axis of its coordinates, a mass that may not be, and no number: they spoil no other run."""
+    """A particle on the axis of its coordinates, an invalid mass, and NaN affect no other run."""
     ranges, asked = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
     rows = starts(ranges, 40)
     one = ensemble("ParticleSpherical", ranges, asked, [0, 1])
@@ -144,14 +152,14 @@ def test_runs_without_a_solution_are_left_alone():
 
 
 def test_runs_that_end_in_a_singularity_are_left_alone():
-    """Particles that fall into the centre of attraction, from r = 1 after pi/(2 sqrt(2)), and some that pass it by."""
+    """Some particles fall into the centre of attraction, from r = 1 after pi/(2 sqrt(2)); others pass it."""
     rows = np.array([[0.0], [0.5], [0.0], [1.0]])
     values, is_left = ensemble("ParticlePolar", ["omega"], ["r", "vr"], [1.0, 1.2]).run(rows)
     assert list(is_left) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
 
 
 def test_what_lanes_do_not_serve():
-    """Methods that are exact, and systems without states; and values that are no Real or no state."""
+    """Exact methods, systems without states, and values that are neither Real nor states are unsupported."""
     for name in ("ParticleCartesian", "StateFeedback"):
         assert source_of(archive(name)) is None, name
     assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
@@ -166,7 +174,7 @@ FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(
 
 @pytest.mark.parametrize("form", ["statements", "tables"])
 def test_functions_and_their_series(form):
-    """A particle for each function, in it as a potential, whose force is its derivative; and a start that follows from a parameter."""
+    """Each function is the potential of a particle, whose force is its derivative; a start value depends on a parameter."""
     particles = "".join(
         f'<coordinate name="x{i}" velocity="v{i}" start="n/{i + 3}"/><particle name="p{i}" mass="m" x="x{i}"/><potential>{function.replace("exp", "EXP").replace("x", f"x{i}").replace("EXP", "exp")}</potential>'
         for i, function in enumerate(FUNCTIONS)
@@ -198,7 +206,9 @@ void sines(size_t count, const double *x, double *s, double *c) {
 
 
 def test_sines(tmp_path):
-    """To less than 1.5 units in the last place, also beside the multiples of quarter turns, far out, and where there is none."""
+    """
+    The error is below 1.5 units in the last place, also near multiples of quarter turns and for large arguments; there is no value beyond.
+    """
     (tmp_path / "sines.c").write_text(SINES)
     flags = [f"@{ROOT / 'src' / 'ensemble' / f'lanes{lanes}.flags'}" for lanes in ("", HERE)]
     command = ["cc", *flags, "-fPIC", "-shared", *map(str, includes(ROOT)), tmp_path / "sines.c", "-o", tmp_path / "sines.so", "-fvisibility=default", "-lm"]

@@ -1,4 +1,6 @@
-"""Rows of simulations at events: one just before, one behind, of the same time; against closed forms, in both versions of FMI."""
+"""
+Simulations have two rows at each event, one before and one after it, with the same time; against closed forms, in both versions of FMI.
+"""
 
 import math
 import sys
@@ -28,7 +30,10 @@ def built():
 
 @pytest.mark.parametrize("of", [fmu, fmi3])
 def test_bounces(of):
-    """At the times of the closed form; the velocity turns from one row to the next, by the coefficient of restitution; between them the motion is the same to the bit."""
+    """
+    Events are at the times of the closed form; there the velocity changes by the coefficient of restitution. Between events the motion is
+    the same to the last bit.
+    """
     words = dict(stop_time=2.0, output_interval=0.25)
     motion = simulate(of.archive("BouncingBall"), {"h": 1.0, "e": 0.8}, **words).outputs
     fall, e = math.sqrt(2 / 9.81), 0.8
@@ -45,7 +50,7 @@ def test_bounces(of):
 
 @pytest.mark.parametrize("of", [fmu, fmi3])
 def test_a_force_that_switches(of):
-    """At 0.35 s: the acceleration is 1 before and -3 behind it, the velocity 0.35 in both rows."""
+    """At 0.35 s the acceleration changes from 1 to -3; the velocity is 0.35 in both rows."""
     motion = simulate(of.archive("Switched"), {}).outputs
     [behind] = np.flatnonzero(np.diff(motion["time"]) == 0) + 1
     assert motion["time"][behind] == pytest.approx(0.35, abs=1e-9) and motion["a"][[behind - 1, behind]].tolist() == [1, -3]
@@ -54,7 +59,7 @@ def test_a_force_that_switches(of):
 
 
 def test_many_events_of_a_step():
-    """Forty balls fall from heights that differ: FMI 3.0 has all instants, FMI 2.0 the first ones of a step; nothing else changes."""
+    """Forty balls fall from different heights: FMI 3.0 reports all events, FMI 2.0 the first ones of a step; other values agree."""
     all_of = simulate(fmi3.archive("Crowd"), {})
     first = simulate(fmu.archive("Crowd"), {})
     falls = np.sqrt(2 * (1 + np.arange(1, 41) / 100) / 9.81)

@@ -1,4 +1,4 @@
-"""The list of faults that scripts/faults plants fits the code."""
+"""Each entry in the list of scripts/faults fits the code."""
 
 import sys
 

@@ -1,4 +1,6 @@
-"""Derivatives of motions, and fits to measurements, of the package: against closed forms, and data that were made with known values and noise."""
+"""
+Sensitivities of motions, and fits to measurements, by the package: against closed forms, and synthetic data with known values and noise.
+"""
 
 import math
 import pickle
@@ -45,7 +47,7 @@ def built():
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):
-    """By parameters, start value and an input that stays."""
+    """Derivatives by parameters, a start value and a constant input agree with the closed form."""
     at = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
     found = lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x", "der(v)"], list(at), [0, 0.7, 2, 4], {"F": 4.0})
     with mpmath.workdps(40):
@@ -53,12 +55,12 @@ def test_derivatives_of_an_oscillation(lagrange_fmu):
             for place, name in enumerate(at):
                 along = lambda value: oscillation(t, *[value if k == place else mpmath.mpf(v) for k, v in enumerate(at.values())])
                 assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), **TOLERATED)
-    # m a = F - k x - d v at the start
+    # m a = F - k x - d v at the start.
     assert found.derivatives["der(v)", "k"][0] == pytest.approx(-0.3 / 2, rel=1e-12)
 
 
 def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
-    """The work, alone and beside an output."""
+    """The state is the work, alone and beside an output."""
     at = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
     expected = slopes(lambda *values: work(2, *values), at)
     for of in (["nonConservativeWork"], ["x", "nonConservativeWork"]):
@@ -67,7 +69,7 @@ def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
 
 
 def test_derivatives_of_what_is_stiff(lagrange_fmu, monkeypatch):
-    """By Radau's method, as an explicit one would take 400,000 steps."""
+    """The motion is integrated by Radau's method; an explicit one would take 400,000 steps."""
     from lagrange_fmu.sensitivity import Motion
 
     allow_calls(monkeypatch, Motion, "rates", 20000)
@@ -80,7 +82,7 @@ def test_derivatives_of_what_is_stiff(lagrange_fmu, monkeypatch):
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "PendulumCartesian"])
 def test_derivative_of_a_pendulum(lagrange_fmu, name):
-    """By its length, through a constraint too, which moves the start."""
+    """The derivative by its length, also through a constraint, which changes the start."""
     g = fmu.start_values(name)["g"]
     with mpmath.workdps(40):
         if name == "SimplePendulum":
@@ -99,7 +101,7 @@ def test_derivative_of_a_pendulum(lagrange_fmu, name):
 
 
 def test_derivatives_through_impacts(lagrange_fmu):
-    """A ball that bounces, by its start, by g and by e: closed forms, between all bounces and behind them."""
+    """Derivatives of a bouncing ball by its start, g and e agree with closed forms, between all bounces and after them."""
     at = {"h": 1.3, "g": 9.81, "e": 0.7}
     fall = math.sqrt(2 * 1.3 / 9.81)
     times = [0.0, 0.4, fall + 0.3, fall + 2 * 0.7 * fall + 0.2, fall + 2 * (0.7 + 0.49) * fall + 0.1]
@@ -112,7 +114,7 @@ def test_derivatives_through_impacts(lagrange_fmu):
 
 
 def test_events_at_once(lagrange_fmu):
-    """Of two balls that land together, neighbours land one after the other, in either order."""
+    """Two balls land together; for changed values they land one after the other, in either order, so that there is no derivative."""
     with pytest.raises(lagrange_fmu.Problem, match="several events at once at 0.45"):
         lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]"], ["h[1]"], [0, 1])
     apart = lagrange_fmu.sensitivities(fmu.archive("Two"), ["h[1]", "h[2]"], ["h[1]"], [0, 0.7], {"h[2]": 1.1})
@@ -120,11 +122,14 @@ def test_events_at_once(lagrange_fmu):
 
 
 def test_at_the_edge_of_what_happens(lagrange_fmu):
-    """A ball that starts on the ground, whose neighbours below do not; at the very time of an impact; and where neighbours behave otherwise."""
+    """
+    A ball that starts on the ground, below which no start is valid; a time equal to that of an impact; and a time at which changed values
+    behave differently.
+    """
     ball, values = fmu.archive("Ball"), {"h": 0.0, "v": 1.0}
     found = lagrange_fmu.sensitivities(ball, ["h"], ["h", "e"], [0.3], values)
 
-    def height(h, e):  # behind the first bounce
+    def height(h, e):  # after the first bounce
         speed = mpmath.sqrt(1 + 2 * 9.81 * h)
         rest = mpmath.mpf(0.3) - (1 + speed) / 9.81
         return e * speed * rest - 9.81 / 2 * rest**2
@@ -149,7 +154,7 @@ def test_a_mode_that_holds_a_number(lagrange_fmu):
 
 
 def test_where_it_switches(lagrange_fmu):
-    """A force that begins at a time, by this; not where that is the start."""
+    """The derivative by the time at which a force begins exists, except where that is the start."""
     found = lagrange_fmu.sensitivities(fmu.archive("Late"), ["x"], ["begin"], [0.4, 1.0])
     assert found.derivatives["x", "begin"] == pytest.approx([0, -3 * 0.5], rel=1e-9)
     with pytest.raises(lagrange_fmu.Problem, match="no derivative by 'begin' at 0"):
@@ -158,7 +163,7 @@ def test_where_it_switches(lagrange_fmu):
 
 @pytest.mark.parametrize("name, off, start", [("PendulumCartesian", 1.0, {"x": 0.6, "y": -0.8}), ("PendulumCartesian", 1.2, {"x": 0.72, "y": -0.96}), ("Off", 1.2, {})])
 def test_starts_of_dependent_coordinates(lagrange_fmu, name, off, start):
-    """Of a pendulum in x and y: what it starts at, perhaps off the circle, is moved onto it, and only what lies along it counts."""
+    """The start of a pendulum in x and y is projected onto the circle; only the tangential part of its derivatives counts."""
     found = lagrange_fmu.sensitivities(fmu.archive(name), ["x"], ["x", "y", "vx"], [0.0, 1.0], start | {"l": 1.0})
     g = fmu.start_values("PendulumCartesian")["g"]
     rates = lambda t, state: [state[1], -g * np.sin(state[0]), state[3], -g * np.cos(state[0]) * state[2], state[5], -g * np.cos(state[0]) * state[4]]
@@ -170,14 +175,14 @@ def test_starts_of_dependent_coordinates(lagrange_fmu, name, off, start):
 
 
 def test_a_start_that_follows_parameters_and_is_moved(lagrange_fmu):
-    """What it is before it is moved is not told by the FMU."""
+    """The FMU does not show the start value before the projection, which is an error."""
     with pytest.raises(lagrange_fmu.Problem, match="start value of 'y' follows parameters, and constraints move it; expected a value"):
         lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1})
     lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1, "y": -0.77})
 
 
 def test_through_a_constraint_and_an_impact(lagrange_fmu):
-    """A pendulum in x and y that bounces off a wall, against its angle by SciPy, by differences."""
+    """A pendulum in x and y that bounces off a wall agrees with differences of SciPy's motion by its angle."""
     at, times = {"l": 1.0, "e": 0.5, "vy": 0.0}, [0.7, 0.9]
 
     def place(l, e, vy):
@@ -207,7 +212,7 @@ def test_times(lagrange_fmu, times):
 
 
 def test_derivatives_through_friction(lagrange_fmu):
-    """A block that is carried along by a belt, sticks and slides again."""
+    """A block is carried along by a belt, sticks, and slides again."""
     at, times = {"k": 20.0, "F": 3.0, "u": 0.4}, [0.0, 0.1, 0.3, 0.6, 0.9]
     found = lagrange_fmu.sensitivities(fmu.archive("Belt"), ["x"], list(at), times, at)
     with mpmath.workdps(40):
@@ -219,10 +224,7 @@ def test_derivatives_through_friction(lagrange_fmu):
 
 
 def test_fit(lagrange_fmu):
-    """
-    Values come back within what their deviations say: of 12 fits to data of a known noise, each value is mostly within two
-    standard deviations, and not too mostly.
-    """
+    """For 12 fits to data of known noise, the errors of the values are distributed as their standard deviations state."""
     truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
     off = []
     for seed in range(12):
@@ -235,7 +237,7 @@ def test_fit(lagrange_fmu):
 
 
 def test_experiments_with_starts_of_their_own(lagrange_fmu):
-    """Which are found, as what they share is; the search begins where each was measured first."""
+    """The fit finds the start of each experiment and the shared values; the search begins at the first measured value of each."""
     starts = (0.25, -0.4, 0.1)
     data = [measured(np.random.default_rng(4), {"m": 2.0, "k": 61.0, "d": 0.8, "x": x}, noise=1e-4) for x in starts]
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], each=["x"])
@@ -248,7 +250,7 @@ def test_experiments_with_starts_of_their_own(lagrange_fmu):
 
 
 def test_bounds(lagrange_fmu):
-    """A value that the data would have beyond its bound stays at it."""
+    """A value whose optimum lies beyond its bound stays at the bound."""
     data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"], bounds={"k": (40, 60)})
     assert found.values["k"] == pytest.approx(60, abs=1e-6)
@@ -257,7 +259,7 @@ def test_bounds(lagrange_fmu):
 
 
 def test_a_value_at_its_limit(lagrange_fmu):
-    """A damping of 0, which is the least that there is, has a derivative all the same."""
+    """A damping of 0, its minimum, has a derivative."""
     found = lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["d"], [0, 2], {"d": 0.0})
     with mpmath.workdps(40):
         expected = float(mpmath.diff(lambda d: oscillation(2, 2, 50, d, mpmath.mpf(0.3)), 0))
@@ -265,7 +267,7 @@ def test_a_value_at_its_limit(lagrange_fmu):
 
 
 def test_inputs_with_kinks(lagrange_fmu):
-    """A force that rises and falls between the rows, which the motion of another solver answered."""
+    """The force has kinks between the rows; another solver provides the motion."""
     rows = 41
     times = np.linspace(0, 4, rows)
     force = np.interp(times, [0, 1, 1.5, 2.5, 4], [0, 6, -3, -3, 5])
@@ -277,7 +279,7 @@ def test_inputs_with_kinks(lagrange_fmu):
 
 
 def test_what_data_do_not_tell(lagrange_fmu):
-    """Without a force, mass, stiffness and damping are known up to a common factor alone."""
+    """Without a force, mass, stiffness and damping are determined up to a common factor only."""
     truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), measured(np.random.default_rng(1), truth), ["m", "k", "d", "x"])
     assert [set(shares) for shares in found.untold] == [{"m", "k", "d"}]
@@ -286,14 +288,14 @@ def test_what_data_do_not_tell(lagrange_fmu):
 
 
 def line(rows=41, slope=5.0, noise=1e-3, seed=0):
-    """Of a body of 1 kg that a force of 5 N sets in motion: x = F t^2/2."""
+    """Measurements of a body of 1 kg moved by a force of 5 N: x = F t^2/2."""
     times = np.linspace(0, 2, rows)
     x = slope * times**2 / 2 + noise * np.random.default_rng(seed).standard_normal(rows)
     return np.rec.fromarrays([times, x], names="time,x").view(np.ndarray)
 
 
 def test_only_a_sum_is_known(lagrange_fmu):
-    """Of two forces; alone, one has the deviation sigma/|t^2/2| of a straight line, whatever its unit."""
+    """Only the sum of two forces is determined. Alone, one has the standard deviation sigma/|t^2/2| of linear regression, in any unit."""
     data = line()
     both = lagrange_fmu.fit(fmu.archive("Sum"), data, ["p", "r", "tiny"], noise={"x": 1e-3})
     assert {frozenset(shares) for shares in both.untold} <= {frozenset(pair) for pair in (("p", "r"), ("p", "tiny"), ("r", "tiny"))} and len(both.untold) == 2
@@ -311,7 +313,7 @@ def test_fewer_numbers_than_values(lagrange_fmu):
 
 
 def test_far_above_the_noise(lagrange_fmu):
-    """Is told, and deviations count with what remains."""
+    """A residual far above the stated noise gives a warning, and deviations are computed from the residual."""
     with pytest.warns(UserWarning, match="the residual of x is [0-9.]+ times its stated noise"):
         found = lagrange_fmu.fit(fmu.archive("Sum"), line(), ["p"], noise={"x": 1e-5})
     assert "misfit: the residual of x" in str(found)
@@ -319,7 +321,7 @@ def test_far_above_the_noise(lagrange_fmu):
 
 
 def test_at_a_limit(lagrange_fmu):
-    """A value that the data would have below its least has an end on the other side: that of the normal law which the limit cuts."""
+    """A value whose optimum lies below its minimum has a one-sided interval: that of the normal distribution truncated at the minimum."""
     data = line(slope=-1e-4)
     found = lagrange_fmu.fit(fmu.archive("Least"), data, ["p"], noise={"x": 1e-3})
     squares = data["time"] ** 2 / 2
@@ -342,7 +344,7 @@ def test_outliers(lagrange_fmu):
 
 
 def test_angles_that_wrap(lagrange_fmu):
-    """A disk that turns three times, within -pi and pi."""
+    """A disk makes three revolutions; the data are within -pi and pi."""
     times = np.linspace(0, 4, 81)
     angle = 0.5 * 2.4 * times**2
     data = np.rec.fromarrays([times, np.angle(np.exp(1j * angle))], names="time,phi").view(np.ndarray)
@@ -352,12 +354,12 @@ def test_angles_that_wrap(lagrange_fmu):
 
 @pytest.mark.parametrize("start", [0.0, 2.0])
 def test_friction_without_derivatives(lagrange_fmu, start):
-    """Of a block at rest or on its way beside a quadratic drag, driven by a measured force: the search ends, and its values are those of the data."""
+    """A block with friction and quadratic drag under a measured force, from rest or moving: the search ends at the values of the data."""
     times = np.linspace(0, 3, 61)
     force = 4 * np.sin(3 * times)
     speed, speeds, span, steps = start, [start], 1e-5, 5000
     for u in np.interp(np.arange(60 * steps) * span, times, force).reshape(60, steps):
-        for push in u:  # friction of 1.2 N takes what it can of the speed
+        for push in u:  # friction of 1.2 N reduces the speed, at most to 0
             speed += span * (push - 0.3 * speed * abs(speed))
             speed = np.sign(speed) * max(abs(speed) - span * 1.2, 0.0)
         speeds.append(speed)
@@ -367,7 +369,7 @@ def test_friction_without_derivatives(lagrange_fmu, start):
 
 
 def test_what_was_found_is_kept(lagrange_fmu, monkeypatch):
-    """A trial that fails is a rejected step; Ctrl-C ends the search with the best values."""
+    """A failing trial is a rejected step; Ctrl-C ends the search with the best values so far."""
     from lagrange_fmu.sensitivity import Motion
     from lagrange_fmu.variational import SteppedMotion
 
@@ -402,7 +404,7 @@ def test_what_was_found_is_kept(lagrange_fmu, monkeypatch):
 
 
 def test_command(tmp_path):
-    """A page with a picture, and a system that lagc reads with the new values; comments stay."""
+    """The command writes a page with a picture, and a system with the fitted values that lagc reads; comments are kept."""
     folder = package.assemble(tmp_path / "package")
     truth = {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3}
     data = measured(np.random.default_rng(2), truth)
@@ -430,7 +432,7 @@ def test_the_fitted_system(lagrange_fmu, tmp_path):
 
 
 def test_pickled_motions(lagrange_fmu):
-    """Keep what they are drawn from, as parts of them do."""
+    """Pickled motions, and slices of them, keep their description and start values."""
     motion = lagrange_fmu.simulate(fmu.archive("Oscillator"), {"x": 0.2}, stop_time=0.5)
     for part in (motion, motion[3:]):
         back = pickle.loads(pickle.dumps(part))

@@ -1,4 +1,4 @@
-"""Gradients of one number of a motion by the adjoint equation, of the package: against closed forms and against what it costs."""
+"""Gradients of one number of a motion by the adjoint equation, in the package: against closed forms, and their cost."""
 
 import math
 
@@ -32,7 +32,7 @@ AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 
 @pytest.mark.parametrize("integral", [False, True])
 def test_a_value_at_the_end_and_an_integral(lagrange_fmu, integral):  # noqa: F811
-    """Of an oscillation, by parameters, a start value and an input that stays."""
+    """Derivatives for an oscillation by parameters, a start value and a constant input."""
 
     def number(*at):
         return mpmath.quad(lambda t: oscillation(t, *at), [0, 1, 2, 3, 4]) if integral else oscillation(4, *at)
@@ -50,7 +50,7 @@ def test_of_a_state_that_is_no_output(lagrange_fmu, integral):  # noqa: F811
 
 
 def test_of_what_is_stiff(lagrange_fmu, monkeypatch):  # noqa: F811
-    """There and back in steps that an explicit method could not take."""
+    """Forward and backward integration take steps that an explicit method could not."""
     from lagrange_fmu.adjoint import Motion, WayBack
 
     for owner in (Motion, WayBack):
@@ -61,7 +61,7 @@ def test_of_what_is_stiff(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_squares(lagrange_fmu):  # noqa: F811
-    """Of what measurements differ by, in which an input was measured too."""
+    """The sum of squares of the residuals, with a measured input."""
     data = measured(np.random.default_rng(3), {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}, F=4.0)[::10]
     varied = {name: AT[name] for name in ("m", "k", "d", "x")}
 
@@ -74,7 +74,7 @@ def test_squares(lagrange_fmu):  # noqa: F811
 
 
 def test_through_impacts(lagrange_fmu):  # noqa: F811
-    """Of a ball behind three bounces; where it loses nothing, e is at the end of its limits."""
+    """A ball after three bounces; without loss, e is at its maximum."""
     for e in (0.7, 1.0):
         at = {"h": 1.3, "g": 9.81, "e": e}
         fall = math.sqrt(2 * 1.3 / 9.81)
@@ -84,13 +84,13 @@ def test_through_impacts(lagrange_fmu):  # noqa: F811
 
 
 def test_through_small_bounces(lagrange_fmu):  # noqa: F811
-    """Micrometres high, and milliseconds long; that they are handled 1e-11 m late is seen in these."""
+    """Bounces of micrometres and milliseconds, where a delay of 1e-11 m in handling them matters."""
     for at, time, expected in small_bounces():
         assert lagrange_fmu.gradient(archive("Ball"), "v", list(at), time, start_values=at).derivatives == pytest.approx(expected, rel=2e-6)
 
 
 def test_to_rest(lagrange_fmu):  # noqa: F811
-    """Through all bounces; the impulses of a ball and of gravity are the same then, whatever the height."""
+    """Through all bounces; afterwards the impulses of the ground and of gravity are equal, whatever the height."""
     at = {"h": 0.2, "g": 9.81, "e": 0.5}
     height = lambda h, g, e: mpmath.mpf(2) / 3 * h * mpmath.sqrt(2 * h / g) * (1 + 2 * e**3 / (1 - e**3))  # integral of each parabola: 2/3 of its height times its length
     found = lagrange_fmu.gradient(archive("Ball"), "h", list(at), 1.0, integral=True, start_values=at)
@@ -105,7 +105,7 @@ def test_through_friction(lagrange_fmu):  # noqa: F811
 
 
 def test_through_a_constraint(lagrange_fmu):  # noqa: F811
-    """Of a pendulum in x and y, by its length, which moves the start too; by gravity."""
+    """A pendulum in x and y, by gravity and by its length, which also changes the start."""
 
     def x(l, g):
         angle = mpmath.atan2(3, 4)
@@ -117,7 +117,7 @@ def test_through_a_constraint(lagrange_fmu):  # noqa: F811
 
 
 def test_energy_is_that_of_the_start(lagrange_fmu):  # noqa: F811
-    """Of a chaotic motion, whose states depend on the start hundreds of times more."""
+    """The motion is chaotic, so that its states depend on the start hundreds of times more strongly than the energy."""
     found = lagrange_fmu.gradient(archive("Double"), "energy", list(DOUBLE_AT), 3)
     assert found.derivatives == pytest.approx(slopes(energy_of_double, DOUBLE_AT), rel=1e-6, abs=1e-6)
     by_start = lagrange_fmu.gradient(archive("Double"), "a", ["a", "b", "l2"], 3).derivatives
@@ -125,7 +125,7 @@ def test_energy_is_that_of_the_start(lagrange_fmu):  # noqa: F811
 
 
 def test_cost(lagrange_fmu, monkeypatch):  # noqa: F811
-    """One parameter and a hundred take as many evaluations, and as many starts."""
+    """One parameter and a hundred take the same numbers of evaluations and initializations."""
     from lagrange_fmu.models import Model3
 
     counts = {}

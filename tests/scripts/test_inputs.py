@@ -1,4 +1,7 @@
-"""Inputs of simulations from tables and functions, in both versions of FMI and in model exchange, against closed forms; and how many rows there are."""
+"""
+Inputs of simulations from tables and functions, in both versions of FMI and in model exchange, against closed forms; and the number of
+rows.
+"""
 
 import math
 import sys
@@ -38,7 +41,7 @@ def archives(name):
 
 
 def moved(times, forces):
-    """Velocity and position of a mass of 1 kg at the times of a force that is linear between them: a cubic in each piece."""
+    """Velocity and position of a mass of 1 kg under a force that is linear between the given times: a cubic in each interval."""
     v, x = [0.0], [0.0]
     for h, low, high in zip(np.diff(times), forces, forces[1:]):
         x.append(x[-1] + h * v[-1] + h**2 * (2 * low + high) / 6)
@@ -48,7 +51,7 @@ def moved(times, forces):
 
 @pytest.mark.parametrize("version", [0, 1])
 def test_linear_between_the_rows_of_a_table(version):
-    """Whose rows are no communication points: a force held over each step is 2 % off."""
+    """The rows of the table are no communication points; a force held over each step would be 2 % off."""
     times, forces = [0.0, 0.3, 0.4, 1.0], [0.0, 1.0, -1.0, 2.0]
     result = simulate(archives("Pushed")[version], {}, input={"time": times, "F": forces}, **EVEN).outputs
     assert result["time"].tolist() == [0, 0.25, 0.5, 0.75, 1]
@@ -59,7 +62,7 @@ def test_linear_between_the_rows_of_a_table(version):
 
 @pytest.mark.parametrize("version", [0, 1])
 def test_a_jump_is_two_rows(version):
-    """Of the force, of which 2 N act from 0.3 s on: v = t, then 0.3 + 2 (t - 0.3)."""
+    """The force is 2 N from 0.3 s on: v = t, then 0.3 + 2 (t - 0.3)."""
     rows = {"time": [0, 0.3, 0.3, 1], "F": [1, 1, 2, 2]}
     result = simulate(archives("Pushed")[version], {}, input=rows, **EVEN).outputs
     assert result["time"].tolist() == [0, 0.25, 0.3, 0.3, 0.5, 0.75, 1] and result["push"].tolist() == [2, 2, 2, 4, 4, 4, 4]
@@ -72,7 +75,7 @@ def test_held_from_row_to_row(version):
     result = simulate(archives("Pushed")[version], {}, input={"time": [0, 0.3, 0.5], "F": [1, 2, 5]}, hold=True, **EVEN).outputs
     np.testing.assert_allclose(result["v"][-1], 0.3 + 0.2 * 2 + 0.5 * 5, rtol=1e-13)
     held = simulate(archives("Pushed")[version], {}, input=lambda t: t, hold=True, record_events=False, **EVEN).outputs
-    np.testing.assert_allclose(held["v"], [0, 0, 0.0625, 0.1875, 0.375], atol=1e-14)  # of a function over each step
+    np.testing.assert_allclose(held["v"], [0, 0, 0.0625, 0.1875, 0.375], atol=1e-14)  # of a function, over each step
 
 
 def swings(t, force_rate):
@@ -82,7 +85,7 @@ def swings(t, force_rate):
 
 @pytest.mark.parametrize("version, error", [(0, 1e-11), (1, 2e-6)])
 def test_several_inputs_and_kinds(version, error):
-    """Arrays, numbers, functions, records; FMI 3.0 holds inputs twice in each step of 0.5 rad, with an error of the fourth order."""
+    """Arrays, numbers, functions and records; FMI 3.0 sets inputs twice in each step of 0.5 rad, with an error of fourth order."""
     archive = archives("Sprung")[version]
     table = np.rec.fromarrays([[0.0, 2.0], [0.0, 6.0], [1.0, 1.0]], names="time,F,G")
     given = [table, {"time": [0, 2], "F": [0, 6], "G": [1, 1]}, {"F": lambda t: 3 * t, "G": 1}, lambda t: {"F": 3 * t, "G": 1.0}, lambda t: (3 * t, 1)]
@@ -95,7 +98,7 @@ def test_several_inputs_and_kinds(version, error):
 
 
 class Frame:
-    """What simulations ask of a DataFrame."""
+    """The interface of a DataFrame that simulations use."""
 
     def __init__(self, index, **columns):
         self.index, self.data, self.columns = index, columns, list(columns)
@@ -108,14 +111,17 @@ class Frame:
 
 
 def test_a_data_frame():
-    """With time as a column, or as its index as that of to_pandas()."""
+    """Time is a column, or the index as from to_pandas()."""
     for frame in (Frame(None, time=[0, 1], F=[0, 1]), Frame([0, 1], F=[0, 1])):
         assert simulate(fmu.archive("Pushed"), {}, input=frame, **EVEN).outputs["v"][-1] == pytest.approx(0.5, rel=1e-13)
 
 
 @pytest.mark.parametrize("version", [0, 1])
 def test_a_function_is_a_cubic_over_each_step(version):
-    """sin(3 t) by 0.25 s: v = (1 - cos(3 t))/3, x = t/3 - sin(3 t)/9; its polynomials meet it in Lobatto's points, so that the velocity has a higher order still."""
+    """
+    sin(3 t) in steps of 0.25 s: v = (1 - cos(3 t))/3, x = t/3 - sin(3 t)/9. Polynomials interpolate it at Lobatto points, so that the
+    velocity has a higher order.
+    """
     result = simulate(archives("Pushed")[version], {}, input=lambda t: math.sin(3 * t), **EVEN).outputs
     t = result["time"]
     np.testing.assert_allclose(result["v"], (1 - np.cos(3 * t)) / 3, atol=1e-6)
@@ -124,7 +130,7 @@ def test_a_function_is_a_cubic_over_each_step(version):
 
 
 def test_in_model_exchange():
-    """From the same tables and functions, to the tolerance of FMPy's CVode, with the communication step of the experiment."""
+    """The same tables and functions in model exchange, to the tolerance of FMPy's CVode, with the communication step of the experiment."""
     for version in (0, 1):
         for one, v in (({"time": [0, 0.3, 0.3, 1], "F": [0, 3, 1, 1]}, 0.45 + 0.7), (lambda t: math.sin(3 * t), (1 - math.cos(3)) / 3)):
             result = simulate(archives("Pushed")[version], {}, input=one, fmi_type="ModelExchange", relative_tolerance=1e-9).outputs
@@ -134,8 +140,8 @@ def test_in_model_exchange():
 @pytest.mark.parametrize("name, place, of", [("Carried", "z", lambda t: (np.cos(4 * t) - np.cos(2 * t)) * 4 / 12), ("Handed", "x", lambda t: 1 - np.cos(2 * t))])
 def test_what_moves_something(name, place, of):
     """
-    Where u = 1 - cos(2 t): u'' = 4 cos(2 t). Its derivatives, which are inputs too, are those of a spline through its rows, or of the function.
-    z'' + 16 z = -4 cos(2 t) from rest: z = (cos(4 t) - cos(2 t))/3.
+    For u = 1 - cos(2 t), u'' = 4 cos(2 t). The derivatives, which are inputs too, come from a spline through the rows, or from the
+    function. z'' + 16 z = -4 cos(2 t) from rest: z = (cos(4 t) - cos(2 t))/3.
     """
     archive, moved_by = fmu.archive(name), {"Carried": "zb", "Handed": "u"}[name]
     start = {}
@@ -153,7 +159,10 @@ def test_what_fmi3_holds_is_told():
 
 
 def test_splines():
-    """Of a cubic polynomial they are it; of sines, of fourth order: Hall and Meyer's bound of a clamped spline's slopes is h^3/24 max f''''."""
+    """
+    The spline of a cubic polynomial is exact; for sines the error is within Hall and Meyer's bound for slopes of clamped splines, h^3/24
+    max f''''.
+    """
     t = np.array([0.0, 0.1, 0.5, 0.6, 1.0, 1.7])
     np.testing.assert_allclose(spline_slopes(t, t**3 - 2 * t), 3 * t**2 - 2, rtol=1e-12)
     t = np.linspace(0, 3, 61)
@@ -162,7 +171,7 @@ def test_splines():
 
 @pytest.mark.parametrize("stop, step, rows", [(2.0, 0.001, 2001), (3600.0, 0.5, 7201), (1.0, 0.3, 5), (0.1, 1.0, 2)])
 def test_the_step_is_kept(stop, step, rows):
-    """However many rows that makes; the last one is at the end."""
+    """The step is kept for any number of rows; the last row is at the end."""
     for archive in archives("Pushed"):
         time = simulate(archive, {}, stop_time=stop, output_interval=step).outputs["time"]
         assert len(time) == rows and time[-1] == stop
@@ -170,7 +179,7 @@ def test_the_step_is_kept(stop, step, rows):
 
 
 def test_the_step_of_the_experiment_is_kept(tmp_path):
-    """By the command and in model exchange, too."""
+    """The command and model exchange keep the step of the experiment, too."""
     folder = package.assemble(tmp_path / "package")
     result = package.run(folder, "run", fmu.archive("Pushed"), "--stop-time", "300", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

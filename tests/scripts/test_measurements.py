@@ -1,4 +1,4 @@
-"""What a fit reads: CSVs as spreadsheets and loggers write them, with what is missing in them; what it cannot use is told by name."""
+"""Data of a fit: CSVs of spreadsheets and loggers, with missing values; unusable data give a message that names them."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def read(folder, text):
 
 @pytest.mark.parametrize("text", [
     "time,theta\n0,0.5\n1.5,-2e-3\n",
-    "\ufefftime,theta\r\n\r\n0,0.5\r\n1.5,-2e-3\r\n\r\n",  # as Excel begins a file
+    "\ufefftime,theta\r\n\r\n0,0.5\r\n1.5,-2e-3\r\n\r\n",  # as Excel starts a file
     "time;theta\n0;0,5\n1,5;-2e-3\n",
     "time\ttheta\n0\t0.5\n1.5\t-2e-3\n",
     "time [s],theta (rad)\n0, 0.5\n1.5 ,-2e-3\n",
@@ -82,7 +82,10 @@ def test_what_cannot_be_fitted(lagrange_fmu, data, words, why):  # noqa: F811
 
 
 def test_missing_values(lagrange_fmu):  # noqa: F811
-    """Count for nothing, in a fit and in the sum of squares: as if their rows were left out, with a second column that has others."""
+    """
+    Missing values have no weight, in a fit and in the sum of squares: the result is that without their rows. A second column lacks other
+    values.
+    """
     data = measured(np.random.default_rng(6), TRUTH)[::4]
     both = table(time=data["time"], x=data["x"], v=np.full(len(data), np.nan))
     both["x"][3::5] = np.nan

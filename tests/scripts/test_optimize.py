@@ -1,4 +1,4 @@
-"""scripts/optimize: motions in least time through FMUs, held against equations as they stand in textbooks."""
+"""scripts/optimize: minimum-time motions of FMUs, against textbook equations."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def cart(time, state, force):
 
 
 def double_pendulum(time, state, torque):
-    """Two uniform rods, by Lagrange's equations with the angles from hanging."""
+    """Two uniform rods, by Lagrange's equations with angles from the vertical."""
     m, l, g, b1, b2 = 1.0, 0.5, 9.81, 0.05, 0.02
     first, second, w1, w2 = state
     across = m * l**2 / 2 * np.cos(first - second)
@@ -34,7 +34,7 @@ def double_pendulum(time, state, torque):
 
 
 def check(task, unpacked):
-    """The co-simulation FMU plays it back, all bounds hold, and it rests in the end."""
+    """Check that the co-simulation FMU reproduces the motion, all bounds are satisfied, and the system is at rest at the end."""
     motion = least_time(unpacked, task)
     assert abs(play_back(unpacked, task, motion) - motion.states).max() < 1e-6
     assert (abs(motion.inputs) <= task.strength * (1 + 1e-7)).all()
@@ -45,7 +45,7 @@ def check(task, unpacked):
 
 @pytest.mark.parametrize("task, rates", [(CART, cart), (DOUBLE_PENDULUM, double_pendulum)], ids=["cart", "double pendulum"])
 def test_it_stands_in_the_end(task, rates):
-    """By SciPy too. The input is at one of its bounds most of the time, as it has to be in the least one."""
+    """SciPy's motion ends at rest too. The input is at a bound most of the time, as in any minimum-time solution."""
     if task is DOUBLE_PENDULUM:
         build_systems("optimization", {task.fmu: (ROOT / "scripts" / "optimization" / task.fmu / "system.xml").read_text()})
     motion, at_bound = check(task, fmu.unpacked(task.fmu))
@@ -57,16 +57,16 @@ def test_it_stands_in_the_end(task, rates):
 
 
 def test_an_arm():
-    """Six joints: at each time some motor gives all that it has."""
+    """For a robot of six joints, at nearly every time some motor gives its full torque."""
     motion, at_bound = check(ARM, fmu.unpacked("RobotArm"))
     assert motion.times[-1] < 1.0 and np.count_nonzero(at_bound.any(axis=1)) > 0.8 * len(motion.inputs)
 
 
 def test_controllers():
-    """Through noise and delay both let it stand; the one that looks ahead stays on its track, which the other leaves."""
+    """Both controllers balance the cart with noise and delay; the predictive one stays on its track, which the other leaves."""
     unpacked = fmu.unpacked("InvertedPendulumCart")
     plant = plant_of(unpacked)
-    # The linearization, of which the states follow without a force from M, m, l as in textbooks.
+    # The linearization without force, from M, m, l as in textbooks.
     np.testing.assert_allclose((plant.a[2:4, 1] / 1e-3)[:2], [-0.1 * 9.81, 1.1 * 9.81 / 0.5], rtol=1e-4)
     reached = {}
     for name, controller in CONTROLLERS.items():

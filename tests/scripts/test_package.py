@@ -1,4 +1,4 @@
-"""The command of the package, for FMUs that are built: signals, what is recorded, linearizations, templates, and what is wrong."""
+"""The package's command for built FMUs: inputs, recorded variables, linearizations, templates, and mistakes."""
 
 import html
 import re
@@ -13,7 +13,7 @@ import fmu
 import package
 from building import build_systems
 
-# Upright, in a straight ride. x forward, z up: the benchmark's products of inertia have another sign.
+# Upright, in a straight ride. x points forward, z up; the products of inertia in the benchmark have the opposite sign.
 BICYCLE = """\
 <system name="Bicycle" description="Whipple's bicycle">
   <parameter name="v" start="5" unit="m/s"/>
@@ -60,13 +60,13 @@ def succeed(result):
 
 
 def matrix(name, text):
-    """Of the table that begins with the name."""
+    """The matrix of the table with this name."""
     rows = re.search(rf"^{name}  .*\n((?:.+\n?)*)", text, re.M)[1].splitlines()
     return np.array([[float(word) for word in row.split()[1:]] for row in rows])
 
 
 def test_a_cart_to_first_order(command, tmp_path):
-    """With a rod without mass: (M + m) x'' = F - m l theta'', l theta'' = g theta - x''."""
+    """With a massless rod: (M + m) x'' = F - m l theta'', l theta'' = g theta - x''."""
     text = succeed(command("linearize", fmu.archive("InvertedPendulumCart"), "--at", "theta=0", "--set", "m=2", "l=0.25", cwd=tmp_path))
     M, m, l, g = 1, 2, 0.25, 9.81
     A, B = np.zeros((4, 4)), np.zeros((4, 1))
@@ -78,7 +78,7 @@ def test_a_cart_to_first_order(command, tmp_path):
 
 
 def test_constraints_leave_independent_states(command, tmp_path):
-    """A pendulum in x and y, at rest at its lowest point, is a pendulum: x'' = -g/l x."""
+    """A pendulum in x and y at rest at its lowest point has one independent coordinate: x'' = -g/l x."""
     result = command("linearize", fmu.archive("PendulumCartesian"), "--at", "x=0", "y=-1", "vx=0", "vy=0", "--set", "l=1", cwd=tmp_path)
     text = succeed(result)
     np.testing.assert_allclose(matrix("A", text), [[0, 1], [-9.81, 0]], rtol=1e-8, atol=1e-9)
@@ -93,7 +93,7 @@ def bicycle():
 def test_a_bicycle_rights_itself(bicycle, command, tmp_path):
     """
     Eigenvalues of J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab: Linearized dynamics equations for the balance and steer of a
-    bicycle, 2007. Wheels are a line each; what is fixed at the start is moved to linearize.
+    bicycle, 2007. Each wheel is one line of the XML; the linearization moves coordinates whose start is fixed.
     """
     benchmark = {3: [1.70675605663975 + 2.31582447384325j, -2.63366137253667, -10.3510146724592], 5: [-0.77534188219585 + 4.46486771378823j, -0.32286642900409, -14.0783896927982]}
     for v, expected in benchmark.items():
@@ -104,7 +104,7 @@ def test_a_bicycle_rights_itself(bicycle, command, tmp_path):
 
 
 def test_a_bicycle_keeps_its_energy(bicycle, open_fmu):
-    """At 4.6 m/s a push at the handlebar fades, and the energy that it has brought stays."""
+    """At 4.6 m/s the motion after a push at the handlebar decays, while its energy is conserved."""
     instance = open_fmu("Bicycle").initialize({"v": 4.6})
     instance.set({"torque": 2.0})
     instance.run(0.2, 0.02)
@@ -118,7 +118,7 @@ def test_what_is_no_equilibrium(command, tmp_path):
     assert "the operating point is not an equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
 
 
-# A block that its friction holds against a spring, with a pendulum on it.
+# A block that sticks by friction against a spring, with a pendulum on it.
 STUCK = """\
 <system name="Stuck"><coordinate name="x" velocity="v" unit="m" start="0.3"/><coordinate name="phi" velocity="omega" unit="rad"/>
   <input name="u" unit="N"/> <particle name="block" mass="2" x="x"/> <particle name="bob" mass="0.5" x="x + 0.4*sin(phi)" y="-0.4*cos(phi)"/>
@@ -126,7 +126,7 @@ STUCK = """\
   <friction name="rub" velocity="v" force="10"/> <output name="held">rub.force</output>
 </system>
 """
-# A body in a hollow, which is as a spring across, with a pendulum on it.
+# A body in a hollow, which acts as a spring across, with a pendulum on it.
 RESTING = """\
 <system name="Resting"><coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/><coordinate name="phi" velocity="omega" unit="rad"/>
   <particle name="body" mass="2" x="x" y="y"/> <particle name="bob" mass="0.5" x="x + 0.4*sin(phi)" y="y - 0.4*cos(phi)"/>
@@ -157,7 +157,7 @@ def resting():
     ("Standing", "left, right, rub", [[0, 0, 0], [0, 0, 1], [0, -50 / 0.7, 0]], [[0], [0], [1 / 0.7]], [0, -25, 0]),
 ])  # fmt: skip
 def test_closed_contacts_and_sticking_frictions_are_constraints(resting, command, tmp_path, name, constraints, A, B, load):
-    """The linearized motion stays on them, whose forces are outputs; the result names them."""
+    """Closed contacts and sticking frictions constrain the linearized motion; their forces are outputs, and the result names them."""
     result = command("linearize", fmu.archive(name), cwd=tmp_path)
     text = succeed(result)
     np.testing.assert_allclose(matrix("A", text), A, rtol=1e-8, atol=1e-8)
@@ -184,7 +184,7 @@ def test_near_a_contact_the_steps_are_small(resting, command, tmp_path):
 
 
 def test_signals_and_what_is_recorded(command, tmp_path):
-    """A force on a cart without a pendulum, which is t: x = t^3/6; whichever the version of FMI."""
+    """A force F = t on a cart without a pendulum gives x = t^3/6, in either version of FMI."""
     (tmp_path / "F.csv").write_text("time,F\n0,0\n1,1\n")
     for archive in (fmu.archive("InvertedPendulumCart"), fmi3.archive("InvertedPendulumCart")):
         words = ["m=1e-9", "theta=0", "--input", "F.csv", "--stop-time", "1", "--step", "0.25", "--tolerance", "1e-9", "--output", "cart.x", "der(v)"]
@@ -209,7 +209,7 @@ def test_templates(template, command, tmp_path):
 
 
 def test_a_sweep(command, tmp_path):
-    """Of a linear pendulum: theta = theta0 cos(sqrt(g/l) t)."""
+    """The values of a linear pendulum are theta = theta0 cos(sqrt(g/l) t)."""
     words = ["--vary", "l=0.5,2", "--vary", "theta0=0.1:0.3:3", "--stop-time", "2", "--output", "runs.parquet"]
     assert "6 runs, 0 failed" in succeed(command("sweep", fmu.archive("SimplePendulumLinear"), *words, cwd=tmp_path))
     runs = pq.read_table(tmp_path / "runs.parquet").to_pydict()
@@ -218,7 +218,7 @@ def test_a_sweep(command, tmp_path):
 
 
 def test_a_sweep_in_lanes(command, tmp_path):
-    """A pendulum falls from rest at 90 degrees: after a period of 4 K(1/2) sqrt(l/g) it is there again; one of no length has no motion."""
+    """A pendulum released at 90 degrees returns after a period of 4 K(1/2) sqrt(l/g); one of length 0 fails."""
     period = 4 * 1.8540746773013719 / np.sqrt(9.81)
     words = ["--vary", f"theta={np.pi / 2!r}", "--vary", "l=0:2:2001", "--stop-time", repr(float(period)), "--output", "runs.parquet"]
     assert "2001 runs, 1 failed" in succeed(command("sweep", fmu.archive("SimplePendulum"), *words, cwd=tmp_path))
@@ -275,7 +275,7 @@ def test_an_interrupt_while_modules_are_imported(module, tmp_path):
 
 
 def test_completion(command, tmp_path):
-    """What bash is given completes commands, words and files."""
+    """The completion script for bash completes commands, options and files."""
     (tmp_path / "completion").write_text(succeed(command("--print-completion", "bash", cwd=tmp_path)))
     (tmp_path / "arm.urdf").touch()
     for typed, completed in (("linea", "linearize"), ("run --stop", "--stop-time"), ("run ar", "arm.urdf")):
@@ -350,7 +350,7 @@ def test_pieces_and_kane_of_sympy(tmp_path):
 
 
 def test_what_a_result_can_show(tmp_path):
-    """Figure, page and table of a motion in Python, from an FMU that is gone by then; a picture and a page in Jupyter."""
+    """Figure, page and table of a motion in Python, after the FMU has been deleted; a picture and a page in Jupyter."""
     folder = package.assemble(tmp_path / "package")
     (tmp_path / "Swing.fmu").write_bytes(fmu.archive("SimplePendulum").read_bytes())
     script = """
@@ -447,7 +447,7 @@ SENTENCES = [
 
 
 def test_mistakes_in_python(tmp_path):
-    """A Problem with the remedy each, no traceback from within."""
+    """Each mistake raises a Problem with its remedy, without an internal traceback."""
     (tmp_path / "script.py").write_text(IN_SENTENCES.replace("PENDULUM", repr(str(fmu.archive("SimplePendulum")))))
     printed = succeed(package.python(package.assemble(tmp_path / "package"), "script.py", cwd=tmp_path)).splitlines()
     assert len(printed) == len(SENTENCES)

@@ -1,4 +1,4 @@
-"""The plot that scripts/run leaves: what is drawn together, where names stand, and events."""
+"""The plot of scripts/run: which variables share a panel, positions of names, and events."""
 
 import math
 import sys
@@ -19,14 +19,17 @@ def panels(name):
 
 
 def test_what_is_drawn_together():
-    """Angles of a pendulum are; that of a motor whose gear has a ratio of 20 is not, nor are balls that rest but for rounding drawn large."""
+    """
+    Angles of a pendulum share a panel; a motor's angle behind a gear of ratio 20 does not. Rounding errors of resting balls are not
+    magnified.
+    """
     assert ["theta1", "theta2"] in panels("DoublePendulum")
     assert ["theta"] in panels("MotorPendulum") and ["motor.theta"] in panels("MotorPendulum")
     assert [f"theta[{i}]" for i in range(1, 6)] in panels("NewtonsCradle")
 
 
 def test_events():
-    """A ball's bounces are marked when they are."""
+    """Events are marked at the times of a ball's bounces."""
     motion = simulate(fmu.archive("BouncingBall"), {"h": 1.0, "e": 0.8})
     marks = event_times(motion.values)
     fall = math.sqrt(2 / 9.81)
@@ -53,7 +56,7 @@ def figure(name, **options):
 
 
 def test_many_of_a_kind_have_a_panel_of_their_own():
-    """A rope's 200 heights are not spread over several panels by their size; the names of the first and the last tell what the colours mean."""
+    """A rope's 200 heights share one panel, whatever their size; the legend names the first and the last."""
     panel_of = {names[0]: names for names in panels("Rope")}
     assert panel_of["x[1]"] == [f"x[{i}]" for i in range(1, 201)] and panel_of["y[1]"] == [f"y[{i}]" for i in range(1, 201)]
     legends = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in figure("Rope", stop_time=0.1).axes]
@@ -61,7 +64,10 @@ def test_many_of_a_kind_have_a_panel_of_their_own():
 
 
 def test_what_hardly_changes_is_level():
-    """The spin of a gyrocompass, 2000 rad/s to some 1e-9 of it, has ticks to be read. The couplers of equal rods do not turn: their rounding errors are not drawn large."""
+    """
+    The spin of a gyrocompass, 2000 rad/s to some 1e-9 of it, has readable ticks. The couplers of equal rods do not rotate: their rounding
+    errors are not magnified.
+    """
     spin = figure("Gyrocompass").axes[-1]
     low, high = spin.get_ylim()
     assert low < 1999 and high > 2001 and spin.yaxis.get_major_formatter().get_offset() == ""

@@ -1,4 +1,4 @@
-"""Values with units on command lines and in Python, against factors that the SI brochure and the international yard and pound give."""
+"""Values with units on command lines and in Python, against conversion factors of the SI brochure and the international yard and pound."""
 
 import math
 import subprocess
@@ -63,7 +63,7 @@ def test_lagc_needs_both_words():
 
 
 def test_start_values():
-    """sin(theta/2) = sin(15 deg) at the start: height = l (1 - cos(30 deg))."""
+    """height = l (1 - cos(30 deg)) at the start."""
     motion = simulate(archive("SimplePendulum"), {"theta": "30deg", "l": "20cm", "m": "pi/4"}, stop_time=0.1)
     assert motion.outputs["theta"][0] == pytest.approx(math.pi / 6, rel=1e-15)
     assert motion.start["l"] == 0.2 and motion.start["m"] == pytest.approx(math.pi / 4, rel=1e-15)
@@ -80,7 +80,7 @@ def test_commands(command, tmp_path):
     assert wrong.returncode == 1 and wrong.stderr == "lagrange-fmu: theta: '30kg' is in kg; expected a value in rad\n"
 
     found = command("linearize", fmu, "--at", "theta=180deg", "--set", "l=20cm", cwd=tmp_path)
-    assert "at theta = 3.14159265" in found.stdout and "7.00357" in found.stdout  # sqrt(g/l), beside the upright
+    assert "at theta = 3.14159265" in found.stdout and "7.00357" in found.stdout  # sqrt(g/l), at the upper equilibrium
 
     data = tmp_path / "data.csv"
     swings = simulate(fmu, {"l": 0.4, "theta": 0.2}, output=["theta"], stop_time=1).outputs

@@ -1,4 +1,4 @@
-"""The examples of README.md and of the pages beside the systems work when they are pasted; what they list is there."""
+"""The examples of README.md and of the pages beside the systems work as pasted, and the listed files exist."""
 
 import re
 import zipfile
@@ -42,7 +42,7 @@ def test_linearization_as_printed():
 
 
 def anchors(page):
-    """Of the headings, as they are made of them where pages are shown."""
+    """Anchors of the headings, as GitHub generates them."""
     headings = re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", page.read_text(), flags=re.S), re.M)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
 
@@ -65,7 +65,7 @@ def test_robot(tmp_path):
     (tmp_path / "arm.urdf").write_text(robot)
     result = lagc(tmp_path / "arm.urdf", "-o", tmp_path)
     assert result.returncode == 0 and result.stderr == ""
-    # The one equation, with the moment of inertia about the joint, 0.06 + 2 * 0.3^2.
+    # The equation has the moment of inertia about the joint, 0.06 + 2 * 0.3^2.
     assert "0.24*der(shoulder_velocity) = shoulder_torque" in (tmp_path / "documentation" / "index.html").read_text()
 
 
@@ -83,7 +83,7 @@ def test_every_system_is_in_the_table():
 
 
 def test_table_of_features():
-    """scripts/features brings it up to date."""
+    """The table is that which scripts/features writes."""
     assert f"<!-- features -->\n{features.table()}\n<!-- end -->" in SYSTEMS
 
 

@@ -1,4 +1,4 @@
-"""The times of single communication steps."""
+"""Durations of single communication steps."""
 
 import os
 import subprocess
@@ -11,31 +11,31 @@ from fmu import archive, unpacked
 
 
 def test_times_of_steps():
-    """Of a system with impacts: all steps are there, and the times are in order."""
+    """All steps of a system with impacts are measured, and the quantiles ascend."""
     row = realtime.measure("BouncingBall", unpacked("BouncingBall"), read_model_description(archive("BouncingBall")), 3000)
     assert row["steps"] == "3000"
     times = [float(row[name]) for name in ("median", "99.9 %", "longest", "longest as seen")]
     assert 0 < times[0] < times[-1] and times == sorted(times)
     assert row["system calls"] in (0, "")
-    assert int(row["allocations"]) <= 3  # of the first step and the first impact, however many impacts there are
+    assert int(row["allocations"]) <= 3  # those of the first step and the first impact, for any number of impacts
 
 
 def test_an_fmu_that_stops():
-    """What is no library is refused; no time is invented for it."""
+    """A missing library is an error, without times."""
     words = realtime.words_for(unpacked("BouncingBall"), read_model_description(archive("BouncingBall")), 10, 1)
     words[1] = "/nonexistent.so"
     assert subprocess.run(words, capture_output=True).returncode != 0
 
 
 def test_peers():
-    """FMPy's solvers do as many steps, of the same model."""
+    """FMPy's solvers take as many steps of the same model."""
     for solver in ("Euler", "CVode"):
         row = realtime.imported_pendulum(solver, 200)
         assert row["steps"] == 200 and 0 < float(row["median"]) <= float(row["longest"]) <= float(row["longest as seen"])
 
 
 def test_a_peer_in_python(tmp_path):
-    """By PythonFMU, which is there after scripts/test; in a process of its own, since a mistake with its library would end this one."""
+    """PythonFMU, which scripts/test installs, runs in its own process, since an error in its library would end this one."""
     code = "import sys, realtime; print([realtime.python_pendulum(folder, 300)['steps'] for folder in sys.argv[1:]])"
     folders = [tmp_path / name for name in ("first", "second", "third")]
     for folder in folders:

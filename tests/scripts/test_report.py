@@ -1,4 +1,4 @@
-"""What the report of stiff systems stands on: its references, its models, its inputs and its ratios."""
+"""Basis of the report of stiff systems: references, models, inputs and ratios."""
 
 import importlib.util
 import math
@@ -32,7 +32,7 @@ def systems():
 
 @pytest.fixture
 def built(monkeypatch, tmp_path):
-    """The FMUs of this test in place of the builds with each solver, and no references of other runs."""
+    """Use the FMUs of this test in place of the builds with each solver, without stored references."""
     monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
     monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD / "stiff-systems")
     monkeypatch.setattr(stiff, "METHODS", ["auto", "radau"])
@@ -40,7 +40,7 @@ def built(monkeypatch, tmp_path):
 
 @mpmath.workdps(40)
 def damped(b, k, level, t):
-    """x'' = -b x' - k x + level from rest at 1: weak damping or strong."""
+    """x'' = -b x' - k x + level from rest at 1, underdamped or overdamped."""
     root = mpmath.sqrt(mpmath.mpc(b * b / 4 - k))
     one, other = -mpmath.mpf(b) / 2 + root, -mpmath.mpf(b) / 2 - root
     rest = mpmath.mpf(level) / k
@@ -70,7 +70,7 @@ def test_definitions(name, open_fmu):
 
 
 def test_a_small_problem(built):
-    """Every way of communication comes to the reference, the changing inputs included."""
+    """Every way of communication reaches the reference, including changing inputs."""
     problem = Problem("small", "VanDerPol", 5.0, 100, dict(mu=20.0), ("F", 5.0))
     for way in problem.ways:
         _, _, difference = right_states(problem, way)
@@ -83,7 +83,7 @@ def test_a_small_problem(built):
 
 
 def samples_of(method, factor):
-    """Errors of 1e-2, 1e-4, ... in times that are powers of them."""
+    """Samples with errors of 1e-2, 1e-4, ..., and times that are powers of the errors."""
     return [Sample("P", "one step", method, 0.0, factor * error**-0.25, error) for error in (1e-2, 1e-4, 1e-6, 1e-8)]
 
 
@@ -104,11 +104,11 @@ def test_summary():
     assert "1 of 2 cases; at worst 1.50 times (B, many steps)" in sentences[0] and "3.00 to 4.00 times" in sentences[1]
     assert "on 2 of 2 problems, in 20.00 to 30.00 times the time of auto" in sentences[2]
     assert "2 of 2 cases; at worst 1.25 times (B, many steps)" in sentences[3] and "5.00 to infinitely many times" in sentences[4]
-    assert len(sentences) == 5  # none of exudyn where it never ran
+    assert len(sentences) == 5  # none of exudyn, which was not run
 
 
 def test_the_rope(monkeypatch, tmp_path):
-    """Its line of the report: the reference by two methods, here of the first moments, against forces written by hand."""
+    """The rope's reference by two methods, here for a short time, against forces written by hand."""
     monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
     monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
     monkeypatch.setattr(stiff, "METHODS", ["auto"])
@@ -133,7 +133,7 @@ def test_the_rope(monkeypatch, tmp_path):
 @pytest.mark.parametrize("peer", [name for name in stiff_peers.PEERS if name.startswith("exudyn")])
 @pytest.mark.parametrize("problem", [elastic(1e4, 0.1), damped_pendulum(1e2)], ids=lambda problem: problem.system)
 def test_exudyn(peer, problem, monkeypatch, tmp_path):
-    """It has the same system: its methods of order 2 converge to the reference."""
+    """Exudyn models the same system: its methods of order 2 converge to the reference."""
     if importlib.util.find_spec("exudyn") is None:
         pytest.skip("exudyn is not installed")
     monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
@@ -145,7 +145,7 @@ def test_exudyn(peer, problem, monkeypatch, tmp_path):
 
 
 def test_polar_coordinates():
-    """Of a point at length 2 and angle 0.3 that moves outwards by 0.5 and turns by -0.7."""
+    """Polar coordinates of a point at length 2 and angle 0.3, with radial velocity 0.5 and angular velocity -0.7."""
     out, across = np.array([np.sin(0.3), -np.cos(0.3), 0.0]), np.array([np.cos(0.3), np.sin(0.3), 0.0])
     state = stiff_peers.polar(2 * out, 0.5 * out - 1.4 * across)
     assert state == pytest.approx({"r": 2.0, "theta": 0.3, "vr": 0.5, "omega": -0.7})

@@ -1,4 +1,4 @@
-"""The report comes to its end on any machine: what fails leaves a sentence, and all else is there."""
+"""The report completes on any machine: each failure leaves a sentence, and all other parts appear."""
 
 import csv
 
@@ -28,7 +28,7 @@ def fail(*arguments, **names):
 
 
 def test_a_section_that_fails(folder, monkeypatch, capsys):
-    """The page, with the sections before and after it, and a warning; the exit status is that of success."""
+    """The page has the sections before and after the failing one, and a warning; the exit status is 0."""
     monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: Section(["fine"], "<p>content one</p>")), ("Second", fail),
                                              ("Third", lambda *words: Section([("levels", ["item"])], "<p>content three</p>"))])  # fmt: skip
     assert report.main(["--quick"]) == 0
@@ -38,7 +38,7 @@ def test_a_section_that_fails(folder, monkeypatch, capsys):
 
 
 def test_the_page_grows(folder, monkeypatch):
-    """What a section made is on the disk when the next one begins."""
+    """The page on disk has each section before the next one starts."""
     pages = []
     monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: Section([], "<p>content one</p>")),
                                              ("Second", lambda *words: pages.append((folder / "index.html").read_text()) or Section([], ""))])  # fmt: skip
@@ -57,7 +57,7 @@ def small(name, end=1.0):
 
 
 def test_a_stiff_problem_without_a_reference(folder, monkeypatch, capsys):
-    """Its methods are not run in vain; the other one has its plot, its line and its samples."""
+    """Its methods are not run; the other problem has its plot, its row and its samples."""
     asked = []
 
     def right_states(problem, way):
@@ -75,13 +75,13 @@ def test_a_stiff_problem_without_a_reference(folder, monkeypatch, capsys):
     monkeypatch.setattr(stiff, "sample_peers", lambda problem, quick: [])
     _, content, wrong, _ = report.stiff_section(True, lambda what: None)
     assert "<p>Left out, Lost: it did not come to the end.</p>" in content and "<td>Found</td>" in content and wrong == 0
-    assert content.count("<svg") == 2 and set(asked) == {"Found"}  # the legend is one
+    assert content.count("<svg") == 2 and set(asked) == {"Found"}  # with one legend
     with open(folder / "stiff.csv") as file:
         assert {row["problem"] for row in csv.DictReader(file)} == {"Found"}
 
 
 def test_methods_that_give_up(folder, monkeypatch):
-    """Where all do, there is an empty table."""
+    """If all methods give up, the table is empty."""
     monkeypatch.setattr(stiff, "QUICK", [small("P")])
     monkeypatch.setattr(stiff, "right_states", lambda problem, way: (None, "closed form", 0.0))
     monkeypatch.setattr(stiff, "sample", lambda *words: None)
@@ -107,7 +107,7 @@ def test_a_mechanism_that_fails(monkeypatch):
 
 
 def test_peers_and_references_that_fail(monkeypatch):
-    """A peer that is not there or crashes counts as one that gave up; without a reference a system is left out."""
+    """A missing or crashing peer counts as giving up; a system without a reference is omitted."""
     tasks = [(work_precision.sample_peer, (name, "Peer", 1e-4)) for name in ("SimplePendulum", "Lost")]
     monkeypatch.setattr(work_precision, "PEERS", {"Peer": (fail, [], None)})
     monkeypatch.setattr(work_precision, "reference", lambda name: fail() if name == "Lost" else None)

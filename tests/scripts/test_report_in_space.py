@@ -1,4 +1,4 @@
-"""What the report of bodies in space stands on: the links that other programs are built from, references, accelerations of robots."""
+"""Basis of the report of bodies in space: models for other programs, references, accelerations of robots."""
 
 import importlib.util
 import math
@@ -20,20 +20,20 @@ BRICARD, GOVERNOR, TOP, FREE_BODY, ARM = PROBLEMS
 
 @pytest.fixture(autouse=True)
 def built(monkeypatch):
-    """The FMUs as shipped in place of the builds with each solver."""
+    """Use the FMUs as shipped in place of the builds with each solver."""
     monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
 
 
 @pytest.fixture
 def governor(monkeypatch):
-    """With the FMU at a tight tolerance for its reference, which takes a minute to compute."""
+    """The governor with the FMU at a tight tolerance in place of its reference, which takes a minute."""
     stepped = driver.step("taylor", GOVERNOR.system, {}, GOVERNOR.end, 1e-11, driver.POINTS, 0)
     monkeypatch.setitem(vars(GOVERNOR), "exact", stepped.columns(GOVERNOR.compared))
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.system)
 def test_energy_at_the_start(problem, open_fmu):
-    """That of the FMU; the governor's springs are at rest. Bricard's rods hang from a level one."""
+    """The energy is that of the FMU; the governor's springs are at rest. Bricard's rods hang from a horizontal one."""
     expected = open_fmu(problem.system).initialize().get("totalEnergy")
     assert problem.model.start_energy() == pytest.approx(expected, rel=1e-8 if problem is ARM else 1e-13)
     if problem is BRICARD:
@@ -42,7 +42,10 @@ def test_energy_at_the_start(problem, open_fmu):
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.system)
 def test_links_move_with_their_joints(problem):
-    """At the start a hinge and a ball have one velocity on both sides, and the links of hinges and slides turn about the axis at most."""
+    """
+    At the start both sides of a hinge or ball joint have the same velocity, and the relative rotation of hinges and sliders is about the
+    axis at most.
+    """
     links = problem.model.links
     at = lambda link, point: np.add(link.velocity, np.cross(link.turning, np.subtract(point, link.centre)))
     for link in links:
@@ -69,7 +72,7 @@ def test_errors_of_the_fmu(problem, measure, largest):
     assert first_run(problem, "taylor", 1e-8)[1].measured(measure) < largest
 
 
-# Steps at which errors are compared, of the methods of order 2 or more; implicitfast has order 1, and does without energy.
+# Steps at which errors of the methods of order 2 or more are compared; implicitfast has order 1, and its energy is not compared.
 ORDER_TWO = [(BRICARD, "drift", 500, 2000), (FREE_BODY, "error", 2000, 8000), (GOVERNOR, "error", 1000, 4000), (TOP, "error", 4000, 16000)]
 CONVERGENT = [
     *((peer, *run) for peer in METHODS[2:4] for run in ORDER_TWO if run[0] is not TOP or "index 2" in peer),
@@ -81,7 +84,7 @@ CONVERGENT = [
 
 @pytest.mark.parametrize("peer, problem, measure, rough, fine", CONVERGENT, ids=lambda value: getattr(value, "system", str(value)))
 def test_peers_converge(peer, problem, measure, rough, fine, governor):
-    """They have the same mechanism."""
+    """Peers model the same mechanism, since their errors converge."""
     if importlib.util.find_spec(peer.split()[0].lower()) is None:
         pytest.skip(f"{peer} is not installed")
     rough, fine = (first_run(problem, peer, steps)[1].measured(measure) for steps in (rough, fine))
@@ -90,7 +93,7 @@ def test_peers_converge(peer, problem, measure, rough, fine, governor):
 
 @pytest.mark.parametrize("peer", METHODS[2:5])
 def test_bricard_in_other_programs(peer):
-    """Its energy would be kept without a constraint, too: the third joint is where that of the FMU is."""
+    """Energy would be conserved without a constraint, too: the position of the third joint is that of the FMU."""
     if importlib.util.find_spec(peer.split()[0].lower()) is None:
         pytest.skip(f"{peer} is not installed")
     (_, ours), (_, theirs) = Fmu(BRICARD, 1e-10, "taylor", 60).record(), Peer(BRICARD, 2000, peer).record()
@@ -98,7 +101,7 @@ def test_bricard_in_other_programs(peer):
 
 
 def test_row_of_accelerations():
-    """The ratio is the median of ratios, not that of medians; alone, the FMU has none."""
+    """The ratio is the median of ratios, not the ratio of medians; the FMU alone has none."""
     times = [(1e-6, 2e-6), (2e-6, 8e-6), (4e-6, 4e-6)]
     assert accelerations.row("R", "axes", times) == ["R", "axes", 2000, pytest.approx(4000), pytest.approx(2)]
     name, text, ours, theirs, ratio = accelerations.row("R", "axes", [(3e-6,), (1e-6,), (2e-6,)])
@@ -107,8 +110,8 @@ def test_row_of_accelerations():
 
 def test_accelerations_without_pinocchio(monkeypatch, tmp_path):
     """
-    A sentence in its place: without the package, the compiler or a header, wherever a release of Debian has it, and in a quick
-    report that would have to compile it.
+    The report has a sentence if the package, the compiler or a header is missing, in the folders of all Debian releases, and in a quick
+    report that would have to compile the program.
     """
     monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
     monkeypatch.setattr(accelerations, "HEADERS", [("here.h", [tmp_path / "elsewhere", tmp_path], "libeigen3-dev")] * 2)
@@ -127,7 +130,7 @@ def test_accelerations_without_pinocchio(monkeypatch, tmp_path):
 
 
 def test_accelerations_of_the_fmu_alone(monkeypatch, tmp_path):
-    """Where Pinocchio's program does not compile: its first words, and the FMU's times."""
+    """If Pinocchio's program does not compile, the report has the first error and the FMU's times."""
     monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
     monkeypatch.setattr(accelerations, "ROUND", 1e-3)
     monkeypatch.setattr(accelerations, "ROBOTS", ROBOTS[:1])

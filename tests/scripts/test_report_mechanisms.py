@@ -1,4 +1,4 @@
-"""What the report of mechanisms stands on: its references, the mechanisms that other programs are built from, its section."""
+"""Basis of the report of mechanisms: references, models for other programs, and its section."""
 
 import importlib.util
 import math
@@ -21,7 +21,7 @@ PENDULUM, FOUR_BARS, SQUEEZER, KNIFE_EDGE = PROBLEMS
 
 @pytest.fixture(autouse=True)
 def built(monkeypatch):
-    """The FMUs as shipped in place of the builds with each solver."""
+    """Use the FMUs as shipped in place of the builds with each solver."""
     monkeypatch.setattr(driver, "folder_of", lambda solver: fmu.BUILD)
 
 
@@ -32,7 +32,7 @@ def start_of(planar):
 
 @pytest.mark.parametrize("problem", [PENDULUM, FOUR_BARS], ids=lambda problem: problem.system)
 def test_energy_at_the_start(problem, open_fmu):
-    """41 pillars turn about their feet, 40 beams move along; all stand up. The pendulum rests at the height of its pivot."""
+    """41 pillars rotate about their feet, 40 beams translate; all are upright. The pendulum is at rest at the height of its pivot."""
     expected = 41 * (1 / 6 + 9.81 / 2) + 40 * (1 / 2 + 9.81) if problem is FOUR_BARS else 0.0
     assert problem.model.start_energy() == pytest.approx(expected, rel=1e-14)
     assert open_fmu(problem.system).initialize().get("totalEnergy") == pytest.approx(expected, rel=1e-12)
@@ -52,7 +52,7 @@ def test_bodies_move_with_their_joints(problem):
 
 
 def test_lengths_of_the_squeezer():
-    """Between its joints, of which the knee is placed by the crank alone: the start values close all three loops."""
+    """Distances between the joints, where the crank alone gives the knee: the start values close all three loops."""
     value = fmu.start_values("AndrewsSqueezer")
     hinge, tip, b, a, _, left, right, knee, *_ = (joint.point for joint in SQUEEZER.model.joints)
     sides = dict(rr=(hinge, tip), d=(tip, knee), ss=(b, knee), e=(left, knee), zf=(right, knee), zt=(a, left), u=(a, right))
@@ -61,7 +61,7 @@ def test_lengths_of_the_squeezer():
 
 
 def test_errors():
-    """Of the reference itself nothing, and of what is off by a millionth, that."""
+    """The reference has the error 0, and a deviation of 1e-6 that error."""
     angles = PENDULUM.expected(PENDULUM.times)
     assert PENDULUM.error(angles) == 0.0
     angles[37, 1] += 1e-6
@@ -73,7 +73,7 @@ def test_errors():
 
 
 def test_angles_of_the_squeezer():
-    """Bodies that turn together keep their relative angles."""
+    """Bodies that rotate together keep their relative angles."""
     value = fmu.start_values("AndrewsSqueezer")
     turned = np.zeros((1, 21))
     turned[0, 2::3] = [0.1, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5]
@@ -91,7 +91,9 @@ def test_errors_of_the_fmu(problem, largest):
 @pytest.mark.parametrize("peer", METHODS[2:])
 @pytest.mark.parametrize("problem, measure", [(PENDULUM, "error"), (FOUR_BARS, "drift"), (SQUEEZER, "error")], ids=["A01", "A02", "A03"])
 def test_peers_converge(peer, problem, measure):
-    """They have the same mechanism: their errors fall with their steps, with order 1 at least. 10 J are a tenth of what goes to and fro."""
+    """
+    Peers model the same mechanism: their errors decrease with the step, at least with order 1. 10 J are a tenth of the exchanged energy.
+    """
     if importlib.util.find_spec(peer.split()[0].lower()) is None:
         pytest.skip(f"{peer} is not installed")
     if problem is FOUR_BARS and "index 2" in peer:
@@ -101,7 +103,7 @@ def test_peers_converge(peer, problem, measure):
 
 
 def test_section(monkeypatch, tmp_path):
-    """Of a small run, whether or not others are installed; times are not judged."""
+    """The section of a small run, with or without other programs; times are not judged."""
     monkeypatch.setattr(report, "FOLDER", tmp_path)
     monkeypatch.setattr(mechanisms, "PROBLEMS", [PENDULUM, KNIFE_EDGE])
     monkeypatch.setattr(mechanisms, "settings_of", lambda problem, method, quick: [1e-4, 1e-8] if method in mechanisms.SOLVERS else [100, 200])
@@ -115,7 +117,7 @@ def test_section(monkeypatch, tmp_path):
 
 
 def test_a_slow_reference(monkeypatch):
-    """Its time is not that of the first run, after which nothing finer would be tried."""
+    """The time of the reference does not count as that of the first run, after which finer settings would be skipped."""
     clock = [0.0]
 
     def slow(times):
@@ -128,7 +130,7 @@ def test_a_slow_reference(monkeypatch):
 
 
 def test_ratios():
-    """A method twice as slow at the same errors, one that never gets there, one that is not installed."""
+    """A method twice as slow at equal errors, one that never reaches the error, one that is not installed."""
     taylor = [Sample(PENDULUM.system, "taylor", 0.0, 10.0**-k, 10.0**-k, [1e-3 * 2**k, 3e-3 * 2**k]) for k in range(10)]
     slower = [Sample(s.system, "radau", 0.0, s.drift, s.error, [2 * t for t in s.times]) for s in taylor]
     rough = [Sample(PENDULUM.system, "MuJoCo RK4", 100, 0.1, 0.1, [1e-3])]

@@ -1,4 +1,4 @@
-"""The report's first screen: ratios of run times to an error, and what the pointer shows."""
+"""The report's first screen: ratios of run times to an error, and tooltips."""
 
 import math
 import re
@@ -17,10 +17,10 @@ RUNS = [
     Run("Smooth", "A", "SciPy Radau", 1e-9, math.nan),
     Run("Smooth", "A", "heyoka", 1e-3, 1e-9),
     Run("Smooth", "A", "MuJoCo RK4", 1e-3, 1e-3),
-    Run("Smooth", "A", "taylor", 1e-6, 1e-15),  # the FMU with another method is no other program
+    Run("Smooth", "A", "taylor", 1e-6, 1e-15),  # the FMU with another method is no peer
     Run("Stiff", "B", "auto", 1.0, 1e-2),
     Run("Stiff", "B", "exudyn generalized-alpha", 1.0, 1e-8),
-    Run("Stiff", "C", "SciPy Radau", 1.0, 1e-8),  # nothing to compare it with
+    Run("Stiff", "C", "SciPy Radau", 1.0, 1e-8),  # no other run to compare with
 ]
 
 
@@ -37,7 +37,7 @@ def test_ratios():
 
 
 def test_the_picture_and_the_table():
-    """A dot and a cell for each ratio, at the logarithm of it."""
+    """The picture has a dot, and the table a cell, for each ratio, on a logarithmic scale."""
     text = overview(RUNS)
     dots = dict(re.findall(r'<circle cx="([\d.]+)"[^>]*data-tip="A: ([^\n]*)', text))
     place = {ratio: float(x) for x, ratio in dots.items()}
@@ -57,5 +57,5 @@ def test_plots_tell_their_points():
     with_tips(line, ["first: \"1\" < 2", "second"])
     text = svg(figure)
     assert re.findall(r'<use data-tip="([^"]*)"', text) == ["first: &quot;1&quot; &lt; 2", "second"]
-    assert INK not in text and "currentColor" in text  # of the text around it, light or dark
+    assert INK not in text and "currentColor" in text  # the colour of the surrounding text, light or dark
     assert 'href="#section0"' in page([("Title", ""), ("Plots", text)])

@@ -1,4 +1,4 @@
-"""What the report of switching stands on: its closed forms, the phases that other programs are built from, its section."""
+"""Basis of the report of switching: closed forms, phases for other programs, and its section."""
 
 import importlib.util
 import math
@@ -27,7 +27,7 @@ def positions(problem, *times):
 
 
 def test_bounces():
-    """At impacts the height is 0, between them it is e^2 as high each time; rest after sqrt(2 h/g) (1 + e)/(1 - e)."""
+    """At impacts the height is 0; each flight is e^2 times as high; the ball rests after sqrt(2 h/g) (1 + e)/(1 - e)."""
     fall = math.sqrt(2 / 9.81)
     assert positions(BALL, fall, 2 * fall, 3 * fall, 20 * fall) == pytest.approx([0, 1, 0, 1], abs=1e-13)
     first, second = fall * (1 + 0.8), fall * (1 + 2 * 0.8 + 0.64)
@@ -36,7 +36,7 @@ def test_bounces():
 
 
 def test_swings_to_the_stop():
-    """The stop lies at the end of each swing, whose height at the turning points an impact takes down."""
+    """Each swing ends at the stop; an impact reduces the height at the turning points."""
     first = float(quarter(PENDULUM.all_values, math.sin(0.5)))
     height = lambda angle: 1 - math.cos(angle)
     kept = 0.81 * (height(1.0) - height(0.2)) + height(0.2)
@@ -47,7 +47,7 @@ def test_swings_to_the_stop():
 
 
 def test_slips():
-    """The spring pulls with the stiction where the block slips; behind that a period is as the one before."""
+    """The block slips when the spring's force equals the stiction; afterwards the motion is periodic."""
     sticking = 10 - 0.5 * (1 - math.sqrt(0.96)) / 0.1 + math.asin(0.2)
     period = math.pi + 2 * math.atan(0.2) + 10
     assert positions(BLOCK, 0.1, sticking, sticking + 3 * period) == pytest.approx([0.5 * (1 - math.cos(0.1)), 1.0, 1.0], rel=1e-12)
@@ -62,7 +62,7 @@ def test_cradle():
 
 @pytest.mark.parametrize("problem", [*PROBLEMS, LOSSLESS_PENDULUM], ids=name_of)
 def test_fmu(problem):
-    """In 100 communication steps and in one."""
+    """The error is small in 100 communication steps and in one."""
     for method in ("FMU", "FMU, one step"):
         runner, sample = first_run(problem, method, 1e-10, 10.0)
         assert runner.run() > 0 and sample.error < 1e-9 and sample.events > 5
@@ -70,7 +70,7 @@ def test_fmu(problem):
 
 @pytest.mark.parametrize("problem", GROWING, ids=name_of)
 def test_events(problem):
-    """That there are as many as are asked for; the cradle's come in bundles."""
+    """There are as many events as requested; those of the cradle come in groups."""
     _, sample = first_run(problem.with_events(10), "FMU", 1e-10, 10.0)
     assert 10 <= sample.events <= 11
 
@@ -78,7 +78,7 @@ def test_events(problem):
 @pytest.mark.parametrize("method", ["CVODE in C (model exchange)", "FMPy CVode (model exchange)"])
 @pytest.mark.parametrize("problem", PROBLEMS, ids=name_of)
 def test_importers(problem, method):
-    """Model exchange goes through the same events, to what BDF makes of the tolerance."""
+    """Model exchange has the same events, up to the error of BDF."""
     _, sample = first_run(problem, method, 1e-10, 10.0)
     assert sample.error < 1e-5
 
@@ -86,7 +86,7 @@ def test_importers(problem, method):
 @pytest.mark.parametrize("method", [m for m, (program, _) in METHODS.items() if program in ("SciPy", "heyoka")])
 @pytest.mark.parametrize("problem", PROBLEMS[:4], ids=name_of)
 def test_phases(problem, method):
-    """Others' events on phases written for them."""
+    """Other programs' events on phases written for them."""
     if importlib.util.find_spec(INSTALLED[METHODS[method][0]]) is None:
         pytest.skip(f"{method} is not installed")
     _, sample = first_run(problem, method, 1e-10, 20.0)
@@ -95,7 +95,7 @@ def test_phases(problem, method):
 
 @pytest.mark.parametrize("problem", [BALL, RESTING_BALL, PENDULUM], ids=name_of)
 def test_soft_contacts(problem):
-    """They are the same systems: shorter steps, which let contacts be stiffer, come nearer."""
+    """Peers with soft contacts model the same systems: with shorter steps, which allow stiffer contacts, errors decrease."""
     if importlib.util.find_spec("mujoco") is None:
         pytest.skip("MuJoCo is not installed")
     rough, fine = (first_run(problem, "MuJoCo implicitfast", steps, 20.0)[1].error for steps in (3000, 300000))
@@ -103,7 +103,7 @@ def test_soft_contacts(problem):
 
 
 def test_section(monkeypatch, tmp_path):
-    """Of a small run, whether or not others are installed; times are not judged."""
+    """The section of a small run, with or without other programs; times are not judged."""
     monkeypatch.setattr(report, "FOLDER", tmp_path)
     monkeypatch.setattr(switching, "PROBLEMS", [BLOCK])
     monkeypatch.setattr(switching, "GROWING", [BALL])
@@ -118,7 +118,7 @@ def test_section(monkeypatch, tmp_path):
 
 
 def test_what_fails(monkeypatch, tmp_path):
-    """A sentence for the problem, and the others go on; a program that is not installed is named."""
+    """A failing problem gives a sentence, and the others continue; a program that is not installed is named."""
     def absent(problem, setting, patience):
         raise ImportError
 
@@ -139,7 +139,7 @@ def test_what_fails(monkeypatch, tmp_path):
 
 
 def test_ratios():
-    """A method twice as slow at the same errors, one that never gets there, one that is not installed."""
+    """A method twice as slow at equal errors, one that never reaches the error, one that is not installed."""
     settings = range(2, 12)
     ours = [Sample(BALL.name, "FMU", 10.0, 0.0, 10.0**-k, 0, [1e-3 * 2**k, 3e-3 * 2**k]) for k in settings]
     slower = [Sample(s.problem, "SciPy DOP853 with events", 10.0, 0.0, s.error, 0, [2 * t for t in s.times]) for s in ours]

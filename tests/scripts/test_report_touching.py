@@ -1,4 +1,4 @@
-"""Bodies that touch, in the report: the closed forms against integration, and the table."""
+"""Bodies in contact in the report: closed forms against integration, and the table."""
 
 import math
 
@@ -13,7 +13,7 @@ from numerics.touching.problems import GRAVITY, PROBLEMS, SYSTEMS
 
 
 def test_cue_ball_by_integration():
-    """Newton's and Euler's laws with friction against the slip, which a tiny creep smooths where it ends."""
+    """Newton's and Euler's laws with friction opposite to the slip, regularized where the slip ends."""
     problem = next(p for p in PROBLEMS if p.name == "billiard")
     radius, mu, (wx, wy, _) = problem.body["radius"], problem.friction, problem.spin
 
@@ -28,7 +28,7 @@ def test_cue_ball_by_integration():
 
 
 def test_bounces():
-    """Each bounce leaves the share e^2 of the height; the ball is at the ground at the sum of the times, and highest between."""
+    """Each bounce keeps the share e^2 of the height; the ball is on the ground at the sum of the times, and highest halfway."""
     problem = next(p for p in PROBLEMS if p.name == "drop")
     fall, e = math.sqrt(2 / GRAVITY), problem.restitution
     for n in range(3):

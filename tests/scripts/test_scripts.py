@@ -1,4 +1,4 @@
-"""Scripts: words that are wrong, folders of one's own, set-up that was stopped, and two at once."""
+"""Scripts: wrong arguments, folders outside the clone, interrupted set-up, and two processes at once."""
 
 import fcntl
 import os
@@ -33,7 +33,7 @@ def script(path, text):
     path.chmod(0o755)
 
 
-# Notes what was asked of it, and makes environments whose pip works.
+# Fake Python that logs its arguments, and creates environments with a working pip.
 PYTHON = """
 echo "python $*" >>"$LOG"
 if [ "$1 $2" = "-m venv" ]; then
@@ -46,7 +46,7 @@ fi
 
 
 class Clone:
-    """The scripts with programs in place of Python and CMake that note how they are called."""
+    """The scripts with fake Python and CMake that log their calls."""
 
     def __init__(self, folder):
         self.folder, self.log = folder, folder / "log"
@@ -74,7 +74,7 @@ class Clone:
         return self.log.read_text().splitlines() if self.log.exists() else []
 
     def let_python_go(self):
-        """The environment is being made: lets that go on."""
+        """Wait until the environment is being made, and let that continue."""
         self.signal.read_text()
         self.signal.write_text("on\n")
 
@@ -89,7 +89,7 @@ def made(clone):
 
 
 def test_a_setup_that_was_stopped_is_made_good(clone):
-    """Killed while the environment is made: the next one makes it anew, and the one after finds it whole."""
+    """Killed while the environment is made: the next set-up makes it anew, and the one after finds it complete."""
     stopped = clone.start("setup", "run")
     clone.signal.read_text()
     stopped.kill()
@@ -130,7 +130,7 @@ def test_a_build_waits_for_another_in_its_folder(clone):
 
 
 def test_a_sweep_builds_its_own_fmu_alone(clone):
-    """And does not configure again what is configured: looking after all FMUs takes longer than a small sweep."""
+    """A sweep builds one FMU without configuring again; checking all FMUs takes longer than a small sweep."""
     stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
     script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
     (clone.folder / "build" / "venv" / "installed-sweep").write_text(stamp)
@@ -145,7 +145,7 @@ def test_a_sweep_builds_its_own_fmu_alone(clone):
 
 @pytest.fixture
 def ready(clone):
-    """A clone that is set up."""
+    """A clone after set-up."""
     stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
     script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
     (clone.folder / "build" / "venv" / "installed-run").write_text(stamp)
@@ -160,7 +160,7 @@ def add(folder):
 
 @pytest.mark.parametrize("word", ["own/Bead", "own/Bead/", "own/Bead/system.xml", "own", "./own/../own"])
 def test_a_folder_of_ones_own(word, ready, tmp_path):
-    """It is found from where the command is typed, and alone is built."""
+    """The folder is relative to the current one, and only its FMU is built."""
     bead = add(tmp_path / "else where" / "own" / "Bead")
     status, text = ready.run("run", word, "theta=1", cwd=tmp_path / "else where")
     assert status == 0, text
@@ -169,7 +169,7 @@ def test_a_folder_of_ones_own(word, ready, tmp_path):
 
 
 def test_a_robot(ready, tmp_path):
-    """CMake tells what the FMU of a file is named, which lagc takes from what is in it."""
+    """CMake writes the name of the FMU, which lagc takes from the content of the file."""
     (tmp_path / "arm.urdf").write_text('<robot name="arm 6"/>')
     (ready.folder / "build" / "own").mkdir()
     (ready.folder / "build" / "own" / "system_names").write_text("arm_6\n")
@@ -198,7 +198,7 @@ def test_systems_that_are_not_there(ready, tmp_path):
     assert ready.calls() == []
 
 
-# A source package that is there or not, and a build of it that works or not.
+# Fake apt-get, whose source package may be missing, and fake CMake, whose build may fail.
 APT = """
 echo "apt-get $*" >>"$LOG"
 case "$*" in *" source "*) test "$SOURCE" = there && touch sundials_1.orig.tar.xz ;; esac
@@ -215,7 +215,7 @@ esac
 
 @pytest.fixture
 def source(clone):
-    """A clone in which the source of SUNDIALS can be had and built."""
+    """A clone in which the source of SUNDIALS is available and compiles."""
     script(clone.folder / "bin" / "apt-get", APT)
     script(clone.folder / "bin" / "cmake", CMAKE)
     clone.environment |= {"SOURCE": "there", "MADE": "well"}
@@ -229,11 +229,11 @@ def test_sundials_is_built_once(source):
     assert {path.name for path in (build / "sundials").iterdir()} == {"lib", "version"}
     assert not (build / "sundials-unfinished").exists()
     calls = source.calls()
-    for call in calls:  # all that apt writes is in the build folder
+    for call in calls:  # all files of apt are in the build folder
         if call.startswith("apt-get"):
             assert all(f"{place}={build}/sundials-unfinished/" in call for place in ("Dir::State::lists", "Dir::Cache"))
     assert source.run("sundials") == (0, "") and source.calls() == calls
-    # Another version of the distribution's is built anew.
+    # Another packaged version is built anew.
     script(source.folder / "bin" / "dpkg-query", "echo another\n")
     assert source.run("sundials")[0] == 0 and len(source.calls()) == 2 * len(calls)
 
@@ -243,7 +243,7 @@ def test_sundials_is_built_once(source):
     ({"MADE": "badly"}, "SUNDIALS cannot be built from its source package"),
 ])  # fmt: skip
 def test_without_the_source_of_sundials(what, message, source):
-    """A word, no failure, and no other try before it is asked for."""
+    """The script prints a message, succeeds, and does not try again until asked."""
     source.environment |= what
     status, text = source.run("sundials")
     assert status == 0 and text.splitlines()[-1].startswith(f"scripts/sundials: {message}") and "packaged SUNDIALS" in text
@@ -265,9 +265,9 @@ def test_a_build_of_sundials_that_was_stopped(source):
 
 @pytest.mark.parametrize("pip, made, message", [(0, "well", ""), (1, "well", ""), (0, "badly", "cannot be built"), (1, "badly", "cannot be built")])
 def test_sundials_is_built_while_pip_works(pip, made, message, source):
-    """Where one of them fails, the other's work is done and its words are said all the same."""
+    """If one of them fails, the other completes and its messages appear."""
     source.environment["MADE"] = made
-    # pip ends when SUNDIALS has come to its compiler.
+    # pip ends when SUNDIALS starts to compile.
     script(source.folder / "bin" / "cmake", CMAKE.replace("*--build*)", '*--build*) echo built >"$SIGNAL";'))
     script(source.folder / "bin" / "python3", PYTHON.replace('echo made >"$SIGNAL"\n  read <"$SIGNAL"', "")
            + f'case "$*" in *"pip install"*) read <"$SIGNAL"; echo "words of pip" >&2; exit {pip} ;; esac\n')
@@ -279,7 +279,7 @@ def test_sundials_is_built_while_pip_works(pip, made, message, source):
 
 @pytest.mark.parametrize("solver, is_built", [("<solver method='bdf'/>", True), ('<solver method = "erk" />', True), ("", False)])
 def test_who_waits_for_sundials(solver, is_built, source, ready):
-    """Only who simulates a system that needs it."""
+    """SUNDIALS is built only for systems that need it."""
     (add(ready.folder / "fmu" / "Pendulum") / "system.xml").write_text(f"<system>{solver}</system>")
     assert ready.run("run", "Pendulum")[0] == 0
     assert (ready.folder / "build" / "sundials" / "version").exists() == is_built

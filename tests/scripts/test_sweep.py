@@ -1,4 +1,4 @@
-"""Sweeps: all runs once and in order, right, failures recorded, resumed after a kill."""
+"""Sweeps: all runs once, in order and correct; failures recorded; resumed after a kill."""
 
 import re
 import signal
@@ -50,7 +50,7 @@ def test_failures_are_recorded(tmp_path):
 
 
 def test_many_runs_in_lanes(tmp_path):
-    """As the FMU does them alone, with equal shares of the time; what has no solution is told by the FMU, and at its place."""
+    """Runs in lanes agree with single runs, with equal shares of the time; a run without a solution has the FMU's message in its row."""
     table, text = sweep(tmp_path / "lanes.parquet", "ParticleSpherical", "--vary", "phi=2:0:2500", "--stop", "0.5")
     assert "2500 runs, 1 failed" in text and re.search("fmi2ExitInitializationMode.*mass matrix is singular.*'theta'", table["problem"][-1])
     assert table["run"] == list(range(2500)) and set(table["problem"][:-1]) == {None}
@@ -63,7 +63,7 @@ def test_many_runs_in_lanes(tmp_path):
 
 
 def test_sources_that_do_not_compile_over_lanes(tmp_path):
-    """As those of another version may: said, and the runs follow one another."""
+    """If sources do not compile, as may happen for another version, the sweep prints the error and runs one by one."""
     fmu = tmp_path / "Other.fmu"
     with zipfile.ZipFile(archive("SimplePendulum")) as source, zipfile.ZipFile(fmu, "w") as target:
         for name in source.namelist():
@@ -74,7 +74,7 @@ def test_sources_that_do_not_compile_over_lanes(tmp_path):
 
 
 def test_resumes_after_a_kill(tmp_path):
-    """Killed like a machine that loses power, and started again: every run once, and none of the finished repeated."""
+    """Killed as by a power failure, and started again: each run appears once, and no finished part is repeated."""
     output, words = tmp_path / "killed.parquet", ["BouncingBall", "--vary", "v=-2:2", "--random", "60000", "--stop", "3"]
     first = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL,
                              stderr=subprocess.DEVNULL)  # fmt: skip
@@ -98,7 +98,7 @@ def test_resumes_after_a_kill(tmp_path):
 
 
 def interrupted(output, *words):
-    """The folder with the parts of a sweep that has run all but had nowhere to put its result."""
+    """Run a sweep whose result cannot be written; return the folder of its parts."""
     whole = output.with_suffix(".part")
     whole.symlink_to("/dev/full")
     result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
@@ -113,7 +113,7 @@ WORDS = ["SimplePendulum", "--vary", "theta=0:3", "--random", "1000", "--stop", 
 
 
 def test_a_full_disk_loses_nothing(tmp_path):
-    """Neither where the result is written nor where a part is: one line, and the same command goes on."""
+    """A full disk at the result or at a part gives one line, and the same command resumes."""
     output = tmp_path / "full.parquet"
     folder = interrupted(output, *WORDS)
     assert len(list(folder.glob("*.parquet"))) == 4
@@ -128,7 +128,7 @@ def test_a_full_disk_loses_nothing(tmp_path):
 
 
 def test_damaged_parts_are_run_again(tmp_path):
-    """One that is cut off, and one of the right length whose content never came to the disk."""
+    """A truncated part, and one of the right length that was never written to the disk."""
     output = tmp_path / "damaged.parquet"
     folder = interrupted(output, *WORDS)
     cut, empty = folder / "000001.parquet", folder / "000003.parquet"
@@ -141,7 +141,7 @@ def test_damaged_parts_are_run_again(tmp_path):
 
 
 def test_two_equal_sweeps_at_once(tmp_path):
-    """The second waits for the first, and both are right."""
+    """The second waits for the first, and both are correct."""
     words = command(tmp_path / "x.parquet", "SimplePendulum", "--vary", "theta=0:3", "--random", "1500", "--stop", "20")
     both = [subprocess.Popen(words, env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(2)]
     texts = [process.communicate(timeout=120) for process in both]
@@ -156,7 +156,7 @@ def test_nowhere_to_write():
 
 
 def test_the_energy_has_an_error_only_where_it_has_a_law(tmp_path):
-    """A pivot that is moved does work, and a force whose work nobody asked for too; neither is an error."""
+    """A moved pivot does work, and so does a force without <work/>; neither counts as an energy error."""
     words = ["--vary", "theta=0.5,1", "--stop", "2"]
     for name in ("RotatingPivotPendulum", "InvertedPendulumCart"):
         table, text = sweep(tmp_path / f"{name}.parquet", name, *words)
@@ -181,7 +181,7 @@ def test_bad_words(words, message, tmp_path):
 
 
 def test_on_a_cluster_that_exists(tmp_path):
-    """A scheduler's address instead of processes of its own; a worker that dies loses nothing."""
+    """A sweep can use an existing scheduler; a dying worker loses no runs."""
     from distributed import LocalCluster
 
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster:
@@ -197,7 +197,10 @@ def test_on_a_cluster_that_exists(tmp_path):
 
 
 def test_kills_at_random_times_lose_nothing(tmp_path):
-    """In lanes: while Python loads, while runs are computed, while parts are written and joined. The file is that of a sweep that nobody killed."""
+    """
+    Runs in lanes, killed while Python loads, while runs are computed, and while parts are written and joined. The file equals that of an
+    undisturbed sweep.
+    """
     words = ["SimplePendulum", "--vary", "theta=-3:3", "--random", "200000", "--stop", "1"]
     begin = time.monotonic()
     whole, _ = sweep(tmp_path / "whole.parquet", *words)
@@ -206,7 +209,7 @@ def test_kills_at_random_times_lose_nothing(tmp_path):
         process = subprocess.Popen(command(output, *words), env={"PYTHONPATH": str(ROOT / "scripts")}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         time.sleep(generator.uniform(0.2, 1) * length)
         process.send_signal(signal.SIGKILL)
-        if process.wait() == 0:  # it was over before; the next one begins anew
+        if process.wait() == 0:  # it completed before the kill; the next one starts anew
             output.unlink()
     killed, _ = sweep(output, *words)
     assert {name: values for name, values in killed.items() if name != "runTime"} == {name: values for name, values in whole.items() if name != "runTime"}
@@ -214,7 +217,7 @@ def test_kills_at_random_times_lose_nothing(tmp_path):
 
 
 def test_two_different_sweeps_to_one_file(tmp_path):
-    """The second ends with a message, and the first is whole."""
+    """The second ends with a message, and the first is complete."""
     output = tmp_path / "x.parquet"
     words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "1500", "--stop"]
     first = subprocess.Popen(command(output, *words, "200"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

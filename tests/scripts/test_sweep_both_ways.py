@@ -1,4 +1,4 @@
-"""Sweeps of the clone and of the package: what one can, the other can, to the same results."""
+"""Sweeps of the clone and of the package have the same features and results."""
 
 import subprocess
 import sys
@@ -13,7 +13,7 @@ from ensemble_runs import HERE
 from fmu import all_names, archive
 from scripts.ensembles import source_of
 
-# Its method is auto, and it has events, so that the runtime for single lanes needs most that a system may refer to.
+# The method is auto and there are events, so that the runtime for single lanes needs most symbols that a system may refer to.
 BALL = """\
 <system name="BallInOil">
   <parameter name="m" start="1" unit="kg" min="0"/> <parameter name="c" start="0.5" unit="N.s/m"/> <parameter name="g" start="9.81" unit="m/s2"/>
@@ -30,7 +30,7 @@ BALL = """\
 
 
 class Ball:
-    """Its flights: h(t) = h0 - u t + tau (v0 + u) (1 - exp(-t/tau)) with tau = m/c and u = g tau."""
+    """Flights with linear drag: h(t) = h0 - u t + tau (v0 + u) (1 - exp(-t/tau)) with tau = m/c and u = g tau."""
 
     def __init__(self, c, g=9.81):
         self.tau, self.u = 1 / c, g / c
@@ -40,7 +40,7 @@ class Ball:
         return h - self.u * t + self.tau * (v + self.u) * (1 - fading), -self.u + (v + self.u) * fading
 
     def impact(self, h, v):
-        """The time of the next impact, by Newton's method from beyond it, where the fall is concave."""
+        """Time of the next impact, by Newton's method from beyond it, where the height is concave."""
         t = 2 * (max(v, 0) + np.sqrt(v**2 + 2 * 9.81 * h)) / 9.81 + 0.1
         for _ in range(60):
             height, speed = self.at(t, h, v)
@@ -63,7 +63,7 @@ def assembled(tmp_path_factory):
 
 @pytest.fixture(params=["clone", "package"])
 def command(request, assembled):
-    """The command line of a sweep, and the process's environment."""
+    """Command line of a sweep, and the environment of its process."""
     clone = [sys.executable, ROOT / "scripts" / "sweep.py"], {"PYTHONPATH": str(ROOT / "scripts")}
     return clone if request.param == "clone" else ([sys.executable, "-m", "lagrange_fmu", "sweep"], package.environment(assembled))
 
@@ -87,7 +87,7 @@ def ball():
 
 @pytest.mark.parametrize("count", [40, 2000])
 def test_a_damped_ball(count, ball, sweep):
-    """Its bounces in closed form, by few runs, which the FMU does, and by many, which are done in lanes."""
+    """The bounces follow a closed form, for few runs, by the FMU, and for many, in lanes."""
     table, text = sweep(ball, "--vary", f"c=0.1:2:{count}")
     assert f"{count} runs, 0 failed" in text
     for run in range(0, count, count // 20):
@@ -97,7 +97,10 @@ def test_a_damped_ball(count, ball, sweep):
 
 
 def test_bounces_are_recorded(sweep):
-    """A ball bounces at t0 (1 + 2 e + ... + 2 e^n), t0 = sqrt(2 h/g), to the height e^2n h and with the speed e^n sqrt(2 g h); the value at a time lies between."""
+    """
+    A ball bounces at t0 (1 + 2 e + ... + 2 e^n), t0 = sqrt(2 h/g), to the height e^2n h and with the speed e^n sqrt(2 g h). The recorded
+    time h@0.3 lies between bounces.
+    """
     table, _ = sweep(archive("BouncingBall"), "--vary", "h=1,2", "--vary", "e=0.6,0.7,0.8", "--vary", "v=0,2", "--stop", "2", "--record", "h.max,h.min,v.max, v.min,h@0.3", "--record", "ground.events,ground.first,events,totalEnergy")
     for h, e, v, *found in zip(*(table[name] for name in ("h", "e", "v", "h.max", "h.min", "v.max", "v.min", "h@0.3", "ground.first", "ground.events", "events", "totalEnergy@end"))):
         speed = np.sqrt(v**2 + 2 * 9.81 * h)
@@ -111,7 +114,7 @@ def test_bounces_are_recorded(sweep):
 
 
 def test_extremes_between_samples(sweep):
-    """Of a pendulum: omega at the lowest point is sqrt(2 g/l (1 - cos theta0)), which lies between samples."""
+    """omega at the lowest point is sqrt(2 g/l (1 - cos theta0)), which lies between samples."""
     table, _ = sweep(archive("SimplePendulum"), "--vary", "theta=0.5:3:5", "--stop", "20", "--step", "0.01", "--record", "omega.max,omega.min,theta.min,theta.max")
     starts = np.linspace(0.5, 3, 5)
     for name, expected in (("omega.max", np.sqrt(2 * 9.81 * (1 - np.cos(starts)))), ("theta.max", starts)):
@@ -120,7 +123,7 @@ def test_extremes_between_samples(sweep):
 
 
 def test_values_at_times_in_lanes(sweep):
-    """Of many runs: those of a free fall with a push up."""
+    """Values of many runs agree with those of a free fall."""
     table, _ = sweep(archive("BouncingBall"), "--vary", "h=10:20:2000", "--stop", "1", "--record", "h@0.25,v@0.5,h,h@0")
     h = np.linspace(10, 20, 2000)
     for name, expected in (("h@0.25", h - 9.81 / 32), ("v@0.5", np.full(2000, -9.81 / 2)), ("h@end", h - 9.81 / 2), ("h@0", h)):
@@ -149,7 +152,7 @@ def test_events_of_several_contacts_are_not_told_apart(command, tmp_path):
 
 @pytest.mark.release
 def test_all_systems_over_lanes(assembled, tmp_path):
-    """Each library of the package is complete: it can be loaded with all that it refers to, wherever the clone's can."""
+    """Each library of the package is complete: it loads with all its references, as the clone's does."""
     sources = {name: source for name in all_names() if (source := source_of(archive(name)))}
     assert len(sources) > 25
     for name, source in sources.items():

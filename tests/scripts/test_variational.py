@@ -1,4 +1,4 @@
-"""Variational equations in the FMU's own solver (lagc --along): against closed forms, and fits by them."""
+"""Variational equations in the FMU's own solver (lagc --along): against closed forms, and in fits."""
 
 import subprocess
 
@@ -13,7 +13,7 @@ from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, belt, bou
 
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
-# A damper that is stiff for a while, in which x creeps.
+# A damper that is stiff for some time, during which x creeps.
 TURNING = """<system name="Turning"><parameter name="k" start="40" unit="N/m"/><parameter name="c" start="1e5" unit="N.s/m"/><constant name="second" value="1" unit="s"/>
   <coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <dissipation>c*exp(-((time/second - 1.5)/0.3)^8)*v^2/2</dissipation></system>"""
@@ -22,14 +22,14 @@ HELD = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter
   <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><output name="pull" unit="N">rod.force</output></system>"""
 HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
 HELD_BY = ["l", "g", "x", "vx"]
-# Four-bar linkages of equal rods, which lie flat on their way.
+# Four-bar linkages of equal rods, which pass a flat position.
 FLAT = (fmu.ROOT / "fmu" / "NFourBar" / "system.xml").read_text().replace('"NFourBar"', '"Flat"').replace('name="N" value="40"', 'name="N" value="3"')
-# A block that is thrown onto a slope, with friction that follows from its weight, and slides up and down again.
+# A block thrown onto a slope slides up and down, with friction proportional to a contact force.
 SLOPE = """<system name="Slope"><parameter name="mu" start="0.2"/><parameter name="g" start="9.81" unit="m/s2"/><parameter name="e" start="0.4"/>
   <coordinate name="s" velocity="u" unit="m" velocityStart="3"/><coordinate name="n" velocity="w" unit="m"/><particle mass="1" x="s" y="n"/><gravity x="-0.6*g" y="-0.8*g"/>
   <contact name="floor" gap="n" unit="m"/><contact name="wall" gap="0.4 - s" unit="m" restitution="e"/>
   <friction name="rub" velocity="u" force="mu*floor.force"/></system>"""
-# Likewise, held on the slope by a constraint, from whose force the friction follows; who changes l leaves it, and is brought back.
+# The same with a constraint in place of the contact; a change of l violates it, which causes a projection.
 RAMP = """<system name="Ramp"><parameter name="mu" start="0.2"/><parameter name="g" start="9.81" unit="m/s2"/><parameter name="e" start="0.4"/><parameter name="l" start="0.1" unit="m"/>
   <coordinate name="x" velocity="vx" unit="m" velocityStart="2.4"/><coordinate name="y" velocity="vy" unit="m" velocityStart="1.8"/><particle mass="1" x="x" y="y"/><gravity y="-g"/>
   <constraint name="ramp" unit="m">0.8*y - 0.6*x - 0.8*l</constraint><contact name="wall" gap="0.4 - x" unit="m" restitution="e"/>
@@ -64,7 +64,7 @@ def motion(name, of, by, times, start=None):
 
 
 def test_an_oscillation(lagrange_fmu):  # noqa: F811
-    """By parameters, start value and an input that stays; of a state and of its second derivative."""
+    """Derivatives of a state and of its second derivative, by parameters, a start value and a constant input."""
     times = [0.0, 0.7, 4.0]
     values, derivatives = motion("Oscillator", ["x", "der(v)"], list(AT), times, {"F": 4.0})
     for i, t in enumerate(times):
@@ -74,7 +74,7 @@ def test_an_oscillation(lagrange_fmu):  # noqa: F811
 
 
 def motion_through_events(name, of, times, start, monkeypatch, ways):
-    """Values and derivatives at the times; ways: where SciPy went on from, as it does where the series cannot."""
+    """Values and derivatives at the times. `ways` receives the times from which SciPy continues where the series cannot."""
     from lagrange_fmu.event_motion import EventMotion
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.sensitivity import Motion
@@ -86,7 +86,7 @@ def motion_through_events(name, of, times, start, monkeypatch, ways):
 
 
 def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
-    """In the series alone; where the ball has come to rest SciPy goes on."""
+    """The series suffice until the ball rests; then SciPy continues."""
     at, ways = {"h": 1.3, "g": 9.81, "e": 0.7}, []
     fall = np.sqrt(2 * at["h"] / at["g"])
     times = [0.0, 0.3, 1.9 * fall, fall + 1.7 * 0.7 * fall, 4.0]
@@ -100,7 +100,7 @@ def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_through_small_bounces(lagrange_fmu, monkeypatch):  # noqa: F811
-    """Micrometres high, and milliseconds long, in the series alone."""
+    """The series suffice for bounces of micrometres and milliseconds."""
     ways = []
     for at, time, expected in small_bounces():
         _, derivatives = motion_through_events("Ball", ["v"], [0.0, time], at, monkeypatch, ways)
@@ -109,7 +109,7 @@ def test_through_small_bounces(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_through_friction(lagrange_fmu, monkeypatch):  # noqa: F811
-    """That sticks from 0.09 s on, and slides again from 0.52 s on."""
+    """The friction sticks from 0.09 s on, and slides again from 0.52 s on."""
     at, times, ways = {"k": 20.0, "F": 3.0, "u": 0.4}, [0.0, 0.05, 0.3, 0.9], []
     _, derivatives = motion_through_events("Belt", ["x"], times, at, monkeypatch, ways)
     assert ways == []
@@ -118,7 +118,7 @@ def test_through_friction(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_through_friction_that_follows_from_a_contact(lagrange_fmu, monkeypatch):  # noqa: F811
-    """Up the slope against the wall, and down."""
+    """Up the slope to the wall, and down."""
     at, times, ways = {"mu": 0.2, "g": 9.81, "e": 0.4, "u": 3.0}, [0.0, 0.1, 0.5], []
     _, derivatives = motion_through_events("Slope", ["s"], times, at, monkeypatch, ways)
     assert ways == []
@@ -134,7 +134,7 @@ def test_through_friction_that_follows_from_a_contact(lagrange_fmu, monkeypatch)
 
 
 def test_through_friction_that_follows_from_a_constraint(lagrange_fmu, monkeypatch):  # noqa: F811
-    """Up the ramp against the wall, and down."""
+    """Up the ramp to the wall, and down."""
     at, times, ways = {"mu": 0.2, "g": 9.81, "e": 0.4, "l": 0.1}, [0.0, 0.1, 0.5], []
     _, derivatives = motion_through_events("Ramp", ["x"], times, at, monkeypatch, ways)
     assert ways == []
@@ -150,7 +150,7 @@ def test_through_friction_that_follows_from_a_constraint(lagrange_fmu, monkeypat
 
 
 def test_work(lagrange_fmu):  # noqa: F811
-    """Of the damper and the force, a state without which the others move."""
+    """The work of the damper and the force is a state on which the others do not depend."""
     times = [0.0, 0.7, 4.0]
     values, derivatives = motion("Worked", ["nonConservativeWork"], list(AT), times, {"F": 4.0})
     for i, t in enumerate(times):
@@ -159,7 +159,7 @@ def test_work(lagrange_fmu):  # noqa: F811
 
 
 def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
-    """The energy of a double pendulum, though its states depend on the start hundreds of times more."""
+    """The energy of a double pendulum is constant, though its states depend on the start hundreds of times more strongly."""
     _, derivatives = motion("Double", ["energy", "a"], list(DOUBLE_AT), [0.0, 1.5, 3.0])
     expected = slopes(energy_of_double, DOUBLE_AT)
     for row in derivatives:
@@ -168,7 +168,10 @@ def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
 
 
 def test_through_handovers(lagrange_fmu):  # noqa: F811
-    """Of a motion that turns stiff and back, so that auto goes from Taylor series to Radau's method and back; against the equations written by hand, by SciPy."""
+    """
+    The motion becomes stiff and nonstiff again, so that auto changes from Taylor series to Radau's method and back; against SciPy on
+    equations written by hand.
+    """
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.variational import SeriesMotion
 
@@ -189,7 +192,10 @@ def test_through_handovers(lagrange_fmu):  # noqa: F811
 
 
 def test_through_a_constraint(lagrange_fmu):  # noqa: F811
-    """A pendulum in x and y, whose start is moved onto the circle; of the force in the rod too. They stay on the linearised constraint."""
+    """
+    A pendulum in x and y, whose start is projected onto the circle, and the force of its rod. Derivatives satisfy the linearized
+    constraint.
+    """
     times = [0.0, 1.0, 3.0, 50.0]
     values, derivatives = motion("Held", ["x", "pull", "y"], HELD_BY, times)
 
@@ -208,7 +214,9 @@ def test_through_a_constraint(lagrange_fmu):  # noqa: F811
 
 
 def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
-    """Have no forces in the series, which would be wrong: it is seen, and SciPy follows the motion."""
+    """
+    The series have no forces for dependent constraints, which would be wrong. The package detects this, and SciPy integrates the motion.
+    """
     from lagrange_fmu import variational
     from lagrange_fmu.model_exchange import opened
 
@@ -218,7 +226,7 @@ def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
 
 
 def test_what_lies_flat(lagrange_fmu):  # noqa: F811
-    """Is not followed through that: SciPy's steps came to nearly nothing there, and its states were wrong behind it."""
+    """The motion through a flat position is an error: SciPy's steps became tiny there, and its states wrong afterwards."""
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.problem import Problem
     from lagrange_fmu.sensitivity import Motion
@@ -230,7 +238,7 @@ def test_what_lies_flat(lagrange_fmu):  # noqa: F811
 
 
 def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
-    """A force that rises and falls between the rows, which the motion of another solver answered."""
+    """The force has kinks between the rows; another solver provides the motion."""
     from lagrange_fmu import variational
 
     monkeypatch.setattr(variational, "is_fmu", lambda system: False)
@@ -246,7 +254,7 @@ def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
-    """Is refused by lagc, so that the package goes another way."""
+    """lagc reports an error, so that the package uses another method."""
     from lagrange_fmu.variational import _indicators_of
 
     massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')

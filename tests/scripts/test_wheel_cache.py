@@ -1,4 +1,4 @@
-"""What the Python package keeps on the machine: where, for how long, and who waits."""
+"""The cache of the Python package: its location, its lifetime, and waiting processes."""
 
 import importlib.util
 import os
@@ -28,7 +28,9 @@ def load():
 
 
 def test_where_it_is(tmp_path, monkeypatch):
-    """Where it is asked for, else by the convention of the desktop; among temporary files where the user may not write."""
+    """
+    The cache is at the configured location, else by the convention of the desktop; among temporary files if the user may not write there.
+    """
     caching = load()
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.delenv("LAGRANGE_FMU_CACHE", raising=False)
@@ -46,7 +48,7 @@ def test_where_it_is(tmp_path, monkeypatch):
 
 
 def test_what_was_built_is_taken_again(tmp_path, caching, monkeypatch):
-    """By all that it was built from; what was used last stays."""
+    """The key depends on all inputs of the build; the most recently used entries stay."""
     (tmp_path / "new" / "linux64").mkdir(parents=True)
     (tmp_path / "new" / "linux64" / "A.so").write_text("a library")
     keys = [caching.key_of(*words) for words in (("ab", "c"), ("a", "bc"), (b"ab", "c", 2))]
@@ -58,14 +60,14 @@ def test_what_was_built_is_taken_again(tmp_path, caching, monkeypatch):
     monkeypatch.setattr(caching, "KEPT", 2)
     caching.keep(keys[1], tmp_path / "new")
     os.utime(caching.folder() / "built" / keys[0], (1, 1))
-    caching.take(keys[0], tmp_path / "taken")  # which makes it the newest
+    caching.take(keys[0], tmp_path / "taken")  # makes it the newest
     os.utime(caching.folder() / "built" / keys[1], (2, 2))
     caching.keep(keys[2], tmp_path / "new")
     assert {path.name for path in (caching.folder() / "built").iterdir()} == {keys[0], keys[2]}
 
 
 def test_the_first_build_for_a_platform_lets_others_wait(tmp_path, caching):
-    """Which they say; no later build waits, or says anything."""
+    """Other processes wait and print that they do; later builds neither wait nor print."""
     script = f"""
 import importlib.util, sys
 specification = importlib.util.spec_from_file_location("caching", {str(FILE)!r})

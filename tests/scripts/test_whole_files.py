@@ -1,4 +1,4 @@
-"""What is written is whole or not there, and says which file; what a simulation reached before it stopped is kept."""
+"""Files are written completely or not at all, and errors name the file; the rows before a simulation stopped are kept."""
 
 import subprocess
 from contextlib import suppress
@@ -15,7 +15,7 @@ from motions import lagrange_fmu  # noqa: F401
 from scripts.problem import Problem
 from scripts.whole_files import write_whole
 
-# x = t, until the square root has no value, at 1.1 s.
+# x = t, until the square root becomes undefined at 1.1 s.
 WALL = """\
 <system name="Wall">
   <parameter name="m" start="1" unit="kg"/> <parameter name="c" start="0" unit="N"/> <parameter name="L" start="1.1" unit="m"/>
@@ -41,7 +41,7 @@ def test_a_file_that_fails_leaves_the_one_before(tmp_path, monkeypatch):
 
 
 def test_tables_and_systems_that_fail_leave_the_ones_before(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
-    """Those of reports, and what a fit writes."""
+    """Tables of reports, and the files of a fit."""
     from lagrange_fmu import fit_result
 
     table, system = tmp_path / "table.csv", tmp_path / "fitted.xml"
@@ -63,7 +63,7 @@ def test_tables_and_systems_that_fail_leave_the_ones_before(lagrange_fmu, tmp_pa
 
 
 def test_devices_and_links(tmp_path):
-    """A device is written to, not replaced; a link keeps what it points to in its place."""
+    """Devices are written to, not replaced; the target of a link is replaced."""
     write_whole("/dev/null", "nothing")
     (tmp_path / "link").symlink_to(tmp_path / "target")
     write_whole(tmp_path / "link", b"content")
@@ -78,7 +78,7 @@ def command(tmp_path_factory):
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A folder with 2 MB of room."""
+    """A file system of 2 MB."""
     folder = tmp_path / "disk"
     folder.mkdir()
     if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "none", folder], capture_output=True).returncode != 0:
@@ -88,14 +88,14 @@ def small_disk(tmp_path):
 
 
 def fill(folder):
-    """Leaves no room."""
+    """Fill the file system."""
     with open(folder / "rest", "wb", buffering=0) as file, suppress(OSError):
         while True:
             file.write(bytes(4096))
 
 
 def test_a_full_disk(small_disk, command):
-    """What was there stays; nothing empty is in the way of the next try; the message names the file."""
+    """Existing files stay; no empty file hinders the next try; the message names the file."""
     assert command("run", archive("SimplePendulum"), cwd=small_disk).returncode == 0
     csv = small_disk / "SimplePendulum.csv"
     before = csv.read_bytes()
@@ -109,7 +109,7 @@ def test_a_full_disk(small_disk, command):
 
 
 def test_a_simulation_that_stops(command, tmp_path):
-    """It leaves the rows until then under another name, and none of the run before; its message is there once."""
+    """The rows until then are in a file of another name, no rows of an earlier run remain, and the message appears once."""
     build_systems("wall", {"Wall": WALL})
     assert command("run", archive("Wall"), "--stop-time", "0.5", cwd=tmp_path).returncode == 0
     assert (tmp_path / "Wall.csv").exists()
