@@ -1,7 +1,7 @@
-// The scripts of the page are packed in it.
+// Unpacks and starts the scripts of the page.
 "use strict";
 
-// Of the text itself, or of one that was packed.
+// Returns a text that is given as it is or packed.
 async function textOf({ text, packed }) {
   return text ?? new TextDecoder().decode(await unpacked(packed));
 }

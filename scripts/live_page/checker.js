@@ -1,7 +1,7 @@
-// Derives a system while it is written, and tells what it says or what can be shown. Runs in a worker of its own.
+// Derives a system while it is edited, and posts lagc's messages and the results. Runs in its own worker.
 "use strict";
 
-let laboratory; // its bytes
+let laboratory; // bytes of laboratory.wasm
 
 function answer({ files, file, number }) {
   const made = new Laboratory(laboratory, files), start = performance.now(), isRight = made.derive(file, false);

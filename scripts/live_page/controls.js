@@ -1,7 +1,7 @@
-// Sliders: parameters, inputs and start values.
+// Sliders of parameters, inputs and start values.
 "use strict";
 
-// What a slider's range is: [low, high, whether its scale is logarithmic].
+// Returns the range of a slider: [low, high, true for a logarithmic scale].
 function rangeOf({ start, min, max, unit }) {
   const low = min ?? -Infinity, high = max ?? Infinity;
   if (isFinite(low) && isFinite(high)) return [low, high, low > 0 && high / low >= 100];
@@ -12,7 +12,7 @@ function rangeOf({ start, min, max, unit }) {
 }
 
 class Control {
-  // variable: name, unit, description, start, min, max, type; act is told of each new value.
+  // variable: name, unit, description, start, min, max, type; act(value) is called for each new value.
   constructor(variable, act) {
     this.variable = variable;
     this.value = variable.start;
@@ -56,14 +56,14 @@ class Control {
     this.slider.value = String(1000 * Math.min(1, Math.max(0, share)));
   }
 
-  // A value was not taken: shows the one that holds, unless another was chosen meanwhile, and why.
+  // Shows that a value was rejected, and the value in effect, unless another was chosen in the meantime.
   refuse(words, value, held) {
     if (this.value === value) this.value = held;
     this.show();
     this.say(words);
   }
 
-  // Until the next value is taken.
+  // Shows a message until the next value is accepted.
   say(words) {
     this.words.textContent = words;
   }

@@ -1,17 +1,17 @@
-// What the page has to know of an FMU, from its modelDescription.xml.
+// Reads modelDescription.xml of an FMU.
 "use strict";
 
-// The types of FMI 2.0, and what those of FMI 3.0 are called there.
+// The types of FMI 2.0, by those of both versions.
 const TYPES = { Real: "Real", Integer: "Integer", Boolean: "Boolean", Float64: "Real", Int32: "Integer", Int64: "Integer" };
-const PULL = "pull."; // with which the names of inputs begin that lagc --pull adds
-const MANY = 400; // of more continuous variables than that, only what tells of the motion is shown
+const PULL = "pull."; // prefix of the inputs that lagc --pull adds
+const MANY = 400; // with more continuous variables, only outputs, energies and variables of the scene are shown
 const POSITIONS = ["x", "y", "z", "angle", ...[1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => `R${i}${j}`))];
-const EXPERIMENT = { startTime: 0, stopTime: 10 }; // where the author gives none
-const WINDOW = 20; // s that plots show, or the experiment where that is shorter
+const EXPERIMENT = { startTime: 0, stopTime: 10 }; // s, by default
+const WINDOW = 20; // s that plots show; less if the experiment is shorter
 
 const attributesOf = (element) => Object.fromEntries([...element.attributes].map(({ name, value }) => [name, value]));
 
-// The attributes of each variable, with its type; FMI 2.0 has them on two elements, FMI 3.0 on one.
+// Returns the attributes of each variable, with its type; FMI 2.0 has them on two elements, FMI 3.0 on one.
 function variablesIn(file) {
   const parts = (variable) => [variable, ...variable.children].filter((part) => part.tagName in TYPES);
   return [...file.querySelector("ModelVariables").children].flatMap((variable) =>
@@ -21,7 +21,7 @@ function variablesIn(file) {
 
 const numberOf = (text) => (text === "true" ? 1 : text === "false" ? 0 : Number(text));
 
-// How the page lets it be set: as an input, a parameter, a start value; null where it is only seen.
+// Returns how the page can set a variable: "input", "parameter" or "start" (a start value); null if it cannot.
 function roleOf({ causality, variability, initial, type }) {
   if (causality === "input" || causality === "parameter") return causality;
   const isState = ["output", "local"].includes(causality) && variability === "continuous" && ["exact", "approx"].includes(initial);
@@ -40,7 +40,7 @@ function variableOf(attributes) {
   return known;
 }
 
-// Names, the experiment, and the variables, each with how it may be set.
+// Returns names, experiment (times in s) and variables with their roles.
 function descriptionOf(file) {
   const root = file.documentElement, experiment = file.querySelector("DefaultExperiment");
   const given = (name, otherwise) => (experiment?.hasAttribute(name) ? Number(experiment.getAttribute(name)) : otherwise);
@@ -55,7 +55,8 @@ function descriptionOf(file) {
   };
 }
 
-// Of the FMU whose bodies can be pulled: the references of all variables of the description, and of what pulls; null where nothing moves.
+// Returns, for the FMU whose bodies can be pulled, the references of the description's variables, of the pointer's inputs and of the bodies'
+// inputs by name; null without bodies.
 function pullsOf(file, description) {
   const references = new Map(variablesIn(file).map((variable) => [variable.name, Number(variable.valueReference)]));
   const inputs = new Map([...references].filter(([name]) => name.startsWith(PULL)).map(([name, reference]) => [name.slice(PULL.length), reference]));
@@ -69,19 +70,19 @@ function pullsOf(file, description) {
   };
 }
 
-// The elements of <scene>, see modelDescription/scene.h: their attributes, with the tag.
+// Returns the elements of <scene>, see modelDescription/scene.h: their attributes, and the tag.
 function sceneOf(file) {
   const places = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
   return [...file.querySelectorAll(places.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
 }
 
-// The names of those that may tell where things are, and by what forces they are held; an FMU has some of them.
+// Returns the names of the variables that may hold positions, orientations and constraint forces; an FMU has some of them.
 function variablesOfScene(scene) {
   const positions = scene.filter((thing) => "name" in thing).flatMap((thing) => POSITIONS.map((component) => `${thing.name}.${component}`));
   return new Set([...positions, ...scene.flatMap((thing) => ["force", "force1", "force2"].filter((name) => name in thing).map((name) => thing[name]))]);
 }
 
-// The places of those that can be plotted, and of those that tell where things are; of these names alone where they are given.
+// Returns the indices of the variables that can be plotted or that the scene needs; only those with these names, if names are given.
 function shownPlaces(description, scene, names) {
   const places = [...description.variables.keys()].filter((place) => description.variables[place].isMoving && description.variables[place].type === "Real");
   const ofScene = variablesOfScene(scene);
@@ -90,7 +91,7 @@ function shownPlaces(description, scene, names) {
   return names ? few.filter((place) => names.includes(description.variables[place].name)) : few;
 }
 
-// What is drawn at first: coordinates by their units, their velocities, energies, and the first coordinate against its velocity.
+// Returns the initial plots: coordinates of the first unit, the first velocity against the first coordinate, and energies.
 function firstPlots(variables) {
   const columns = [...variables.keys()];
   const states = columns.filter((k) => variables[k].role === "start"), velocities = states.filter((k) => variables[k].unit?.endsWith("/s"));

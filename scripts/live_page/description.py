@@ -1,4 +1,4 @@
-"""What is to be known of an FMU before there is a page, from its modelDescription.xml; description.js reads the rest."""
+"""Read the parts of modelDescription.xml that are needed to write a page; description.js reads the rest in the page."""
 
 import zipfile
 from xml.etree import ElementTree
@@ -7,18 +7,19 @@ POSITIONS = ("x", "y", "z", "angle", *(f"R{i}{j}" for i in (1, 2, 3) for j in (1
 
 
 def read_tree(fmu):
+    """Return the root of the FMU's modelDescription.xml."""
     with zipfile.ZipFile(fmu) as archive:
         return ElementTree.fromstring(archive.read("modelDescription.xml"))
 
 
 def scene_of(tree):
-    """The elements of <scene>, see modelDescription/scene.h: their attributes, with the tag."""
+    """Return the elements of <scene>, see modelDescription/scene.h, as dicts of their attributes and their "tag"."""
     places = ("VendorAnnotations/Tool[@name='lagrange-fmu']", "Annotations/Annotation[@type='lagrange-fmu']")
     return [{"tag": element.tag, **element.attrib} for place in places for element in tree.iterfind(f"{place}/scene/*")]
 
 
 def variables_of_scene(scene):
-    """The names of those that may tell where things are, and by what forces they are held; an FMU has some of them."""
+    """Return the names of the variables that may hold positions, orientations and constraint forces; an FMU has some of them."""
     positions = (f"{thing['name']}.{component}" for thing in scene if "name" in thing for component in POSITIONS)
     forces = (thing[name] for thing in scene for name in ("force", "force1", "force2") if name in thing)
     return list(dict.fromkeys([*positions, *forces]))

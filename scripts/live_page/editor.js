@@ -1,17 +1,17 @@
-// A system is written beside the page in which it runs: derived at each pause in typing, run when it is wished.
+// Edits a system beside the page in which it runs. Each pause in typing derives it; the button Run runs it.
 "use strict";
 
-const PAUSE = 300; // ms without a key, after which the text is looked at
-const SLOW = 15; // s, after which a system is taken for too large to be derived while one types
-const snapshot = `<!doctype html>\n${document.documentElement.outerHTML}`; // for a page to keep, before anything is changed
+const PAUSE = 300; // ms without a key after which the text is derived
+const SLOW = 15; // s after which a derivation is given up
+const snapshot = `<!doctype html>\n${document.documentElement.outerHTML}`; // the unchanged page, a template for saved pages
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
-const bench = (window.bench = { run, runs: 0 }); // for tests, and the curious
+const bench = (window.bench = { run, runs: 0 }); // for tests and the browser's console
 let files = { ...data.files }, file = data.file, opened = data.file;
-let checker = null, number = 0, derived = null; // the latest question to the checker, and the result of the latest text that is right
+let checker = null, number = 0, derived = null; // the worker, the number of the last request to it, and the last successful result
 let wishesToRun = true, plays = false, timer = null, slow = null;
 
-// Of a path as lagc tells it, the one among the files.
+// Returns the normalized form of a path in lagc's messages, as it is in `files`.
 function nameOf(path) {
   const parts = [];
   for (const part of path.split("/")) {
@@ -21,7 +21,7 @@ function nameOf(path) {
   return parts.join("/");
 }
 
-// A message as lagc writes it: of which file and line, and whether it is a warning.
+// Parses a message of lagc: file, line (0 without), isWarning and words.
 function messageOf(line) {
   const found = /^(.*?):(?:(\d+):)? (warning: )?(.*)$/.exec(line), name = nameOf(found?.[1] ?? "");
   return name in files ? { name, line: Number(found[2] ?? 0), isWarning: Boolean(found[3]), words: found[4] } : { name: file, line: 0, isWarning: false, words: line };
@@ -64,9 +64,10 @@ function showState(words, kind = "") {
 function answer({ data: { number: answered, said, result, milliseconds } }) {
   clearTimeout(slow);
   if (answered !== number) return;
-  tell(said.split("\n").filter((line) => line).map(messageOf));
+  const messages = said.split("\n").filter((line) => line).map(messageOf), errors = messages.filter(({ isWarning }) => !isWarning).length;
+  tell(messages);
   derived = result ?? null;
-  showState(result ? `derived in ${Math.round(milliseconds)} ms` : "not yet right", result ? "right" : "wrong");
+  showState(result ? `derived in ${Math.round(milliseconds)} ms` : `${errors} ${errors === 1 ? "error" : "errors"}`, result ? "right" : "wrong");
   if (result && wishesToRun) show();
 }
 
@@ -90,14 +91,14 @@ function check() {
   }, 1000 * SLOW);
 }
 
-// The page of the system that was derived last, in place of the one before.
+// Shows the page of the system that was derived last.
 function show() {
   wishesToRun = false;
   const { modelDescription, equations, pulled } = derived;
   const inner = { ...data.common, plays, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file } };
   $("page").srcdoc = pageText.replace("@DATA@", () => JSON.stringify(inner).replaceAll("<", "\\u003c"));
   bench.runs++;
-  plays = true; // what was changed is wished to be seen
+  plays = true; // after a change the system runs at once
 }
 
 function run() {
@@ -124,7 +125,7 @@ function save(name, content, type) {
   URL.revokeObjectURL(link.href);
 }
 
-// This page with the files as they are now.
+// Returns this page with the present files.
 function pageNow() {
   const now = JSON.stringify({ ...data, files, file }).replaceAll("<", "\\u003c");
   return snapshot.replace(/(<script id="data" type="application\/json">)[^]*?(<\/script>)/, (all, begin, end) => begin + now + end);
@@ -137,7 +138,7 @@ function typed() {
   timer = setTimeout(check, PAUSE);
 }
 
-// Two spaces for a tab, and the indentation of a line for the next. Behind Escape, a tab leaves the text.
+// Types two spaces for Tab, and repeats the indentation after Enter. Tab after Escape leaves the text.
 function typeSpaces(event) {
   const source = $("source"), before = source.value.slice(0, source.selectionStart), mayLeave = escaped;
   escaped = event.key === "Escape";

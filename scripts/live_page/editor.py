@@ -1,4 +1,4 @@
-"""A page in which a system is written, derived and run: lagc and the FMU's runtime are in it, as WebAssembly, and no compiler is needed."""
+"""Write a page in which a system is edited, derived and run; it contains lagc and the runtime as WebAssembly and needs no compiler."""
 
 import html
 import os
@@ -10,7 +10,7 @@ from ..whole_files import write_whole
 from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
 
 HERE = Path(__file__).resolve().parent
-LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, in the tree
+LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, and in the tree
 STYLE, SCRIPTS = "editor.css", ("unpacking.js", "editor.js")
 MESHES = (".stl", ".obj")
 CHECKER = ("laboratory.js", "checker.js")
@@ -18,7 +18,7 @@ WORKER = (*COMMON_WORKER[:-1], "laboratory.js", COMMON_WORKER[-1])
 
 
 def _named_in(file):
-    """The files that a system's file names, as far as they are there: what it includes, and tables."""
+    """Yield the existing files that a system's file names: included systems, and tables."""
     if file.suffix != ".xml":
         return
     for name in re.findall(r'\bfile\s*=\s*["\']([^"\'{}]+)["\']', file.read_text(encoding="utf-8")):
@@ -27,7 +27,7 @@ def _named_in(file):
 
 
 def files_of(system):
-    """The texts of a system's files by their paths below one folder, and the path of the system's own among them."""
+    """Return a dict of "files", the texts of a system's files by their paths in a common folder, and "file", the path of the system's own."""
     found = [Path(system).resolve()]
     for file in found:
         mesh = next((other for other in _named_in(file) if other.suffix.lower() in MESHES), None)
@@ -36,13 +36,13 @@ def files_of(system):
         found += [other for other in _named_in(file) if other not in found]
     folder = Path(os.path.commonpath([file.parent for file in found]))
     if folder == found[0].parent:
-        folder = folder.parent  # a system is called by its folder in messages and by what is saved
+        folder = folder.parent  # keeps the name of the system's folder, for messages and for names of saved files
     texts = {file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8") for file in found}
     return {"files": texts, "file": next(iter(texts))}
 
 
 def _licenses():
-    """What is in the page, and on what terms: as in pages of FMUs, and libxml2."""
+    """Return the licenses of a page of an FMU, and that of libxml2."""
     file = next((path for path in LIBXML2_LICENSES if path.exists()), None)
     if file is None:
         raise Problem("the license of libxml2, which is in the page, is not there; see scripts/libxml2")
@@ -50,7 +50,7 @@ def _licenses():
 
 
 def editor_of(system, laboratory, examples=None):
-    """The page as text. laboratory: the module laboratory.wasm; examples: further systems to choose, as files_of() by name."""
+    """Return the page as text; `laboratory` is the path of laboratory.wasm, `examples` has further systems, as of files_of(), by name."""
     if not Path(laboratory).exists():
         raise Problem(f"there is no {laboratory}, in which systems are derived in a page; see scripts/laboratory")
     data = {
@@ -67,4 +67,5 @@ def editor_of(system, laboratory, examples=None):
 
 
 def write_editor(system, laboratory, path, examples=None):
+    """Write the page and return its path."""
     return write_whole(path, editor_of(system, laboratory, examples))

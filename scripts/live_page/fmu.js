@@ -1,4 +1,4 @@
-// An FMU in WebAssembly, by the functions of FMI 2.0 and those of driver.c. Runs in the worker.
+// Calls an FMU in WebAssembly, by the functions of FMI 2.0 and of driver.c. Runs in the worker.
 "use strict";
 
 const [OK, WARNING] = [0, 1];
@@ -9,7 +9,7 @@ class Memory {
     this.room = 0;
   }
 
-  // A place of this many bytes, the same each time; it is good until the next call.
+  // Returns the address of a buffer of at least this many bytes, which the next call reuses.
   place(bytes) {
     if (bytes > this.room) {
       this.room = 2 * bytes;
@@ -24,7 +24,7 @@ class Memory {
   }
 }
 
-// What an FMU refuses, in its own words.
+// An error that the FMU reports, with its message.
 class Refusal extends Error {}
 
 class Fmu {
@@ -40,7 +40,7 @@ class Fmu {
     this.isNew = true;
   }
 
-  // Without the names of functions that refused: a reader of the page called none.
+  // Returns and clears the FMU's messages, without the names of FMI functions, which mean nothing to readers of the page.
   said() {
     const words = this.memory.text(this.wasm.messages()).trim().replace(/^fmi2\w+: /gm, "");
     this.wasm.forgetMessages();
@@ -52,7 +52,7 @@ class Fmu {
     if (status > WARNING) throw new Refusal(words || `the FMU answered with the status ${status}`);
   }
 
-  // Begins anew with these values: [place among the variables, value] each.
+  // Resets and initializes with values, [index of the variable, value] each.
   start(values, time = this.description.startTime) {
     if (!this.isNew) this.check(this.wasm.fmi2Reset(this.instance));
     this.isNew = false;
@@ -77,7 +77,7 @@ class Fmu {
     this.check(this.wasm.fmi2SetReal(this.instance, at, count, at + offset));
   }
 
-  // Of the Reals with these references.
+  // Returns the values of the Reals with these references.
   read(references) {
     const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
     new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
@@ -89,7 +89,7 @@ class Fmu {
     this.check(this.wasm.fmi2DoStep(this.instance, time, length, 0));
   }
 
-  // The state as it is now, to be restored as often as one likes; another one's place is used again where it is given.
+  // Saves the FMU state and returns its address; reuses the memory of the state `place`, if it is given.
   save(place = 0) {
     const at = this.memory.place(8);
     new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = place;

@@ -1,7 +1,7 @@
-// What was seen so far: samples of all variables that are read, the oldest forgotten first.
+// Samples of all shown variables, of which the oldest are dropped first.
 "use strict";
 
-const NUMBERS = 4e6; // that are kept
+const NUMBERS = 4e6; // kept at most, 32 MB
 
 class History {
   constructor(width) {
@@ -12,7 +12,7 @@ class History {
 
   clear() {
     this.times = [];
-    this.samples = []; // of each: one array for each run
+    this.samples = []; // each has an array of values for each run
     this.runs = 1;
   }
 
@@ -26,7 +26,7 @@ class History {
     }
   }
 
-  // Without what is not before this time.
+  // Removes the samples from this time on.
   cut(time) {
     let length = this.times.length;
     while (length > 0 && this.times[length - 1] >= time - 1e-12 * Math.abs(time)) length--;
@@ -46,7 +46,7 @@ class History {
     return (runs[run] || runs[0])[place];
   }
 
-  // The last sample not after a time.
+  // Returns the index of the last sample that is not after a time.
   placeOf(time, first = 0, last = this.length) {
     let low = first, high = last - 1;
     while (low < high) {

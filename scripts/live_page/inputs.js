@@ -1,13 +1,13 @@
-// The first two inputs by arrow keys and game pads, and what other keys do.
+// Controls the first two inputs by arrow keys and game pads, and the page by other keys.
 "use strict";
 
-const PUSH = 0.5; // of what a slider can give, by a key
-const IDLE = 0.12; // of a stick, which does not rest at 0
+const PUSH = 0.5; // share of a slider's range that a key applies
+const IDLE = 0.12; // dead zone of a stick, which does not rest at 0
 
-let pushed = []; // [place, control] of these inputs
-const leaning = [false, false]; // whether a stick gives them their values
+let pushed = []; // [index of the variable, control] of these inputs
+const leaning = [false, false]; // true while a stick determines the input
 
-// An input to a share, from -1 to 1, of what its slider can give on that side of its start value.
+// Sets an input to a share, from -1 to 1, of its slider's range on that side of the start value.
 function push(i, share) {
   const [place, control] = pushed[i], { start } = control.variable;
   const value = start + share * (share > 0 ? control.high - start : start - control.low);
@@ -36,7 +36,7 @@ function addKeys() {
   });
 }
 
-// Once a frame. The first stick's axes; upwards is positive, as with the keys.
+// Reads the axes of the first stick, once a frame; up is positive, as with the keys.
 function readGamePads() {
   const pad = pushed.length > 0 && [...navigator.getGamepads()].find(Boolean);
   if (!pad) return;

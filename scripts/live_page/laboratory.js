@@ -1,23 +1,23 @@
-// lagc and the runtime in one module: src/laboratory. It asks for files and for standard streams by WASI. Runs in workers.
+// lagc and the runtime in one module, see src/laboratory. It accesses files and standard streams by WASI. Runs in workers.
 "use strict";
 
 const [SUCCESS, BAD_DESCRIPTOR, INVALID, NO_ENTRY] = [0, 8, 28, 44];
 const [DIRECTORY, REGULAR_FILE] = [3, 4];
-const ROOT = 3; // the descriptor of the folder that all files are in
+const ROOT = 3; // descriptor of the folder of all files
 const [FROM_START, FROM_PRESENT] = [0, 1];
 
-// The system that is derived in it, once.
+// An instance of the module, which derives one system, once.
 class Laboratory {
   // files: their texts by name.
   constructor(bytes, files) {
     this.files = new Map(Object.entries(files).map(([name, text]) => [name, new TextEncoder().encode(text)]));
-    this.opened = new Map(); // by descriptor: { content, at }
+    this.opened = new Map(); // { content, at } by descriptor; at: the read position
     this.said = "";
     this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), { wasi_snapshot_preview1: this.system() }).exports;
     this.wasm._initialize();
   }
 
-  // Whether the system of the file could be derived; what was said is in `said`.
+  // Derives the system of a file; true on success. lagc's messages are in `said`.
   derive(name, isPulled) {
     try {
       return this.wasm.derive(this.textIn(`/${name}`), Number(isPulled)) === 0;
@@ -32,7 +32,7 @@ class Laboratory {
     return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
   }
 
-  // A text that lasts, in the module's memory.
+  // Returns the address of a copy of the text in the module's memory, which is never freed.
   textIn(text) {
     const bytes = new TextEncoder().encode(`${text}\0`), place = this.wasm.allocate(bytes.length);
     new Uint8Array(this.wasm.memory.buffer).set(bytes, place);
@@ -43,7 +43,7 @@ class Laboratory {
     return new DataView(this.wasm.memory.buffer);
   }
 
-  // A path in the folder, as the names of files are.
+  // Returns the normalized path at an address, as it is in `files`.
   nameAt(place, length) {
     const parts = [];
     for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, place, length)).split("/")) {
@@ -57,7 +57,7 @@ class Laboratory {
     return name === "" || [...this.files.keys()].some((file) => file.startsWith(`${name}/`));
   }
 
-  // The pieces of memory of a list of those.
+  // Yields the buffers of a list of iovec.
   *pieces(list, count) {
     const view = this.view();
     for (let i = 0; i < count; i++) yield new Uint8Array(this.wasm.memory.buffer, view.getUint32(list + 8 * i, true), view.getUint32(list + 8 * i + 4, true));
@@ -139,7 +139,7 @@ class Laboratory {
     return SUCCESS;
   }
 
-  // The functions that the module imports.
+  // Returns the functions of WASI that the module imports.
   system() {
     return {
       clock_time_get: (clock, precision, place) => (this.view().setBigUint64(place, 0n, true), SUCCESS),
@@ -155,7 +155,7 @@ class Laboratory {
       fd_write: (...about) => this.write(...about),
       path_filestat_get: (...about) => this.tellOfFile(...about),
       path_open: (...about) => this.open(...about),
-      path_readlink: () => INVALID, // no file is a link
+      path_readlink: () => INVALID, // no file is a symbolic link
       proc_exit: (status) => {
         throw new Error(`it ended with ${status}`);
       },
@@ -163,7 +163,7 @@ class Laboratory {
   }
 }
 
-// The functions of the system that is derived.
+// Derives a system and returns the functions of its module; throws lagc's messages on failure.
 function derivedIn({ bytes, files, file }, isPulled) {
   const made = new Laboratory(bytes, files);
   if (!made.derive(file, isPulled)) throw new Error(made.said);

@@ -1,8 +1,8 @@
-// The page: what runs in the worker is shown, what is set goes to it. Where there is no FMU but a recording, that is played.
+// The page: shows the samples of the FMU, which runs in the worker, and sends it the user's settings; or plays a recording.
 "use strict";
 
-const GHOST = 1e-9; // by which its start differs
-// Of formulas, as JavaScript has them too.
+const GHOST = 1e-9; // difference of the ghost's first start value
+// Functions of formulas that Math of JavaScript has, too.
 const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max", "floor", "ceil"];
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
@@ -17,16 +17,16 @@ const shownVariables = shownOnes.map((place) => description.variables[place]);
 const shownWindow = recording ? recording.duration : Math.min(WINDOW, description.duration);
 const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
 const history = new History(shownVariables.length);
-const sections = new History(shownVariables.length); // a sample at the end of each period
-const controls = new Map(); // by the place of the variable
+const sections = new History(shownVariables.length); // a sample at the end of each period: a Poincaré section
+const controls = new Map(); // by the index of the variable
 const plots = [];
-const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests, and the curious
+const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
 let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
-let resetDue = null; // the timer of a reset that waits for more to be set
+let resetDue = null; // timer of a delayed reset, which collects several settings
 
-// All but what is set finds a reset done that was due.
+// Sends an order to the worker; a delayed reset is done before any order but "set".
 function order(name, content = {}) {
   if (recording) return;
   if (resetDue !== null && name !== "set") {
@@ -37,14 +37,14 @@ function order(name, content = {}) {
   worker.postMessage({ name, ...content });
 }
 
-// The value of a formula of parameters; NaN where it holds more than that.
+// Returns the value of a formula of parameters; NaN if it contains other variables.
 function valueOf(formula) {
   const text = formula.replace(/[A-Za-z_][\w.]*(\[[^\]]*\])*(?!\w*\()/g, (name) => {
     const place = description.variables.findIndex((variable) => variable.name === name);
     if (place < 0) return name === "pi" ? "Math.PI" : /^e\d*$/i.test(name) ? name : "NaN";
     return `(${controls.get(place)?.value ?? description.variables[place].start})`;
   });
-  // A sign before a power is an error there.
+  // JavaScript rejects a sign before a power.
   const inJavaScript = text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**");
   try {
     return Number(new Function(...FUNCTIONS, `return ${inJavaScript}`)(...FUNCTIONS.map((name) => Math[name])));
@@ -53,7 +53,7 @@ function valueOf(formula) {
   }
 }
 
-// By names of what can be set: the ends of its slider.
+// Returns the ranges of the sliders by name.
 const ranges = () => new Map([...controls.values()].map(({ variable, low, high }) => [variable.name, [low, high]]));
 
 function say(words) {
@@ -100,7 +100,7 @@ const answers = {
   },
 };
 
-// For a view of all of these samples.
+// Builds the scene so that the view contains all these samples.
 function buildScene(samples) {
   if (!scene) return;
   scene.build(samples);
@@ -113,7 +113,7 @@ function setPlaying(isPlaying) {
   $("play").textContent = isPlaying ? "Pause" : "Play";
 }
 
-// The FMU, or in a recording what is seen.
+// Steps, steps back, or resets the FMU, or the view of a recording.
 function move(name) {
   order(name);
   if (recording) viewFrom({ step: viewed + 1, back: viewed - 1, reset: 0 }[name]);
@@ -150,7 +150,7 @@ function set(place, value) {
   order("set", { place, value });
   const { role, isFixed } = description.variables[place];
   if ((role !== "start" && !isFixed) || resetDue !== null) return;
-  // Seen at once where nothing has moved yet, or at the next start.
+  // Takes effect at the next start; before the first step the FMU is reset at once.
   if (history.length <= 1) resetDue = setTimeout(() => order("reset"), 50);
 }
 
@@ -162,7 +162,7 @@ function addPlots() {
   }
 }
 
-// The time of the recording that is seen, and of the clock when it was.
+// The shown time of the recording in s, and the clock of the frame that showed it in ms.
 const player = { time: 0, before: null };
 
 function playOn(now) {
@@ -175,13 +175,13 @@ function playOn(now) {
   player.before = now;
 }
 
-// A sample that was seen before, or of the recording.
+// Shows an earlier sample, or one of the recording.
 function view(place) {
   viewed = Math.max(0, Math.min(history.length - 1, place));
   $("past").value = viewed;
 }
 
-// By a button or the bar: from there the recording goes on.
+// Shows a sample, from which the recording continues.
 function viewFrom(place) {
   view(place);
   player.time = history.time(viewed);
@@ -193,7 +193,7 @@ function frame(now) {
   if (history.length > 0) {
     const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
     $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
-    $("pace").textContent = playing && pace[0] > 0.5 ? "slower than wished" : "";
+    $("pace").textContent = playing && pace[0] > 0.5 ? "slower than requested" : "";
     if (scene && scene.objects) {
       if (at === history.length - 1) pullOn();
       scene.draw(history, at);
@@ -210,10 +210,10 @@ function save(name, content, type) {
   URL.revokeObjectURL(link.href);
 }
 
-// What differs from the author's values, by names.
+// Returns the controls whose values differ from those of the FMU.
 const settings = () => [...controls].filter(([place, control]) => control.value !== description.variables[place].start);
 
-// A second run beside the first, whose first start value differs a little; gone at the next click.
+// Starts or ends a second run, whose first start value differs slightly.
 function toggleGhost() {
   const start = [...controls].find(([place]) => description.variables[place].role === "start");
   const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([place, control]) => [place, control.value + (place === start[0] ? GHOST : 0)]);
@@ -248,7 +248,7 @@ function addActions() {
   window.addEventListener("resize", () => scene && scene.objects && scene.resize());
 }
 
-// Values of the address behind its #: name=value&name=value.
+// Applies the values in the address after #, name=value&name=value, and returns them.
 function settingsOfAddress() {
   const byName = new Map(description.variables.map((variable, place) => [variable.name, place])), found = [];
   for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
@@ -260,7 +260,7 @@ function settingsOfAddress() {
   return found;
 }
 
-// For tests: the time, all that is shown and the seconds it took, behind steps of the author's length without pacing.
+// For tests: steps to a time as fast as possible; resolves to the time, the shown values and the seconds it took.
 live.run = (until) =>
   new Promise((done) => {
     live.answers.ran = done;
@@ -275,12 +275,12 @@ async function playRecording() {
   buildScene(history.samples.map((runs) => runs[0]));
   $("past").max = history.length - 1;
   viewFrom(0);
-  $("pastName").textContent = "time";
+  $("pastName").textContent = "Time";
   setSpeed();
   setPlaying(true);
 }
 
-// The modules that were packed as one, a piece of each after the other.
+// Separates the modules that _interleaved() of page.py has interleaved.
 function apart(bytes) {
   const modules = data.lengths.map((length) => new Uint8Array(length));
   let at = 0;
@@ -304,7 +304,7 @@ async function runFmu() {
   await started;
 }
 
-// Of a system that was derived in the browser.
+// Shows the title of a system that was derived in the browser.
 function showTitle() {
   const title = file.documentElement.getAttribute("description") || description.name;
   document.title = title;

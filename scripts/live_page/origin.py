@@ -1,4 +1,4 @@
-"""The system that an FMU was made of, and the same once more with inputs by which bodies can be pulled."""
+"""Derive the system of an FMU again, with additional inputs that pull its bodies."""
 
 import re
 import subprocess
@@ -8,19 +8,23 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 
 
-PULL_OF = "pull.of."  # with which the names of inputs begin that lagc --pull adds for bodies
+PULL_OF = "pull.of."  # prefix of the inputs that lagc --pull adds for bodies
 
 
 class Origin(NamedTuple):
-    system: Path  # its file: a system, or the URDF of a robot
+    """The system of which an FMU was made, and the tools that made it."""
+
+    system: Path  # the file of the system, or the URDF of a robot
     lagc: Path
-    one_file: Callable[[Path, str], str]  # of a system.c and the FMU's name: its one file of C
+    one_file: Callable[[Path, str], str]  # returns the FMU's source as one file, for a system.c and the FMU's name
 
 
 def pulled_system(origin, source, folder):
     """
-    modelDescription.xml in bytes, and the one file of C, of the system whose bodies can be pulled, solved by the method of this
-    source of its FMU. None where lagc refuses: a method for linear systems alone takes no such force.
+    Derive the system with inputs that pull its bodies, and with the method of `source`, the FMU's C source.
+
+    Return the bytes of modelDescription.xml and the path of its C source. Return None if lagc fails, as for a method for linear systems, which
+    does not allow such forces.
     """
     method = re.search(r"\.solver = &solver_([a-z]+)", Path(source).read_text(encoding="utf-8"))
     words = ["--solver", method[1]] if method else []
@@ -35,5 +39,5 @@ def pulled_system(origin, source, folder):
 
 
 def can_be_pulled(description):
-    """Whether that modelDescription.xml has inputs that pull bodies."""
+    """Return True if a modelDescription.xml has inputs that pull bodies."""
     return any(variable.get("name").startswith(PULL_OF) for variable in ElementTree.fromstring(description).find("ModelVariables"))

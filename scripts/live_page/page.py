@@ -1,4 +1,4 @@
-"""A page in which an FMU runs, or a simulation of it is played: one HTML file, which needs no server and no network."""
+"""Write a page in which an FMU runs, or a recorded simulation is played: one HTML file that needs no server and no network."""
 
 import base64
 import gzip
@@ -19,28 +19,29 @@ from .origin import can_be_pulled, pulled_system
 from .wasm import compile_to_wasm
 
 HERE = Path(__file__).resolve().parent
-# Of Debian's package libjs-three, or beside this folder, where the wheel has them.
+# Files of three.js, in Debian's package libjs-three, or in the wheel beside this folder.
 THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
 THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
 SCRIPTS = ("description.js", "history.js", "plot.js", "controls.js", "shapes.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "main.js")
 BEGIN = ("unpacking.js", "begin.js")
 COMMON_WORKER = ("fmu.js", "sides.js", "worker.js")
-MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a simulation that is played
-SHORTEST, LONGEST = 2.0, 60.0  # s that are played as they are; others take
-PLAYED = 10.0  # s
-PIECE = 8192  # bytes of WebAssembly
+MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a recording, to bound the size of its page
+SHORTEST, LONGEST = 2.0, 60.0  # recordings of a length between these, in s, are played in real time
+PLAYED = 10.0  # s that others take to play
+PIECE = 8192  # bytes of interleaved pieces, well below the window of gzip, 32 kB
 
 
 def packed(content):
-    """By gzip, in letters of base 85, of which "<" would end scripts of a page; begin.js unpacks it."""
+    """Compress with gzip and encode in base 85, with "," for "<", which could end a script element; unpacking.js reverses this."""
     return base64.b85encode(gzip.compress(content, 9, mtime=0)).decode().replace("<", ",")
 
 
 def _interleaved(modules):
     """
-    Some modules as one, a piece of each after the other: they have most functions in common, about as far into each, so that gzip finds them again within its window.
-    Their lengths tell the page how to take them apart.
+    Interleave the pieces of several modules.
+
+    The modules have most functions in common, at about the same relative offset. Interleaved, equal parts are within the window of gzip.
     """
     count = -(-len(modules[0]) // PIECE)
     pieces = (module[len(module) * i // count : len(module) * (i + 1) // count] for i in range(count) for module in modules)
@@ -52,14 +53,14 @@ def script_of(names):
 
 
 def renderer():
-    """three.js, packed."""
+    """Return three.js, packed; raise Problem if it is not installed."""
     if THREE is None:
         raise Problem("there is no three.js, which draws the page; install Debian's package libjs-three")
     return packed("\n".join((THREE / name).read_text(encoding="utf-8") for name in THREE_FILES).encode())
 
 
 def licenses(has_scene, has_fmu):
-    """What is in the page, and on what terms."""
+    """Return the licenses of the libraries in a page."""
     texts = ["The C library in the FMU's WebAssembly is musl, under the MIT license: https://musl.libc.org"] if has_fmu else []
     if has_scene:
         texts.append("three.js, Copyright 2010-2019 three.js authors, under the MIT license:\n\n" + _mit(next(path for path in THREE_LICENSES if path.exists()).read_text(encoding="utf-8")))
@@ -67,7 +68,7 @@ def licenses(has_scene, has_fmu):
 
 
 def _mit(copyright_file):
-    """The text of the license in a Debian copyright file."""
+    """Return the text of the MIT license in a Debian copyright file."""
     found = re.search(r"^License: (?:Expat|MIT)\n((?: .*\n?)+)", copyright_file, re.M)
     if not found:
         raise Problem("three.js comes without the text of the MIT license; expected that of Debian's package libjs-three")
@@ -75,7 +76,7 @@ def _mit(copyright_file):
 
 
 def one_source(fmu, folder):
-    """The FMU's one file of C, unpacked into the folder."""
+    """Unpack the FMU's C source into the folder and return its path; raise Problem if the FMU has none."""
     with zipfile.ZipFile(fmu) as archive:
         names = [name for name in archive.namelist() if re.fullmatch(r"sources/[^/]*\.c", name)]
         if len(names) != 1:
@@ -84,12 +85,12 @@ def one_source(fmu, folder):
 
 
 def _text(content):
-    """A text of the page, in bytes, packed; begin.js has it back."""
+    """Return a text, given as bytes, in the form that textOf() of begin.js reads."""
     return {"packed": packed(content)}
 
 
 def common(has_scene, has_fmu):
-    """What pages of all systems have."""
+    """Return the data that pages of all systems have in common."""
     return {
         "renderer": renderer() if has_scene else "",
         "licenses": licenses(has_scene, has_fmu),
@@ -98,7 +99,7 @@ def common(has_scene, has_fmu):
 
 
 def filled(template, **parts):
-    """The text of a file in which names between @ stand for parts."""
+    """Return the text of a template in which each @NAME@ is replaced by the part of this name."""
     return re.sub("@([A-Z]+)@", lambda part: parts[part[1]], (HERE / template).read_text(encoding="utf-8"))
 
 
@@ -107,7 +108,7 @@ def json_of(data):
 
 
 def page_of_data(title, data):
-    """The page as text; data: what it runs or plays, and common(); or a text that stands for them."""
+    """Return the page as text; `data` is a dict that includes common(), or a text in its place."""
     style, content = (HERE / "page.css").read_text(encoding="utf-8"), data if isinstance(data, str) else json_of(data)
     return filled("page.html", TITLE=html.escape(title), STYLE=style, DATA=content, SCRIPT=script_of(BEGIN))
 
@@ -117,12 +118,12 @@ def _title(tree):
 
 
 def _modules(source, pulled):
-    """The FMU in WebAssembly, and where bodies can be pulled what runs then."""
+    """Compile the FMU, and the variant whose bodies can be pulled if there is one, to WebAssembly."""
     return _interleaved([compile_to_wasm(one) for one in (source, pulled) if one])
 
 
 def page_of(fmu, origin=None):
-    """The page of an FMU (FMI 2.0) that lagrange-fmu made, as text; where its Origin is known, bodies can be pulled and the system is there to be saved."""
+    """Return the page of an FMU of FMI 2.0 as text; with an Origin bodies can be pulled, and the system can be saved."""
     with zipfile.ZipFile(fmu) as archive:
         description, equations = (archive.read(name) for name in ("modelDescription.xml", "documentation/index.html"))
     tree = ElementTree.fromstring(description)
@@ -142,7 +143,7 @@ def page_of(fmu, origin=None):
 
 
 def recording_of(result):
-    """Rows of a simulation's result, a structured array, as the page reads them: the time and all variables, as many rows as it can show."""
+    """Return a simulation's result, a structured array, in the form that the page reads, thinned to at most MOST_ROWS rows."""
     names = [name for name in result.dtype.names if name != "time"]
     count = max(2, min(MOST_ROWS, len(result), MOST_NUMBERS // (len(names) + 1)))
     rows = np.unique(np.linspace(0, len(result) - 1, count).round().astype(int))
@@ -153,7 +154,7 @@ def recording_of(result):
 
 
 def page_of_motion(tree, result, start):
-    """The page that plays the result of simulating an FMU, whose modelDescription.xml is the tree, from these start values of all that have one, as text."""
+    """Return the page that plays a result as text; `tree` is modelDescription.xml, `start` has the start values of all variables by name."""
     data = {
         "modelDescription": _text(ElementTree.tostring(tree)),
         "recording": recording_of(result),
@@ -164,4 +165,5 @@ def page_of_motion(tree, result, start):
 
 
 def write_page(fmu, path, origin=None):
+    """Write the page of an FMU and return its path."""
     return write_whole(path, page_of(fmu, origin))

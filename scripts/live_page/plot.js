@@ -1,9 +1,9 @@
-// A plot of variables against time, or against another one, on a canvas.
+// A plot of variables against time, or against another variable, on a canvas.
 "use strict";
 
 const COLORS = ["#2f7ed8", "#d9622b", "#2ca05a", "#8e5bd0", "#c23b6e", "#8a7a1f", "#17a2b8", "#7f7f7f"];
 
-// Steps of 1, 2 or 5 times a power of ten, about this many.
+// Returns about this many ticks in steps of 1, 2 or 5 times a power of ten.
 function ticksOf(low, high, count) {
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough * (1 - 1e-9)), ticks = [];
@@ -17,7 +17,8 @@ function shown(value, digits = 4) {
 }
 
 class Plot {
-  // history: see history.js; section: the same, of what is drawn as points in place of curves; choices: names and units of what can be drawn; across: the place of a variable, or -1 for the time.
+  // history: a History; section: a History that is drawn as points, if it has any and the plot is not against time; choices: names and units of
+  // the variables; places: indices of the drawn ones; across: index of the horizontal variable, or -1 for the time.
   constructor(history, section, choices, places, across = -1) {
     Object.assign(this, { history, section, choices, places, across, cursor: null });
     this.element = document.createElement("div");
@@ -48,15 +49,15 @@ class Plot {
       const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b");
       mark.style.background = COLORS[i % COLORS.length];
       item.append(mark, `${this.choices[place].name}${this.choices[place].unit ? ` [${this.choices[place].unit}]` : ""} `, value);
-      item.title = "click to leave it out";
+      item.title = "click to remove";
       item.addEventListener("click", () => {
         this.places.splice(i, 1);
         this.writeLegend();
       });
       return item;
     });
-    const adding = this.selection("another variable", "+ variable", -1, (place) => place >= 0 && !this.places.includes(place) && this.places.push(place));
-    const across = this.selection("against what", "against time", this.across, (place) => (this.across = place));
+    const adding = this.selection("add a variable", "+ variable", -1, (place) => place >= 0 && !this.places.includes(place) && this.places.push(place));
+    const across = this.selection("horizontal axis", "against time", this.across, (place) => (this.across = place));
     this.values = items.map((item) => item.lastChild);
     this.legend.replaceChildren(...items, adding, across);
   }
@@ -73,7 +74,7 @@ class Plot {
     return [low - room, high + room];
   }
 
-  // The samples from first to last, with a mark at one of them; or all points of the section.
+  // Draws the samples from first to last with a mark at one of them, or all points of the section.
   draw(first, last, marked) {
     const isSection = this.across >= 0 && this.section.length > 0;
     if (isSection) this.drawSamples(this.section, 0, this.section.length, null);

@@ -1,14 +1,14 @@
-// Bodies are pulled with the pointer: a spring from the point that was grasped to the pointer, which lies in the plane of the picture there.
+// Pulls bodies with the pointer, by a spring from the grasped point to the pointer in the plane through that point, parallel to the screen.
 "use strict";
 
-const REACH = 14; // pixels from a body's place, where nothing of it was hit
-const LIFT = 0.1; // of the size of all: so far its weight stretches the spring
-const SWINGS = 10; // in the experiment's time where there is no gravity, of all on the spring
-const DAMPING = 0.5;
+const REACH = 14; // pixels between the pointer and a body's position within which the body is grasped
+const LIFT = 0.1; // elongation of the spring under the system's weight, relative to its size
+const SWINGS = 10; // oscillations of the system's mass on the spring during the experiment, without gravity
+const DAMPING = 0.5; // damping time of the spring, times its angular frequency
 
-let held = null; // { i, body, local, plane, target } while something is pulled
-let sent = ""; // what the worker knows of that
-let thread = null; // that shows it
+let held = null; // { i, body, local, plane, target } while a body is pulled
+let sent = ""; // the last order to the worker
+let thread = null; // line that shows the spring
 
 const rayAt = (event) => {
   const box = scene.renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
@@ -17,7 +17,7 @@ const rayAt = (event) => {
   return ray;
 };
 
-// [place among the things, point in space] of what can be pulled there.
+// Returns [index of the thing, point in space] of a thing at the pointer that can be pulled.
 function hitAt(event, sample) {
   const canBe = (i) => i !== undefined && pulls.bodies[scene.things[i].name] !== undefined, found = [];
   const ray = rayAt(event), look = (object, i) => canBe(i) && ray.intersectObject(object, true).slice(0, 1).forEach(({ distance, point }) => found.push([distance, i, point]));
@@ -32,7 +32,7 @@ function hitAt(event, sample) {
   return near.filter(([distance, i]) => distance < REACH && canBe(i)).sort((a, b) => a[0] - b[0])[0]?.slice(1);
 }
 
-// What has no direction is held at its place.
+// Returns the grasped point in the body's frame; a thing without orientation is grasped at its origin.
 function localOf(point, i, sample) {
   const { tag, inertia } = scene.things[i], local = point.clone().sub(scene.position(sample, i));
   if (tag !== "body") return new THREE.Vector3();
@@ -42,7 +42,7 @@ function localOf(point, i, sample) {
 
 const heldPoint = (sample) => held.local.clone().applyMatrix4(scene.turn(sample, held.i)).add(scene.position(sample, held.i));
 
-// A spring that the weight of all stretches visibly, or on which all swings slowly; [stiffness in N/m, time of damping in s].
+// Returns the spring, [stiffness in N/m, damping time in s]: the system's weight stretches it by LIFT, or SWINGS defines its frequency.
 function springOf() {
   const mass = scene.things.map((thing) => valueOf(thing.mass || "0")).filter((one) => one > 0).reduce((sum, one) => sum + one, 0) || 1;
   const gravity = scene.gravity ? Math.hypot(...["x", "y", "z"].map((axis) => valueOf(scene.gravity[axis] || "0"))) : 0;
@@ -71,7 +71,7 @@ function letGo() {
   scene.controls.enabled = true;
 }
 
-// Once a frame, since things move under a pointer that rests.
+// Updates the pull once a frame, since bodies move while the pointer rests.
 function pullOn() {
   if (!held) return;
   const [stiffness, time] = springOf(), pointer = [...held.target.toArray(), ...held.local.toArray(), time];
@@ -90,7 +90,7 @@ function addPulling() {
   thread = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xd9342b }));
   thread.frustumCulled = false;
   scene.world.add(thread);
-  canvas.title = "bodies can be pulled";
+  canvas.title = "drag a body to pull it";
   canvas.addEventListener("pointerdown", grasp, true);
   canvas.addEventListener("pointermove", (event) => held && rayAt(event).ray.intersectPlane(held.plane, held.target));
   for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(name, letGo);

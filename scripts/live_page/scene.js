@@ -1,26 +1,26 @@
-// The system in space, by three.js: frames, bodies, particles and points where the variables say that they are, and what holds them together.
+// Draws the system with three.js: frames, bodies, particles and points at the positions that the variables give, and their rods and joints.
 "use strict";
 
 const AXES = ["x", "y", "z"];
-const TRAIL = 240; // samples
-const TRAILS = 8; // at most
+const TRAIL = 240; // samples of a trail
+const TRAILS = 8; // with more moving things only the last one has a trail
 
-// It turns about one axis alone: only that moment of inertia is given.
+// True for a body in the plane, which has a single moment of inertia.
 const isPlanarBody = (thing) => thing.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in thing);
 
-// The numbers of 16 bits in a text of base64.
+// Returns the 16-bit numbers in a text of base64.
 function numbersOf(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return Array.from({ length: bytes.length / 2 }, (_, i) => bytes[2 * i] + 256 * bytes[2 * i + 1]);
 }
 
-// Of a <mesh>, see modelDescription/scene/packed_mesh.h; x, y and z of its points and the corners of its triangles.
+// Unpacks a <mesh>, see modelDescription/scene/packed_mesh.h: coordinates of its points, and indices of its triangles' corners.
 function surfaceOf(mesh) {
   const least = AXES.map((axis) => Number(mesh[axis] || 0)), step = Number(mesh.step);
   return { points: numbersOf(mesh.points).map((number, i) => least[i % 3] + number * step), corners: numbersOf(mesh.triangles) };
 }
 
-// How far its points are from the origin at most.
+// Returns the largest distance of its points from the origin.
 function reachOf({ points }) {
   let most = 0;
   for (let i = 0; i < points.length; i += 3) most = Math.max(most, Math.hypot(points[i], points[i + 1], points[i + 2]));
@@ -28,13 +28,13 @@ function reachOf({ points }) {
 }
 
 class Scene {
-  // things: the elements of <scene>; column(name): the place of a variable in a sample, -1 for none; value(formula): of parameters.
+  // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters.
   constructor(container, things, column, value) {
     Object.assign(this, { container, column, value, labels: [], wished: {} });
     this.gravity = things.find((thing) => thing.tag === "gravity");
     this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
     const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
-    // A joint of two bodies in the plane belongs to either.
+    // A joint between two bodies in the plane is drawn for both.
     const others = things.filter((thing) => thing.tag === "joint" && isPlanar(thing.with));
     this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
     this.holders.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
@@ -59,7 +59,7 @@ class Scene {
     return target.set(x, y, z);
   }
 
-  // The axes of a frame, or of what is in it.
+  // Returns the rotation matrix of a thing, or of the frame that contains it.
   turn(sample, i, target = new THREE.Matrix4()) {
     if (i === undefined) return target.identity();
     const angle = this.angles[i], turns = this.turns[i];
@@ -69,19 +69,19 @@ class Scene {
     return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
   }
 
-  // Of a joint: where it is on the body that it holds.
+  // Returns the position of a joint on its body.
   jointPosition(sample, joint, target) {
     const i = this.byName.get(joint.of);
     target.set(joint.place[0], joint.place[1], 0).applyMatrix4(this.turn(sample, i));
     return target.add(this.position(sample, i));
   }
 
-  // Formulas hold for the present values of parameters.
+  // Evaluates the positions of joints for the present parameters.
   evaluate() {
     for (const holder of this.holders) if (holder.tag === "joint") holder.place = [holder.x, holder.y].map((formula) => this.value(formula));
   }
 
-  // As they are with other values of parameters: joints, and bodies' sizes.
+  // Adapts joints and sizes of bodies to changed parameters.
   adapt() {
     if (!this.objects) return;
     this.evaluate();
@@ -99,7 +99,7 @@ class Scene {
     return this.plane ? (this.plane.includes(1) ? [0, 1, 0] : [0, 0, 1]) : [0, 0, 1];
   }
 
-  // The two axes in which all moves where that is a plane, looked for in these samples.
+  // Returns the two axes of the plane in which all things move in these samples; null if there is no such plane.
   findPlane(samples) {
     const still = [2, 1, 0].find((axis) => {
       const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
@@ -110,7 +110,7 @@ class Scene {
     return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
   }
 
-  // Builds what is seen, of a size for all of these samples.
+  // Builds all objects, with a size of the view for all these samples.
   build(samples) {
     this.evaluate();
     this.plane = this.findPlane(samples);
@@ -154,7 +154,7 @@ class Scene {
     return COLORS[i % COLORS.length];
   }
 
-  // Drawn by its shapes, which may be those of the frame that it is in.
+  // True if a thing is drawn by its shapes or by those of its frame.
   hasShape(thing) {
     return this.shapes.some((shape) => shape.in === thing.name || (thing.in && shape.in === thing.in));
   }
@@ -170,12 +170,12 @@ class Scene {
     const [xx, xy, xz, yy, yz, zz] = ["Ixx", "Ixy", "Ixz", "Iyy", "Iyz", "Izz"].map(entry);
     const tensor = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     if (mass > 0) return solidOf(mass, tensor);
-    // Only its shape is known: of a size to be seen.
+    // Without mass only the proportions are known; the size is chosen to be visible.
     const solid = solidOf(1, tensor);
     return solid && solidOf((sizeOf(solid) / (0.1 * this.span)) ** 2, tensor);
   }
 
-  // A body that rods show: from joint to joint, or from the origin of its frame to itself.
+  // True for a body that rods represent: from joint to joint, or from the origin of its frame to its own position.
   isLink(thing) {
     return this.isJointed(thing.name) || this.holders.some(({ tag, from, to }) => tag === "rod" && from === thing.in && to === thing.name);
   }
@@ -184,7 +184,7 @@ class Scene {
     return this.holders.some((holder) => holder.tag === "joint" && holder.of === name);
   }
 
-  // Of a particle, by its mass among the others'; 0 of what is drawn otherwise.
+  // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for things that are drawn otherwise.
   ballRadius(i) {
     const thing = this.things[i];
     if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name)))) return 0;
@@ -224,9 +224,9 @@ class Scene {
     else {
       const radius = Math.max(solid.radius, thin / 3), length = Math.max(solid.length, thin);
       const cylinder = new THREE.Mesh(new THREE.CylinderBufferGeometry(radius, radius, length, 48), material);
-      cylinder.rotation.x = Math.PI / 2; // from three's axis y to the third one
+      cylinder.rotation.x = Math.PI / 2; // from axis y, that of cylinders in three.js, to the third axis
       mesh.add(cylinder);
-      const stripe = new THREE.Mesh(new THREE.BoxBufferGeometry(0.9 * radius, 0.07 * radius, 1.02 * length), marked); // to see it turn
+      const stripe = new THREE.Mesh(new THREE.BoxBufferGeometry(0.9 * radius, 0.07 * radius, 1.02 * length), marked); // makes rotation visible
       stripe.position.x = 0.5 * radius;
       if (solid.length < 3 * solid.radius) mesh.add(stripe);
     }
@@ -234,7 +234,7 @@ class Scene {
     return mesh;
   }
 
-  // In its own colour, or in that of what it is part of.
+  // Returns a material in the shape's own color, or in that of its body.
   materialOfShape(shape, i) {
     if (shape.color) {
       const opacity = shape.color.length > 7 ? parseInt(shape.color.slice(7), 16) / 255 : 1;
@@ -243,7 +243,7 @@ class Scene {
     return this.material(i === undefined ? (this.isDark ? 0x7a8699 : 0x9aa5b4) : this.colorOf(i), { transparent: true, opacity: 0.92 });
   }
 
-  // Each triangle in one shade, from both sides: files do not tell where a surface is smooth, and some turn triangles over.
+  // Draws each triangle in one shade and from both sides: files do not define smooth edges, and some have inverted triangles.
   addSurface(mesh, { points, corners }, material) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
@@ -262,13 +262,13 @@ class Scene {
     else if (shape.type === "mesh") this.addSurface(mesh, this.meshes.get(shape.mesh), material);
     else if (shape.type === "sphere") {
       add(new THREE.SphereBufferGeometry(radius, 32, 24));
-      add(new THREE.TorusBufferGeometry(radius, 0.03 * radius, 8, 48)).material = this.material(this.isDark ? 0x14171c : 0xffffff); // to see it turn
+      add(new THREE.TorusBufferGeometry(radius, 0.03 * radius, 8, 48)).material = this.material(this.isDark ? 0x14171c : 0xffffff); // makes rotation visible
     } else if (shape.type === "plane") add(new THREE.BoxBufferGeometry(2.4 * this.radius, 0.03 * this.radius, 2.4 * this.radius)).position.y = -0.015 * this.radius;
     else {
       add(new THREE.CylinderBufferGeometry(radius, radius, length, 48));
       if (shape.type === "capsule") for (const end of [-1, 1]) add(new THREE.SphereBufferGeometry(radius, 32, 16)).position.y = (end * length) / 2;
     }
-    // three's axis of cylinders is y.
+    // Cylinders of three.js have the axis y.
     if (!["box", "sphere", "mesh", "ellipsoid"].includes(shape.type)) mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3().setComponent(axis, 1));
     part.add(mesh);
     part.position.set(...AXES.map(measure));
@@ -276,7 +276,7 @@ class Scene {
     return part;
   }
 
-  // How far shapes reach from where they are.
+  // Returns the largest extent of shapes from the origins of their frames.
   sizeOfShapes() {
     const measure = (shape, name) => this.value(shape[name] || "0");
     const sizes = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => {
@@ -287,12 +287,12 @@ class Scene {
     return Math.max(0, ...sizes);
   }
 
-  // Of the base.
+  // Adds the shapes that are fixed to the base.
   addStillShapes() {
     for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
   }
 
-  // A rod between two things, or from a planar body's centre to its joint.
+  // Adds a rod between two things, or from the center of a planar body to its joint.
   addRod(holder) {
     const thickness = 0.014 * this.radius / (1 + this.things.length / 60);
     const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);
@@ -330,7 +330,7 @@ class Scene {
     }
   }
 
-  // Planes that things hit, and stops: as far from the middle of what is drawn as a ball, a radius.
+  // Adds surfaces of contacts and stops, moved back by the radius of a thing that is drawn as a ball.
   addSurfaces() {
     const vector = (thing, names) => new THREE.Vector3(...names.map((name) => Number(thing[name])));
     for (const surface of this.surfaces) {
@@ -344,7 +344,7 @@ class Scene {
     }
   }
 
-  // Forces of constraints: along rods, and at joints.
+  // Adds arrows for constraint forces, along rods and at joints.
   addForces() {
     this.forces = [];
     const add = (names, parts) => {
@@ -529,14 +529,14 @@ class Scene {
     return ghost;
   }
 
-  // Makes room for what has left the picture of a plane.
+  // Enlarges the view of a plane, if a thing has left it.
   widen(sample) {
     const point = new THREE.Vector3(), before = this.frameBox.clone();
     this.things.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
     if (!before.equals(this.frameBox)) this.resize();
   }
 
-  // Of a history: the sample at a place.
+  // Draws the sample of a history with the index `at`.
   draw(history, at) {
     const runs = history.samples[at];
     if (this.plane) this.widen(runs[0]);
@@ -551,7 +551,7 @@ class Scene {
   }
 }
 
-// Right-handed.
+// Returns the axes, with the second one reversed if they are left-handed.
 function properAxes([first, second, third]) {
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const sign = cross(first, second).reduce((sum, x, k) => sum + x * third[k], 0);

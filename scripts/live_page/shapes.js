@@ -1,7 +1,7 @@
-// What bodies look like by their mass and moments of inertia: the uniform solid that has the same.
+// Finds the uniform solid that has the mass and the moments of inertia of a body.
 "use strict";
 
-// Of a symmetric 3 x 3 matrix, by Jacobi's rotations: [values, vectors as columns].
+// Returns eigenvalues, and eigenvectors as columns, of a symmetric 3 x 3 matrix, by Jacobi's method (Golub and Van Loan: Matrix computations, 8.5).
 function eigen(matrix) {
   const a = matrix.map((row) => [...row]), v = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
   for (let sweep = 0; sweep < 30; sweep++)
@@ -17,7 +17,7 @@ function eigen(matrix) {
 
 const near = (a, b, scale) => Math.abs(a - b) <= 1e-3 * scale;
 
-// Lengths in m: a ball { radius }, a cylinder { radius, length } about its third axis, or a box { sides }; with their axes, as columns.
+// Returns a ball { radius }, a cylinder { radius, length } about its third axis, or a box { sides }, in m, with its axes, each a unit vector.
 function solidOf(mass, inertia) {
   const [moments, vectors] = eigen(inertia), largest = Math.max(...moments);
   const column = (k) => vectors.map((row) => row[k]);
@@ -36,5 +36,5 @@ function solidOf(mass, inertia) {
   return { kind: "box", sides, axes: [column(0), column(1), column(2)] };
 }
 
-// The radius of the ball around it.
+// Returns the radius of the circumscribed ball.
 const sizeOf = (solid) => (solid.kind === "box" ? Math.hypot(...solid.sides) / 2 : Math.hypot(solid.radius, (solid.length || 0) / 2));

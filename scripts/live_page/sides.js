@@ -1,18 +1,18 @@
-// The FMU as it was shipped, and the one whose bodies can be pulled, which goes on from its state. Runs in the worker.
+// Instances of the FMU as shipped, or of the one whose bodies can be pulled, which continues from the other's state. Runs in the worker.
 "use strict";
 
 class Side {
-  // wasm: the functions of FMI and of driver.c; description: of the variables with their references there; shown: the places of those that are told of.
+  // wasm: functions of FMI and of driver.c; description: with the references of this FMU; shown: indices of the shown variables.
   constructor(wasm, description, shown) {
     this.wasm = wasm;
     this.description = description;
     this.shown = shown;
     this.references = shown.map((place) => description.variables[place].reference);
     this.states = description.variables.flatMap(({ role, type }, place) => (role === "start" && type === "Real" ? [place] : []));
-    this.fmus = []; // one, or with its ghost beside it
-    this.kept = []; // a state for each FMU, of before something was set
-    this.saved = []; // [time, a state for each FMU]
-    this.free = []; // states whose places can be used again
+    this.fmus = []; // the FMU, and its ghost if there is one
+    this.kept = []; // a state of each FMU before the last setting
+    this.saved = []; // [time, a state of each FMU], to step back
+    this.free = []; // states whose memory can be reused
   }
 
   add() {

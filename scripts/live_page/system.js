@@ -1,7 +1,7 @@
-// The system behind the page: its equations, and its file with the present values.
+// Shows the equations of the system, and saves its file with the present values.
 "use strict";
 
-// The attribute of an element of the file that gives a variable its start value.
+// Returns the element of the file that gives a variable its start value, and the name of its attribute.
 function startOf(file, name) {
   const named = (tags, attribute) => [...file.querySelectorAll(tags)].find((element) => element.getAttribute(attribute) === name && !element.closest("for, include"));
   const own = named("parameter, input, coordinate", "name"), rate = own ? null : named("coordinate", "velocity");
@@ -9,7 +9,7 @@ function startOf(file, name) {
   return rate && [rate, "velocityStart"];
 }
 
-// The file of the system with what was set; told beside it is what the file does not name.
+// Returns the file of the system with the present values, and the names of changed variables that the file does not contain.
 function systemNow() {
   const file = new DOMParser().parseFromString(data.system, "text/xml"), missing = [];
   for (const [place, control] of settings()) {
@@ -29,7 +29,7 @@ function addSystem() {
   $("system").hidden = !data.system || !data.system.includes("<system");
   $("system").addEventListener("click", () => {
     const [text, missing] = systemNow();
-    if (missing.length > 0) say(`The file of the system does not name ${missing.join(", ")}: their values are not in it.`);
+    if (missing.length > 0) say(`system.xml does not name ${missing.join(", ")}; it is saved without their values.`);
     save("system.xml", text, "text/xml");
   });
 }

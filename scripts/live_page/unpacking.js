@@ -1,7 +1,7 @@
-// What is packed in a page.
+// Reverses packed() of page.py.
 "use strict";
 
-// Of five letters of base 85 four bytes, the first the largest.
+// Decodes base 85: five letters are four bytes in big endian.
 function bytesOf(text) {
   const letters = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~", values = {};
   [...letters].forEach((letter, value) => (values[letter] = value));

@@ -1,4 +1,4 @@
-// The picture as it moves, as a file of WebM.
+// Records the animation as a WebM file.
 "use strict";
 
 const FRAMES_A_SECOND = 30;

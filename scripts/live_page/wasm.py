@@ -1,4 +1,4 @@
-"""An FMU's sources as WebAssembly, by zig, with what a page needs beside the functions of FMI."""
+"""Compile an FMU's source to WebAssembly with zig, together with driver.c, the functions that a page needs beside those of FMI."""
 
 import os
 import subprocess
@@ -11,13 +11,13 @@ from ..problem import Problem
 DRIVER = Path(__file__).resolve().parent / "driver.c"
 EXPORTS = ["Reset", "SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetFMUstate", "SetFMUstate",
            "GetReal", "SetReal", "SetInteger", "SetBoolean"]  # fmt: skip
-# As scripts/cross.py for other platforms: no a*b + c in one operation, nothing that is not called.
+# As in scripts/cross.py: no fused multiply-add, no unused functions.
 FLAGS = ["-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c11", "-fvisibility=hidden", "-ffp-contract=off",
          "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all", "-Wl,--gc-sections"]  # fmt: skip
 
 
 def compile_to_wasm(source):
-    """The bytes of a module without imports, of an FMU's one file of C (FMI 2.0)."""
+    """Return the bytes of a module without imports, compiled from an FMU's C source of FMI 2.0; raise Problem if that fails."""
     source = Path(source).resolve()
     with tempfile.TemporaryDirectory() as scratch:
         output = Path(scratch) / "fmu.wasm"

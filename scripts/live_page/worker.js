@@ -1,18 +1,18 @@
-// Runs the FMU at the speed that is wished, and tells of where it is. Messages to it have a name, and go to the function of that name in `orders`.
+// Runs the FMU at the requested speed, and posts its samples. A message to it has a name and calls the function of that name in `orders`.
 "use strict";
 
-const TICK = 16; // ms
-const BUSY = 13; // ms of a tick that may go into steps
-const SAMPLES = 16; // at most, of a tick
-const SAVED = 600; // states to go back to
-const PREVIEW = 150; // ms, in which what there will be to see is looked at
+const TICK = 16; // ms, a frame at 60 Hz
+const BUSY = 13; // ms of a tick for steps at most, so that messages are handled in time
+const SAMPLES = 16; // of a tick at most
+const SAVED = 600; // saved states at most, for steps back
+const PREVIEW = 150; // ms for the simulation that determines the size of the view
 
-let description, pulls, wasmOf; // wasmOf(isPulled): the functions of a module of its own
-let shipped, pulled = null, side; // the FMU as it is, the one whose bodies can be pulled, and which of them runs
-let values = [new Map(), new Map()]; // what was set, by the place of the variable; of each FMU
+let description, pulls, wasmOf; // wasmOf(isPulled): returns the functions of a new module
+let shipped, pulled = null, side; // the FMU as shipped, the one whose bodies can be pulled, and the one that runs
+let values = [new Map(), new Map()]; // settings of each FMU, by the index of the variable
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
-let period = 0; // s, after each of which the section has a point; 0 for none
-let ghost = null; // the second one, while it is not run
+let period = 0; // s between points of the section; 0 for none
+let ghost = null; // the second FMU while it does not run
 
 const tell = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
@@ -21,7 +21,7 @@ function refuse(problem, content = {}) {
   tell("refused", { words: problem.message, ...content });
 }
 
-// No longer than the step that the author gave, and 30 of them a second to see; to the end of a period where there is one.
+// Returns the length of the next step: at most the FMU's step size, at least 30 steps per second of wall-clock time, and ending at a period's end.
 function stepLength() {
   const length = description.stepSize / Math.max(1, Math.ceil((description.stepSize * 30) / speed - 1e-9));
   if (!(period > 0)) return length;
@@ -96,7 +96,7 @@ function tick() {
   setTimeout(tick, Math.max(0, TICK - (performance.now() - start)));
 }
 
-// From the start for a while: where things go, for a view of all of it.
+// Simulates from the start for PREVIEW, to determine the size of the view.
 function preview() {
   const end = performance.now() + PREVIEW, rows = [], steps = Math.min(1000, Math.ceil(description.duration / description.stepSize));
   try {
@@ -118,7 +118,7 @@ function startAnew() {
   side.fmus.forEach((fmu, i) => fmu.start(values[i]));
 }
 
-// From the present state, until a start: what pulls costs time, and is not in the FMU.
+// Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.
 function goOnPulled() {
   if (side !== shipped) return;
   const variables = description.variables.map((variable, place) => ({ ...variable, reference: pulls.references[place] }));
@@ -130,7 +130,7 @@ function goOnPulled() {
   side = pulled;
 }
 
-// What an FMU's module offers.
+// Returns the functions of an FMU's module.
 function instanceOf(bytes) {
   const wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), {}).exports;
   wasm._initialize();
@@ -174,7 +174,7 @@ const orders = {
   back() {
     if (goBack()) tellNow(true);
   },
-  // A value from now on, and from the start the next time.
+  // Sets a value, which applies now and after the next start; start values and fixed parameters apply after the next start only.
   set({ place, value }) {
     const variable = description.variables[place], isLater = variable.role === "start" || variable.isFixed;
     const { fmus, kept } = side, earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
@@ -183,7 +183,7 @@ const orders = {
     fmus.forEach((fmu, i) => (kept[i] = fmu.save(kept[i])));
     try {
       for (const fmu of fmus) fmu.set(place, value);
-      sample(); // which it may refuse only then
+      sample(); // the FMU may reject the value only when it is evaluated
       tell("accepted", { about: place });
     } catch (problem) {
       refuse(problem, { about: place, value, held: earlier[0] });
@@ -194,7 +194,7 @@ const orders = {
     }
     if (!playing) tellNow(true);
   },
-  // Begins anew, with what was set meanwhile.
+  // Restarts with all settings.
   reset({ set = [] }) {
     for (const [place, value] of set) values[0].set(place, value);
     try {
@@ -217,7 +217,7 @@ const orders = {
     else if (shipped.fmus.length === 1) shipped.add();
     orders.reset({});
   },
-  // pointer: its place, the point of the body that it holds, and the time of damping; all is let go where there is no stiffness.
+  // pointer: its position, the grasped point in the body's frame, and the damping time; a stiffness of 0 releases the body.
   pull({ body, pointer, stiffness }) {
     try {
       if (stiffness > 0) goOnPulled();
@@ -227,7 +227,7 @@ const orders = {
       refuse(problem);
     }
   },
-  // Without pacing: by steps of the author's length to this time.
+  // Steps to a time as fast as possible, with the FMU's step size.
   run({ until }) {
     const steps = Math.round((until - time) / description.stepSize), start = performance.now(), from = time;
     for (let i = 0; i < steps; i++) {

@@ -189,7 +189,7 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
     with editor(browser, write_page(tmp_path, "DoublePendulum")) as page:
         assert page.frame_locator("#page").locator("h1").inner_text() == "Two point masses on two massless rods"
         page.locator("#source").fill(spring.replace("k*x^2/2", "k*y^2/2"))
-        page.wait_for_function("document.getElementById('state').textContent === 'not yet right'")
+        page.wait_for_function("document.getElementById('state').textContent === '1 error'")
         assert page.locator("#said").inner_text().startswith("line 6: the potential: unknown name 'y'")
         assert page.locator("#lines .wrong").inner_text() == "6" and page.evaluate("bench.runs") == 1
         page.locator("#said button").click()
@@ -213,6 +213,6 @@ def test_several_files(browser, tmp_path):
         np.testing.assert_allclose([found[state] for state in states], expected, rtol=1e-9, atol=1e-12)
         page.locator("#files").select_option("Motor/system.xml")
         page.locator("#source").fill("<system")
-        page.wait_for_function("document.getElementById('state').textContent === 'not yet right'")
+        page.wait_for_function("document.getElementById('state').textContent === '2 errors'")
         assert page.locator("#said").inner_text().startswith("Motor/system.xml, line 1: <system> is not closed")
         assert page.locator("#lines .wrong").inner_text() == "1"
