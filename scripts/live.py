@@ -22,11 +22,11 @@ def origin_in(build, system):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("fmu", type=Path)
-    parser.add_argument("page", type=Path, nargs="?")
-    parser.add_argument("--system", type=Path, help="the file that the FMU was made of: then its bodies can be pulled, and it can be saved")
-    parser.add_argument("--build", type=Path, default=ROOT / "build", help="the build folder that made it")
-    parser.add_argument("--edit", action="store_true", help="the system can be changed in the page")
+    parser.add_argument("fmu", type=Path, help="the FMU")
+    parser.add_argument("page", type=Path, nargs="?", help="the page to write; default: build/live/NAME.html")
+    parser.add_argument("--system", type=Path, help="file of the FMU's system, with which bodies can be pulled and the system can be saved")
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="build folder of the FMU")
+    parser.add_argument("--edit", action="store_true", help="show the system in the page, where it can be changed")
     arguments = parser.parse_args()
     if arguments.edit and not arguments.system:
         parser.error("--edit needs --system")

@@ -12,8 +12,8 @@ from scripts.simulation import print_results, simulate, write_motion
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("fmu", type=Path)
-    parser.add_argument("start", nargs="*", type=assignment, metavar="NAME=VALUE")
+    parser.add_argument("fmu", type=Path, help="the FMU")
+    parser.add_argument("start", nargs="*", type=assignment, metavar="NAME=VALUE", help="start values and parameters")
     arguments = parser.parse_args()
     try:
         print_results(write_motion(lambda: simulate(arguments.fmu, dict(arguments.start)), Path("build/results")))

@@ -48,7 +48,7 @@ def compile_ensemble(source, lanes):
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/sweep", description=__doc__)
-    parser.add_argument("system", help="the name of a system, or an FMU")
+    parser.add_argument("system", help="name of a system, or an FMU")
     sweep_words(parser, "build/results/SYSTEM-sweep.parquet")
     arguments = parser.parse_args()
     path = Path(arguments.system)

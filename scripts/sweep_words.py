@@ -27,12 +27,12 @@ def variation(text):
 def sweep_words(parser, output):
     """Declare the arguments; `output` describes the default file."""
     parser.add_argument("--vary", action="append", type=variation, required=True, metavar="NAME=FROM:TO:COUNT",
-                        help="or NAME=VALUE,VALUE,...; several make a grid. theta0 is the start value of theta")  # fmt: skip
-    parser.add_argument("--random", type=int, metavar="RUNS", help="a random sample of the ranges instead of a grid")
-    parser.add_argument("--seed", type=int, default=0, help="of the random sample")
-    parser.add_argument("--stop-time", "--stop", type=float, metavar="S", help="the end of each run; else that of the FMU")
-    parser.add_argument("--step", type=float, metavar="S", help="the communication step; else the whole run")
-    parser.add_argument("--tolerance", type=float, help="the relative tolerance; else that of the FMU")
+                        help="range of a start value or parameter, or NAME=VALUE,VALUE,...; several make a grid; theta0 is the start value of theta")  # fmt: skip
+    parser.add_argument("--random", type=int, metavar="RUNS", help="number of runs of a random sample from the ranges NAME=FROM:TO, in place of a grid")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random sample")
+    parser.add_argument("--stop-time", "--stop", type=float, metavar="S", help="end of each run in s; default: that of the FMU")
+    parser.add_argument("--step", type=float, metavar="S", help="communication step in s; default: the whole run")
+    parser.add_argument("--tolerance", type=float, help="relative tolerance; default: that of the FMU")
     parser.add_argument("--record", action="append", metavar="ITEM,...", help="columns beside the states at the end: NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first; of a single contact NAME.events, NAME.first")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster; else a thread for each core")
-    parser.add_argument("--output", type=Path, metavar="FILE.parquet", help=f"else {output}")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="address of a Dask cluster; default: a thread for each core")
+    parser.add_argument("--output", type=Path, metavar="FILE.parquet", help=f"file to write; default: {output}")

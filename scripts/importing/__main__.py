@@ -115,8 +115,8 @@ def table(rows, versions):
 
 def main():
     parser = argparse.ArgumentParser(prog="scripts/importers", description=__doc__)
-    parser.add_argument("fmus", nargs="*", metavar="FMU", help="names of FMUs; all where none is given")
-    parser.add_argument("--by", action="append", metavar="IMPORTER", help="this importer alone; may be given more than once")
+    parser.add_argument("fmus", nargs="*", metavar="FMU", help="names of FMUs; default: all")
+    parser.add_argument("--by", action="append", metavar="IMPORTER", help="run only this importer; can be repeated")
     words = parser.parse_args()
     names = words.fmus or sorted(path.stem for path in FOLDERS[2].glob("*.fmu"))
     unknown = [name for name in names if not (FOLDERS[2] / f"{name}.fmu").exists()]

@@ -274,7 +274,7 @@ def write_page(sections):
 def main(words=None):
     """1 where an FMU gave a wrong result; what others' programs or a reference lack is a sentence in the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="five systems, few tolerances: two minutes")
+    parser.add_argument("--quick", action="store_true", help="compare five systems at few tolerances, in two minutes")
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 2 + len(switching.PROBLEMS) + len(switching.GROWING)

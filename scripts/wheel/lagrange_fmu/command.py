@@ -48,11 +48,11 @@ def parser():
     """Return the parser of the command and of all its subcommands."""
     words = Words(
         prog="lagrange-fmu",
-        description="Energies and forces of a mechanical system become an FMU.",
-        epilog=f"What was compiled is kept in {caching.folder()}, or where LAGRANGE_FMU_CACHE says; the folder can be deleted.",
+        description="Build an FMU from the energies and forces of a mechanical system, simulate it, and analyze it.",
+        epilog=f"Compiled files are cached in {caching.folder()}; the environment variable LAGRANGE_FMU_CACHE names another folder. The cache can be deleted.",
     )
     words.add_argument("--version", action="version", version=f"lagrange-fmu {__version__}")
-    shtab.add_argument_to(words, help="prints what a shell completes the command's words by")
+    shtab.add_argument_to(words, help="print the completion script for a shell")
     words.set_defaults(run=lambda arguments: words.print_help())
     commands = words.add_subparsers(metavar="COMMAND")
     for name, module in MODULES.items():

@@ -1,4 +1,4 @@
-"""Builds the FMU of a system, and prints where it is."""
+"""Build the FMU of a system, and print its path."""
 
 from ..building import NATIVE, build
 from ..runtime.scripts.cross import PLATFORM_NAMES
@@ -7,11 +7,11 @@ from .words_of_systems import SYSTEM, add_fmi, add_output
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM)
-    parser.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"of {', '.join(PLATFORM_NAMES)}; {NATIVE} where none are given")
-    parser.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
-    parser.add_argument("--arrays", action="store_true", help="what <for> makes are arrays in FMI 3.0, not scalars")
+    parser.add_argument("--platforms", nargs="+", metavar="PLATFORM", help=f"platforms of the FMU: {', '.join(PLATFORM_NAMES)}; default: {NATIVE}")
+    parser.add_argument("--solver", metavar="METHOD", help="solver method in place of the system's own")
+    parser.add_argument("--arrays", action="store_true", help="declare the variables that <for> repeats as arrays, in FMI 3.0")
     add_fmi(parser)
-    add_output(parser, "the FMU goes")
+    add_output(parser, "the FMU")
 
 
 def run(arguments):

@@ -1,4 +1,4 @@
-"""Tells what is wrong in the file of a system, or that it is right; start values are tried by run."""
+"""Report the mistakes in the file of a system, without building it; start values are checked by run."""
 
 from ..building import check
 from .words_of_systems import SYSTEM

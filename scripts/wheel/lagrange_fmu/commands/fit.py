@@ -1,4 +1,4 @@
-"""Finds parameters and start values with which the motion meets measurements; tells how sure they are, and writes a page and the system with the new values."""
+"""Fit parameters and start values to measurements; print them with standard deviations, and write a page and the fitted system."""
 
 import argparse
 import sys
@@ -18,20 +18,20 @@ def bounds(text):
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("data", nargs="+", metavar="DATA.csv", help="time and measured variables, and perhaps inputs, by names in the first line; several are several experiments")
-    parser.add_argument("--vary", nargs="+", default=[], metavar="NAME", help="parameters and start values to be found")
-    parser.add_argument("--each", nargs="+", default=[], metavar="NAME", help="start values and the like that each experiment has of its own, to be found too")
-    parser.add_argument("--bounds", nargs="+", action="extend", default=[], type=bounds, metavar="NAME=LOW:HIGH", help="in place of the variables' min and max")
-    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="values to begin with, or to keep")
+    parser.add_argument("data", nargs="+", metavar="DATA.csv", help="measurements, a file for each experiment; the first line names the columns: time, measured variables and inputs")
+    parser.add_argument("--vary", nargs="+", default=[], metavar="NAME", help="parameters and start values to fit for all experiments together")
+    parser.add_argument("--each", nargs="+", default=[], metavar="NAME", help="start values, parameters or inputs to fit for each experiment separately")
+    parser.add_argument("--bounds", nargs="+", action="extend", default=[], type=bounds, metavar="NAME=LOW:HIGH", help="bounds of fitted values; default: min and max of the variables")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="initial guesses of fitted values, and values of other variables")
     parser.add_argument("--noise", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="standard deviations of measured variables")
-    parser.add_argument("--loss", default="linear", metavar="LOSS", help="soft_l1, huber or cauchy for data with outliers, in place of squares")
-    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="for NAME-fit.html and NAME-fit.xml")
+    parser.add_argument("--loss", default="linear", metavar="LOSS", help="loss function for data with outliers: soft_l1, huber or cauchy; default: linear, the sum of squares")
+    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help="folder of NAME-fit.html and NAME-fit.xml; default: the current folder")
 
 
 def run(arguments):
     from ..fitting import fit
 
-    warnings.filterwarnings("ignore", "misfit: ")  # which is printed with the values
+    warnings.filterwarnings("ignore", "misfit: ")  # printed with the values
     found = fit(arguments.system, arguments.data, arguments.vary, dict(arguments.set), dict(arguments.bounds), dict(arguments.noise), arguments.each, arguments.loss)
     print(found)
     folder = Path(arguments.output)

@@ -1,4 +1,4 @@
-"""Prints the matrices A, B, C, D of a system to first order at a point, and the eigenvalues of A; where there are constraints, in as many states as are independent."""
+"""Linearize a system at a point: print the matrices A, B, C, D and the eigenvalues of A, in independent states if there are constraints."""
 
 from ..quantities import assignment
 from .words_of_systems import SYSTEM_OR_FMU
@@ -6,8 +6,8 @@ from .words_of_systems import SYSTEM_OR_FMU
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("--at", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="coordinates, velocities and inputs at the point; else their start values")
-    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="parameters")
+    parser.add_argument("--at", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="coordinates, velocities and inputs of the point; default: their start values")
+    parser.add_argument("--set", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="values of parameters; default: their start values")
 
 
 def table(name, matrix, rows, columns):

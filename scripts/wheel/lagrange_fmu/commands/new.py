@@ -1,13 +1,13 @@
-"""Writes NAME.xml, a system with comments to begin with."""
+"""Write NAME.xml, a system with comments, as a starting point."""
 
 from ..building import TEMPLATES, new
 
 
 def arguments(parser):
-    parser.add_argument("name", metavar="NAME")
-    parser.add_argument("--template", choices=TEMPLATES, default="pendulum", help="what to begin with; the pendulum where none is given")
+    parser.add_argument("name", metavar="NAME", help="name of the system: letters, digits and _")
+    parser.add_argument("--template", choices=TEMPLATES, default="pendulum", help="system to copy; default: pendulum")
 
 
 def run(arguments):
     path = new(arguments.name, arguments.template)
-    print(f"{path} is a {arguments.template} to begin with; next: lagrange-fmu run {path}")
+    print(f"{path} is written, a system from the template {arguments.template}; next: lagrange-fmu run {path}")

@@ -1,4 +1,4 @@
-"""Builds the FMU of a system and simulates it; leaves a CSV, a plot and an animation."""
+"""Build the FMU of a system and simulate it; write a CSV, a plot and an animation."""
 
 import argparse
 import math
@@ -20,16 +20,16 @@ def positive(text):
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
     parser.add_argument("start", nargs="*", type=assignment, metavar="NAME=VALUE", help="start values and parameters, such as l=0.5, l=20cm or theta=pi/2")
-    parser.add_argument("--stop-time", type=positive, metavar="S", help="when it ends; else as the system's <experiment> says")
-    parser.add_argument("--step", type=positive, metavar="S", help="the communication step, at whose ends the CSV has rows; else as the experiment says")
-    parser.add_argument("--tolerance", type=positive, help="the relative tolerance; else as the system's <solver> says")
-    parser.add_argument("--solver", metavar="METHOD", help="in place of the system's own")
-    parser.add_argument("--fmi", type=int, choices=(2, 3), help="the version of FMI; 2 where none is given")
-    parser.add_argument("--input", metavar="FILE.csv", help="the inputs: first line time,NAME,..., then numbers; linear between the lines, two lines of one time are a jump")
-    parser.add_argument("--hold", action="store_true", help="the values of the input are held from line to line instead")
-    parser.add_argument("--no-events", action="store_true", help="no rows at events, of which each has one before and one behind it")
-    parser.add_argument("--output", nargs="+", metavar="NAME", help="the variables to record, in place of all outputs")
-    parser.add_argument("-o", "--folder", default=".", metavar="FOLDER", help="where the results go; else the current folder")
+    parser.add_argument("--stop-time", type=positive, metavar="S", help="end of the simulation in s; default: that of <experiment>")
+    parser.add_argument("--step", type=positive, metavar="S", help="communication step in s, the time between rows of the CSV; default: that of <experiment>")
+    parser.add_argument("--tolerance", type=positive, help="relative tolerance; default: that of <solver>")
+    parser.add_argument("--solver", metavar="METHOD", help="solver method in place of the system's own")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), help="version of FMI; default: 2")
+    parser.add_argument("--input", metavar="FILE.csv", help="inputs: a first line time,NAME,... and lines of numbers; inputs are linear between lines, and two lines of one time are a jump")
+    parser.add_argument("--hold", action="store_true", help="hold the inputs from line to line instead of interpolating")
+    parser.add_argument("--no-events", action="store_true", help="omit the two rows of each event, before it and after it")
+    parser.add_argument("--output", nargs="+", metavar="NAME", help="variables to record in place of all outputs")
+    parser.add_argument("-o", "--folder", default=".", metavar="FOLDER", help="folder of the results; default: the current folder")
 
 
 def run(arguments):

@@ -1,4 +1,4 @@
-"""Simulates a system from a grid or a random sample of start values and parameters, on all cores; leaves a Parquet file, a run in each row."""
+"""Simulate a grid or a random sample of start values and parameters, on all cores; write a Parquet file with a row for each run."""
 
 from ..sweep_words import sweep_words
 from .words_of_systems import SYSTEM_OR_FMU

@@ -1,11 +1,11 @@
-"""Shows the reference of the language; with a word, such as stop or inertia, what it says about that."""
+"""Show the reference of the language, or its paragraphs about a word, such as stop or inertia."""
 
 import pydoc
 import sys
 
 
 def arguments(parser):
-    parser.add_argument("word", nargs="?", metavar="WORD", help="an element, attribute or function")
+    parser.add_argument("word", nargs="?", metavar="WORD", help="an element, attribute or function; default: show the whole reference")
 
 
 def run(arguments):

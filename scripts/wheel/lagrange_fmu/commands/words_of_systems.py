@@ -5,8 +5,8 @@ SYSTEM_OR_FMU = SYSTEM | {"help": SYSTEM["help"] + "; or an FMU"}
 
 
 def add_fmi(parser):
-    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="the version of FMI; 2 where none is given")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="version of FMI; default: 2")
 
 
 def add_output(parser, what):
-    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help=f"where {what}; else the current folder")
+    parser.add_argument("-o", "--output", default=".", metavar="FOLDER", help=f"folder of {what}; default: the current folder")
