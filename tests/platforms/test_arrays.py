@@ -1,4 +1,4 @@
-"""Arrays in FMI 3.0 by choice: by CMake, the package and its command."""
+"""Optional arrays in FMI 3.0: by CMake, the package and its command."""
 
 import importlib
 import shutil
@@ -14,7 +14,7 @@ from fmu import ROOT
 from motions import lagrange_fmu  # noqa: F401
 
 ROW = """<system name="Row"><for index="i" from="1" to="3"><coordinate name="x[i]" velocity="v[i]" unit="m"/><particle mass="1" x="x[i]"/></for></system>"""
-POSITIONS = {False: {"x[1]": None, "x[2]": None, "x[3]": None}, True: {"x": "3"}}  # with their dimension, without arrays and with them
+POSITIONS = {False: {"x[1]": None, "x[2]": None, "x[3]": None}, True: {"x": "3"}}  # coordinates with their dimension, without arrays and with them
 
 
 def positions(description):
@@ -25,7 +25,7 @@ def positions(description):
 
 @pytest.mark.parametrize("arrays", [False, True])
 def test_cmake_makes_arrays_by_choice(arrays, tmp_path):
-    """ARRAYS of the build goes to lagrange_add_fmu, and from there to lagc."""
+    """ARRAYS of the build is passed to lagrange_add_fmu, and from there to lagc."""
     (tmp_path / "systems" / "Row").mkdir(parents=True)
     (tmp_path / "systems" / "Row" / "system.xml").write_text(ROW)
     folder = tmp_path / "build"
@@ -37,7 +37,7 @@ def test_cmake_makes_arrays_by_choice(arrays, tmp_path):
 
 @pytest.mark.parametrize("arrays", [False, True])
 def test_the_package_makes_arrays_by_choice(arrays, lagrange_fmu, tmp_path, monkeypatch):
-    """arrays= of build() and --arrays of the command, without a compiler: the descriptions alone are packed."""
+    """arrays= of build() and --arrays of the command, without a compiler: only the descriptions are packed."""
     building, command = (importlib.import_module(f"lagrange_fmu.{name}") for name in ("building", "command"))
     for file in (BUILD / "global_names", ROOT / "LICENSE"):
         shutil.copy(file, Path(building.__file__).parent / "runtime")

@@ -1,4 +1,4 @@
-"""Building: reproducible to the byte, a GUID from the content, and the C interface as the standard declares it."""
+"""Builds: reproducible bytes, a GUID from the content, and the C interface of the standard."""
 
 import re
 import shutil
@@ -18,7 +18,7 @@ OFFICIAL = Path(fmpy.__file__).parent / "c-code"
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path):
-    """Another folder, another build: the same archives. Its name, and those of systems, may be any."""
+    """Another folder and another build give the same archives. Folder and systems may have any name."""
     source = tmp_path / "else where, over there"
     for folder in ("fmu", "include", "modelDescription", "scripts", "src", "tests"):
         shutil.copytree(ROOT / folder, source / folder)
@@ -67,7 +67,7 @@ def test_guids_differ():
 
 @pytest.mark.parametrize("start", ["<system name=", "<system\n  name=", "<system name = ", "<!-- <system name='Other'> --><system name="])
 def test_folder_name_must_match(start, tmp_path):
-    """However the name is written; the build that exists has lagc already."""
+    """The name must match however it is written; lagc of the existing build is used."""
     folder = tmp_path / "Other"
     assert lagc("-o", folder, system_file(tmp_path, f'{start}"Mine"><input name="u"/><output name="y">u</output></system>')).returncode == 0
     words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARIES={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
@@ -95,12 +95,12 @@ def test_official_headers_are_there(header):
 
 
 def test_interface_matches_the_official_headers(tmp_path):
-    """Our declarations beside those of the standard in one file: a difference is a compiler error."""
+    """This project's declarations and the official ones in one file: a difference is a compiler error."""
     ours = (ROOT / "include" / "fmi2.h").read_text()
     functions = re.findall(r"FMI2_EXPORT .*?\b(fmi2\w+)\(", ours)
     official = (OFFICIAL / "fmi2Functions.h").read_text()
     assert set(functions) == set(re.findall(r"FMI2_Export fmi2\w+TYPE\s+(fmi2\w+);", official))
-    # The official types keep their names; ours get others, and must then be the same types.
+    # The official types keep their names; this project's are renamed, and must be the same types.
     enumerations = re.findall(r"typedef enum \{(.*?)\} (\w+);", ours, re.S)
     renamed = re.sub(r"\bfmi2(\w+)", r"own2\1", ours).replace("FMI2_H", "OWN2_H").replace("FMI2_EXPORT", "OWN2_EXPORT")
     lines = ["#include <stddef.h>", '#include "fmi2Functions.h"', '#include "own2.h"']
@@ -132,7 +132,7 @@ RUNTIME = ROOT / "src" / "runtime"
 
 
 def test_the_core_of_the_runtime_knows_no_interface():
-    """Versions of FMI are layers over it, each in a folder of its own."""
+    """The versions of FMI are layers above the runtime's core, each in its own folder."""
     sources = [path for path in RUNTIME.rglob("*.[ch]") if not re.fullmatch("fmi[23]", path.parent.name)]
     assert len(sources) > 20
     assert [path.name for path in sources if re.search("fmi[23]", path.read_text())] == []
@@ -143,14 +143,14 @@ def test_runtime_compiles_against_the_official_headers(source, tmp_path):
     """A definition that differs from the official declaration is a compiler error."""
     version = source.parent.name
     (tmp_path / f"{version}.h").write_text(f'#include "{version}Functions.h"\n')
-    folders = [tmp_path, OFFICIAL, RUNTIME, ROOT / "include"]  # the other fmi2.h comes before ours
+    folders = [tmp_path, OFFICIAL, RUNTIME, ROOT / "include"]  # the official headers come before those of this project
     words = ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *(f"-I{folder}" for folder in folders)]
     result = subprocess.run([*words, source], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
 
 
 def test_source_tree_stays_clean():
-    """Everything built is in build/."""
+    """All build products are in build/."""
     if not (ROOT / ".git").exists():
         pytest.skip("not a clone")
     status = subprocess.run(["git", "status", "--porcelain", "--ignored"], cwd=ROOT, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""CasADi, with which optimal control is done, imports FMUs as functions: their values and Jacobians."""
+"""CasADi, a tool for optimal control, imports FMUs as functions: their values and Jacobians."""
 
 import casadi
 import numpy as np
@@ -13,7 +13,7 @@ UNPACKED = {2: fmu.unpacked, 3: fmi3.unpacked}
 
 
 def function_of(name, fmi):
-    """dx/dt and outputs of states and inputs, and the values at which the FMU starts, a little moved."""
+    """dx/dt and outputs as functions of states and inputs, and slightly changed start values."""
     builder = casadi.DaeBuilder(name, str(UNPACKED[fmi](name)), {})
     function = builder.create("f", ["x", "u"], ["ode", "y"])
     starts = fmu.start_values(name)
@@ -27,14 +27,14 @@ def function_of(name, fmi):
 
 @pytest.mark.parametrize("name", fmu.moving_names())
 def test_reads_fmi3(name):
-    """With all states and outputs, one by one."""
+    """CasADi finds all states and outputs, as scalars."""
     builder = casadi.DaeBuilder(name, str(fmi3.unpacked(name)), {})
     assert (builder.nx(), builder.ny()) == (len(fmu.states_of(name)), len(fmu.names_of(name, "output")))
 
 
 @pytest.mark.parametrize("name, fmi", [(name, fmi) for fmi in (2, 3) for name in NAMES])
 def test_jacobian(name, fmi, capfd):
-    """Against differences of the function that CasADi makes of the FMU, and without a complaint of the FMU."""
+    """The Jacobian agrees with differences of CasADi's function, and the FMU logs no error."""
     builder, function, point = function_of(name, fmi)
     inputs, outputs = ("x", "u"), ("ode", "y")
     wanted = [f"jac:{output}:{known}" for output in outputs for known in inputs if known == "x" or function.size1_in(1) > 0]
@@ -58,7 +58,7 @@ def test_jacobian(name, fmi, capfd):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_it_is_the_jacobian_that_others_get(name, open_fmu):
-    """By one directional derivative for each state, where all states are set at once."""
+    """The Jacobian equals the directional derivatives for each state, with all states set at once."""
     builder, function, point = function_of(name, 2)
     jacobian = np.array(casadi.DM(function.factory("J", ["x", "u"], ["jac:ode:x"])(*point)))
     values = {scalar: value for names, numbers in zip((builder.x(), builder.u()), point) for scalar, value in zip(names, numbers)}
@@ -69,7 +69,7 @@ def test_it_is_the_jacobian_that_others_get(name, open_fmu):
 
 
 def test_states_one_by_one(open_fmu):
-    """While the importer integrates, a state that is set as a variable is one of the state that is set at once."""
+    """In continuous-time mode, setting states one by one as variables equals setting all at once."""
     one, other = open_fmu("DoublePendulum", kind=FMU2Model), open_fmu("DoublePendulum", kind=FMU2Model)
     values = dict(theta1=0.3, theta2=-0.7, omega1=1.5, omega2=-2.5)
     one.put(values)

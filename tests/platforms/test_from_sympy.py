@@ -1,4 +1,4 @@
-"""from_sympy of the wheel: systems of sympy.physics.mechanics move in the FMU as SymPy's own mass matrix and forcing say."""
+"""from_sympy of the wheel: FMUs of systems of sympy.physics.mechanics have SymPy's mass matrix and forcing."""
 
 import random
 import re
@@ -51,7 +51,7 @@ def double_pendulum():
 
 
 def cart_pole():
-    """A force, an input, on the cart, and a torque between cart and pole."""
+    """An input force acts on the cart, and a torque between cart and pole."""
     N, O = base()
     x, angle, F = dynamicsymbols("x theta F")
     A = N.orientnew("A", "Axis", [angle, N.z])
@@ -66,7 +66,7 @@ def cart_pole():
 
 
 def rolling_disk():
-    """Of SymPy's own example, with the point of contact by coordinates: two nonholonomic constraints."""
+    """SymPy's own example, with coordinates of the contact point: two nonholonomic constraints."""
     N, O = base()
     x, y, yaw, lean, spin = dynamicsymbols("x y psi theta phi")
     Y = N.orientnew("Y", "Axis", [yaw, N.z])
@@ -89,7 +89,7 @@ def rod_pendulum():
 
 
 def bead_on_rotating_wire():
-    """A wire bent as a parabola, which turns ever faster: time by itself, and a rational power."""
+    """A parabolic wire that rotates ever faster: explicit time, and a rational power."""
     r = dynamicsymbols("r")
     height, turn = k * r**2, Omega * t + t**2 / 5
     x, y = r * cos(turn), r * sin(turn)
@@ -98,7 +98,7 @@ def bead_on_rotating_wire():
 
 
 def consistent(method, values, rng):
-    """A random state that fulfils the constraints: coordinates by Newton's method, velocities without what violates them."""
+    """Random state that satisfies the constraints: coordinates by Newton's method, velocities by projection."""
     q, v = list(method.q), list(method.q.diff(t))
     state = {c: rng.uniform(-1, 1) for c in q}
     if method._hol_coneqs:
@@ -150,7 +150,7 @@ def test_the_example_of_the_readme(tmp_path, monkeypatch):
 
 
 def test_names_become_valid(tmp_path):
-    """LaTeX, primes, Greek letters, words of the language, and two that become the same."""
+    """LaTeX, primes, Greek letters, words of the language, and two names that become equal."""
     q, p = dynamicsymbols(r"\dot{α}' sin")
     a, b, c = sm.Symbol("M^{*}"), sm.Symbol("M_*"), sm.Symbol("2nd spring")
     L = a * q.diff() ** 2 + b * p.diff() ** 2 - c * q**2 * p**2
@@ -185,7 +185,7 @@ def test_speeds_have_names_of_their_own(tmp_path):
 
 
 def rod():
-    """A bob on a rod that a force pushes, with what is beside its equations."""
+    """A bob on a rod under a force, with units, outputs and names beside the equations."""
     N, O = base()
     x, y, F = dynamicsymbols("x y F")
     P = O.locatenew("P", x * N.x + y * N.y)
@@ -198,7 +198,7 @@ def rod():
 
 
 def test_what_is_beside_the_equations(tmp_path):
-    """Units, names of constraints, points that the animation draws, outputs by what they are made of; names of the language are not taken."""
+    """Units, names of constraints, points for the animation, and outputs as expressions; names of the language are avoided."""
     method, parameters, further = rod()
     lagrange_fmu = wheel.package()
     path = lagrange_fmu.build(lagrange_fmu.from_sympy(method, tmp_path / "Rod.xml", parameters, **further), output=tmp_path)
@@ -229,7 +229,7 @@ def test_mistakes_beside_the_equations(words, message, tmp_path):
 
 
 def test_expressions(tmp_path):
-    """What the language writes otherwise, through an FMU: the velocity after a short time is minus U' of SymPy times that."""
+    """Functions that the language writes differently, through an FMU: after a short time the velocity is -U' of SymPy times that time."""
     x = dynamicsymbols("x")
     extremes = sm.Max(x, x**2, 3, 4 * k * x) + sm.Min(sm.E * x, sm.cot(x + 2), 7 + x**3, 3 - 2 * x)
     U = 1e6 * extremes + sm.atan2(x, 2) + sm.GoldenRatio * x ** sm.Rational(-5, 3) + 2 ** (-(x**2)) + sm.sqrt(x) / 3e-7

@@ -1,4 +1,6 @@
-"""The site of scripts/gallery, as files in headless Chromium: nothing is missing, nothing is fetched from elsewhere, and it can be searched."""
+"""
+The site of scripts/gallery, as files in headless Chromium: nothing is missing, nothing is loaded from elsewhere, and the search works.
+"""
 
 import re
 import subprocess

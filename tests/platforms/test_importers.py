@@ -1,11 +1,10 @@
 """
-Every FMU in importers that others wrote, beside FMPy's co-simulation of it.
+Every FMU in other importers, against FMPy's co-simulation.
 
-Also tried and not here: OMSimulator (its Python package downloads the program while it is installed, from a server
-other than the package registry: "Failed building wheel for OMSimulator"), PyFMI (on the registry for Python 2 only,
-built against an FMI Library that Debian does not package: "Getting requirements to build wheel did not run
-successfully"), FMI++ (builds against Boost and SWIG: "Failed building wheel for fmipp"), CoFMUpy (runs FMUs through
-FMPy, so it would prove nothing more).
+Also tried, but not usable here: OMSimulator (its Python package downloads the program while it is installed, from a server other than the
+package registry: "Failed building wheel for OMSimulator"), PyFMI (on the registry for Python 2 only, built against an FMI Library that
+Debian does not package: "Getting requirements to build wheel did not run successfully"), FMI++ (builds against Boost and SWIG: "Failed
+building wheel for fmipp"), CoFMUpy (runs FMUs through FMPy, so that it would test nothing more).
 """
 
 import os
@@ -29,7 +28,7 @@ SMOOTH = ["DampedPendulum", "FourBar", "MotorPendulum", "ParticleSpherical"]
 
 
 def check(run, version, kind, name, bound, end=END):
-    """The outputs at the end beside those of FMPy's co-simulation."""
+    """Compare the outputs at the end with those of FMPy's co-simulation."""
     outputs = fmu.names_of(name, "output")
     expected = packages.fmpy(fmu.archive(name), "CS", end, outputs)
     values = run(ARCHIVES[version](name), kind, end, outputs)
@@ -38,7 +37,7 @@ def check(run, version, kind, name, bound, end=END):
 
 @pytest.mark.parametrize("name", fmu.small_names())
 def test_fmpy_model_exchange(name):
-    """FMPy's CVode integrates our derivatives; at its tolerance the outputs agree with our own solver."""
+    """FMPy's CVode integrates the FMU's derivatives; its outputs agree with those of the FMU's solver, to its tolerance."""
     end = 0.02 if name == "AndrewsSqueezer" else END  # its crank turns a thousand times faster than others
     check(packages.fmpy, 2, "ME", name, 1e-4, end)
 
@@ -57,12 +56,14 @@ def test_pathsim(name, version):
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("name", SMOOTH)
 def test_casadi(name, version):
-    """CVODES of CasADi with the Jacobians of the FMU."""
+    """CasADi's CVODES uses the Jacobians of the FMU."""
     check(packages.casadi, version, "ME", name, 1e-5)
 
 
 def test_table(capfd, monkeypatch):
-    """What is no FMU and what is not installed is an error with the names that there are; an importer that dies is a sentence."""
+    """
+    Unknown FMUs and importers that are not installed give an error with the available names; an importer that crashes gives a sentence.
+    """
     from importing import __main__ as table
 
     for words, message in ((["--by", "Nobody"], "Nobody is not installed; here are FMPy"), (["Nothing"], "no FMU is called Nothing")):
@@ -92,7 +93,7 @@ END
      "project/results/values.csv", "Time [s]\tfmu.y [m]\n0\t1\n0.5\t7.5"),
 ])  # fmt: skip
 def test_programs_on_the_path(program, run, check, file, rows, tmp_path, monkeypatch):
-    """A stand-in for each program, which writes the kind of file that its manual describes: names, units and quotes are read."""
+    """A stand-in for each program writes the kind of file that its manual describes, with names, units and quotes."""
     (tmp_path / program).write_text(PROGRAM.format(check=check, file=file, rows=rows))
     (tmp_path / program).chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
@@ -127,8 +128,8 @@ print(instance.run(1.0, 0.1, "theta", "r", "omega", "vr")[-1])
 
 def test_two_sundials_in_one_process():
     """
-    FMPy's CVode is of another version than the one in our FMU. Loaded first, with all its symbols visible, it must
-    not be the one that our FMU calls: the result has the same bits as in a process without it.
+    FMPy's CVode is of another version than that in the FMU. Loaded first, with all symbols visible, it must not replace the FMU's own: the
+    result has the same bits as in a process without it.
     """
     load = (
         "import ctypes, fmpy.sundials\n"
@@ -149,7 +150,7 @@ def test_two_sundials_in_one_process():
 
 
 def test_cart_balanced_by_libcosim():
-    """Two of our FMUs coupled by a master of others: the feedback holds the pole up."""
+    """Two FMUs of this project coupled by libcosim: the feedback keeps the pole upright."""
     from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimObserver import CosimObserver

@@ -1,4 +1,4 @@
-"""cmake --install, and a project outside of the tree that builds FMUs with what it leaves."""
+"""cmake --install, and a separate project that builds FMUs with the installed files."""
 
 import functools
 import os
@@ -26,7 +26,7 @@ PENDULUM = ROOT / "fmu" / "SimplePendulum" / "system.xml"
 
 @functools.cache
 def installed():
-    """The prefix, moved after the installation: what is installed may lie anywhere."""
+    """The prefix, moved after the installation, since it must be relocatable."""
     bring_up_to_date(ROOT / "build")
     folder = tempfile.TemporaryDirectory(prefix="installed here")
     fmu.temporary_folders.append(folder)
@@ -36,7 +36,7 @@ def installed():
 
 
 def configure(folder, lines, *words, systems=None):
-    """A project with these lines; returns what CMake says of it."""
+    """Configure a project with these lines; return CMake's result."""
     folder.mkdir(parents=True)
     for name, text in (systems or {}).items():
         (folder / name).write_text(text)
@@ -57,7 +57,7 @@ def simulate(archive):
 
 
 def test_foreign_project(tmp_path):
-    """This machine's FMUs by the project's compiler, without SUNDIALS and with it, one for two platforms, and those of FMI 3.0."""
+    """FMUs for this machine by the project's compiler, with and without SUNDIALS, one for two platforms, and those of FMI 3.0."""
     lines = """
       lagrange_add_fmu(SimplePendulum system.xml)
       lagrange_add_fmu(BeadOnHoop bead.xml)
@@ -111,7 +111,7 @@ def test_another_name_than_the_system(tmp_path):
 
 
 def test_python_without_zig(tmp_path):
-    """The remedy is named."""
+    """The message names the remedy."""
     python = tmp_path / "python3"
     python.write_text(f'#!/bin/sh\nexec {sys.executable} -S -I "$@"\n')
     python.chmod(0o755)
@@ -135,7 +135,7 @@ def test_installed_lagc_and_its_man_page():
 
 
 def test_nothing_of_the_tree_is_needed():
-    """No path of this machine is in what is installed."""
+    """The installed files contain no path of this machine."""
     for path in installed().rglob("*"):
         if path.is_file():
             assert os.fsencode(ROOT) not in path.read_bytes(), path

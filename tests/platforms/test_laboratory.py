@@ -1,4 +1,4 @@
-"""Systems that are derived and solved without a compiler: by the module itself, and in the page in which they are written."""
+"""Systems derived and solved without a compiler: by the WebAssembly module itself, and in the page for editing systems."""
 
 import contextlib
 import functools
@@ -29,7 +29,7 @@ def module():
 
 
 class Laboratory:
-    """A module of its own, with the files of a folder."""
+    """An instance of the module, with the files of a folder."""
 
     def __init__(self, folder, errors):
         engine, compiled = module()
@@ -89,7 +89,7 @@ def method_of(name):
 
 @pytest.mark.parametrize("name", [name if name in DAILY else pytest.param(name, marks=pytest.mark.release) for name in ALL])
 def test_it_is_the_fmu(name, tmp_path):
-    """Of the tree, which a compiler has made of C: the tables, where they are, and the functions that read them are the laboratory's own."""
+    """The result equals that of the compiled FMU of the tree; the laboratory interprets the tables instead."""
     laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
     if method_of(name) in ("erk", "bdf"):
         assert not laboratory.derive(f"{name}/system.xml")
@@ -111,7 +111,7 @@ def test_mistakes(tmp_path):
 
 
 def test_pulled(tmp_path):
-    """It has the inputs of lagc --pull where they are asked for, and not otherwise."""
+    """The module has the inputs of lagc --pull only if requested."""
     for is_pulled in (False, True):
         laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
         assert laboratory.derive("DoublePendulum/system.xml", is_pulled)
@@ -120,7 +120,7 @@ def test_pulled(tmp_path):
 
 
 def test_files_that_others_name(tmp_path):
-    """Come along, by paths that lead from one to the other."""
+    """The files that a system refers to are included, by paths relative to each other."""
     found = files_of(ROOT / "fmu" / "MotorPendulum" / "system.xml")
     assert sorted(found["files"]) == ["Motor/system.xml", "MotorPendulum/system.xml"] and found["file"] == "MotorPendulum/system.xml"
     robot = tmp_path / "robots" / "arm.urdf"
@@ -137,7 +137,7 @@ def browser():
 
 @contextlib.contextmanager
 def editor(browser, file):
-    """The page, and the one in it when it runs; at its end it must not have complained."""
+    """Yield the page once its inner page runs; check at the end that it logged no error."""
     page, complaints = browser.new_page(viewport={"width": 1500, "height": 800}), []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
@@ -150,7 +150,7 @@ def editor(browser, file):
 
 
 def run_in(page, until):
-    """The states of the system in the page, behind steps of the author's length."""
+    """States of the system in the page, after steps of the experiment's length."""
     frame = page.query_selector("#page").content_frame()
     frame.evaluate("document.getElementById('play').textContent === 'Pause' && document.getElementById('play').click()")
     frame.evaluate("document.getElementById('reset').click()")
@@ -159,7 +159,7 @@ def run_in(page, until):
 
 
 def run_anew(page, text):
-    """With this text in place of the one that is there."""
+    """Run with this text in place of the existing one."""
     runs = page.evaluate("bench.runs")
     page.locator("#source").fill(text)
     page.locator("#source").press("Control+Enter")
@@ -176,7 +176,10 @@ def write_page(tmp_path, name):
 
 
 def test_a_system_is_changed_in_the_page(browser, tmp_path):
-    """A mistake is told where it is; what is right runs, and is kept in a page of its own. A mass on a spring tells a closed form."""
+    """
+    A mistake is reported at its line; a valid system runs, and can be saved as a page of its own. A mass on a spring follows its closed
+    form.
+    """
     spring = """<system name="Spring" description="A mass on a spring">
   <parameter name="m" start="2" unit="kg"/>
   <parameter name="k" start="8" unit="N/m"/>

@@ -1,4 +1,4 @@
-"""Every FMU has the licence of what is in it, and those of the libraries that are linked into it."""
+"""Every FMU contains the licence of its own content, and those of the libraries linked into it."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def test_what_is_linked_is_named(method, N, names, tmp_path):
 
 
 def test_licences_of_libraries():
-    """As the libraries' authors wrote them: of SUNDIALS Lawrence Livermore's, of KLU the LGPL."""
+    """The licences are the libraries' own: Lawrence Livermore's for SUNDIALS, the LGPL for KLU."""
     fmu.build_systems("licensed", {"Chain": CHAIN.format(method="bdf", N=200)})
     folder = fmu.unpacked("Chain") / "documentation" / "licenses"
     assert {path.name for path in folder.iterdir()} == {"license.txt", "sundials.txt", "suitesparse.txt", "LGPL-2.1.txt"}

@@ -1,4 +1,4 @@
-"""The page in which an FMU runs, in headless Chromium: it is the FMU, and what is moved in the page moves in the FMU."""
+"""The page in which an FMU runs, in headless Chromium: it behaves as the FMU, and its controls change the FMU's variables."""
 
 import contextlib
 import json
@@ -18,7 +18,7 @@ from driven_chromium import COLORS_SEEN, chromium, opened
 from scripts.live import origin_in
 from scripts.live_page.page import page_of
 
-PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # of others the second module costs minutes of a compiler
+PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # for others compiling the second module takes minutes
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
 
 
@@ -30,7 +30,7 @@ def browser():
 
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory):
-    """The file of a system's page, written once."""
+    """Return a function that writes the page of a system once, and returns its file."""
     folder, written = tmp_path_factory.mktemp("live"), {}
 
     def write(name):
@@ -44,7 +44,9 @@ def page_file(tmp_path_factory):
 
 
 def run_natively(name, until, factor=1.0):
-    """States at that time, behind steps of the author's length, from the author's start values times a factor; the seconds that the steps took."""
+    """
+    States at that time, after steps of the experiment's length, from the start values times a factor; and the seconds that the steps took.
+    """
     step, states = float(fmu.description(name).defaultExperiment.stepSize), fmu.states_of(name)
     instance = fmu.Instance(name, logging=False)
     with contextlib.closing(SimpleNamespace(close=instance.free)):
@@ -65,9 +67,9 @@ def run_in_page(page, until):
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in DAILY else pytest.mark.release) for name in fmu.moving_names()])
 def test_the_page_is_the_fmu(browser, page_file, name):
     """
-    Its states after 10 s, or before its bars lie flat, where they could fold, are those of the native FMU; where C libraries differ in the last place of a sine, each step of a chaotic
-    system makes of it at most what the system makes of the last place of its start values, and a method whose steps it decides on
-    a little of what the tolerance allows. And there is something to see.
+    The states after 10 s, or before the bars lie flat, where they could fold, are those of the native FMU. C libraries may differ in the
+    last place of a sine: in a chaotic system each step amplifies that at most as it amplifies rounding of the start values; a method whose
+    steps depend on it differs by a fraction of the tolerance. The scene is not empty.
     """
     end = 0.7 if name == "NFourBar" else 10.0
     expected, *nudged = (run_natively(name, end, factor)[0] for factor in (1.0, 1.0 - 2.0**-52, 1.0 + 2.0**-52))
@@ -86,7 +88,7 @@ def test_the_page_is_the_fmu(browser, page_file, name):
 @pytest.mark.release
 @pytest.mark.parametrize("name", ["DoublePendulum", "FourBar"])
 def test_cost_of_a_step(browser, page_file, name):
-    """At most 1.5 times the native one, when the browser has compiled it."""
+    """A step takes at most 1.5 times as long as the native one, after the browser has compiled it."""
     with opened(browser, page_file(name)) as page:
         times = []
         for _ in range(12):
@@ -97,8 +99,9 @@ def test_cost_of_a_step(browser, page_file, name):
 
 def test_sliders(browser, page_file):
     """
-    A longer pendulum from another angle, by number and by slider, is the native FMU with these values. What is refused says why, in place,
-    and shows the value that holds; a reset takes no words away, whether it comes from the page, some time after a start value, or is asked for.
+    A longer pendulum from another angle, by number field and slider, equals the native FMU with these values. An invalid value gives the
+    reason in place, and the field shows the valid value. A reset keeps these messages, whether it comes from the page, some time after a
+    start value, or from the user.
     """
     with opened(browser, page_file("DoublePendulum")) as page:
         page.get_by_role("spinbutton", name="theta1").fill("1")
@@ -123,7 +126,7 @@ def test_sliders(browser, page_file):
 
 
 def test_steps_back_and_settings(browser, page_file):
-    """A step back is where it was before; the address holds values; nothing has moved before it plays, which it does at the speed that is wished."""
+    """A step back restores the previous state; the address contains values; nothing moves before it plays, at the chosen speed."""
     clock = "Number(document.getElementById('clock').textContent.slice(0, -2))"
     with opened(browser, page_file("DoublePendulum"), "#theta1=0.5&g=3") as page:
         start = page.evaluate("[...live.history.samples[0][0]]")
@@ -148,7 +151,7 @@ def run_start(name, values, variable):
 
 
 def test_lengths_change(browser, page_file):
-    """Rods of a linkage that become longer or shorter still meet at their joints, and those of the base stay where it is."""
+    """Rods of a linkage that change their length still meet at the joints; those on the base stay in place."""
     joints = """() => {
       const sample = live.history.samples[live.history.length - 1][0], { scene } = live, place = (joint) => scene.jointPosition(sample, joint, new THREE.Vector3()).toArray();
       return scene.holders.filter((joint) => joint.withX !== undefined).map((joint) => {
@@ -175,7 +178,7 @@ SEEN_AT = """name => {
   const seen = scene.position(history.samples[history.length - 1][0], scene.byName.get(name)).project(scene.camera);
   return [box.left + ((seen.x + 1) * box.width) / 2, box.top + ((1 - seen.y) * box.height) / 2];
 }"""
-# Over two seconds, as a motion that still swings has no speed where it turns.
+# For two seconds, since an oscillating motion has no speed at its turning points.
 AT_REST = """() => {
   const { history } = live, energy = live.names.indexOf("kineticEnergy"), last = history.length - 1;
   for (let k = last; k > 0; k--) {
@@ -188,7 +191,7 @@ LAST = "[...live.history.samples[live.history.length - 1][0]]"
 
 
 def pull(page, name, off, by):
-    """Grasps a body this many pixels off its place, pulls it by others, and waits until all is at rest; the variables, and what pulls."""
+    """Grasp a body at an offset in pixels from its position, pull it, and wait for rest; return the variables and the pull."""
     x, y = page.evaluate(SEEN_AT, name)
     page.mouse.move(x + off[0], y + off[1])
     page.mouse.down()
@@ -200,13 +203,13 @@ def pull(page, name, off, by):
 
 def test_pulling_a_particle(browser, page_file):
     """
-    On the spring to the pointer the bob comes to rest where the moments of the spring and its weight about the pivot are equal. Let go, and
-    started again, the system is the FMU as it was shipped, to the bit where that is it without any pull.
+    Pulled by the spring to the pointer, the bob rests where the moments of spring and weight about the pivot balance. Released and started
+    again, the system equals the original FMU, to the last bit if it does so without any pull.
     """
     with opened(browser, page_file("SimplePendulum")) as page:
         before, _ = run_in_page(page, 2.0)
         page.click("#reset")
-        page.wait_for_function("live.history.length === 1 && live.history.time(0) === 0")  # else the bob is not yet where it is grasped
+        page.wait_for_function("live.history.length === 1 && live.history.time(0) === 0")  # otherwise the bob is not yet where it is grasped
         at, pulled = pull(page, "bob", (0, 0), (90, -50))
         (x, y, _, *held), stiffness = pulled["pointer"][:6], pulled["stiffness"]
         along = (math.cos(at.theta), math.sin(at.theta))
@@ -222,8 +225,8 @@ def test_pulling_a_particle(browser, page_file):
 
 def test_pulling_a_point_of_a_body(browser, page_file):
     """
-    A linkage held off the middle of its coupler rests where no motion that the loop allows changes the energy of weights and spring; that
-    motion, from the loop's equations by hand.
+    A linkage pulled beside the middle of its coupler rests where no admissible motion changes the energy of weights and spring; the motion
+    follows from the loop's equations by hand.
     """
     with opened(browser, page_file("FourBar")) as page:
         phi = page.evaluate(f"{LAST}[live.names.indexOf('phi')]")
@@ -231,7 +234,7 @@ def test_pulling_a_point_of_a_body(browser, page_file):
     (x, y, _, u, v, _, _), stiffness = pulled["pointer"], pulled["stiffness"]
     assert math.hypot(u, v) > 0.05
     a, b, c, rho, g = 0.3, 0.8, 0.6, 2.0, 9.81
-    # d/dt of a cos theta + b cos phi - c cos psi = d and of the sines, for theta_dot = 1: by Cramer's rule.
+    # d/dt of a cos theta + b cos phi - c cos psi = d and of the sines, for theta_dot = 1, by Cramer's rule.
     turning = a / math.sin(at.psi - at.phi)
     phi_dot, psi_dot = turning * math.sin(at.theta - at.psi) / b, turning * math.sin(at.theta - at.phi) / c
     middle = (a * math.cos(at.theta) + b / 2 * math.cos(at.phi), a * math.sin(at.theta) + b / 2 * math.sin(at.phi))
@@ -245,7 +248,7 @@ def test_pulling_a_point_of_a_body(browser, page_file):
 
 
 def test_equations_and_system(browser, page_file, tmp_path):
-    """The equations are the FMU's documentation; the system is saved with what was set, as lagc reads it."""
+    """The equations are those of the FMU's documentation; the saved system contains the set values, and lagc reads it."""
     with opened(browser, page_file("DoublePendulum")) as page:
         page.click("#equations")
         assert page.frame_locator("#equationsShown iframe").locator("math").first.text_content(timeout=10000)
@@ -267,9 +270,9 @@ def test_equations_and_system(browser, page_file, tmp_path):
 
 
 def test_a_section(browser, page_file):
-    """A point at the end of each period, to the step; where an undamped pendulum's own period is given, all are one point."""
+    """A point at the end of each period, to the step; for an undamped pendulum's own period all points coincide."""
     with opened(browser, page_file("SimplePendulum"), "#b=0&theta=1") as page:
-        # T = 4 K(sin(theta/2)) sqrt(l/g), by the arithmetic-geometric mean: 2 pi sqrt(l/g)/agm(1, cos(theta/2))
+        # T = 4 K(sin(theta/2)) sqrt(l/g), by the arithmetic-geometric mean: 2 pi sqrt(l/g)/agm(1, cos(theta/2)).
         period = 2 * math.pi * math.sqrt(page.evaluate("live.valueOf('l/g')")) / float(mpmath.agm(1, math.cos(0.5)))
         page.fill("#period", str(period))
         page.press("#period", "Enter")
@@ -285,7 +288,7 @@ def test_a_section(browser, page_file):
 
 
 def test_a_game_pad(browser, page_file):
-    """The stick gives the first input the share of its range by which it leans, and its start value when it is let go."""
+    """The stick sets the first input to a fraction of its range, and to its start value when released."""
     with opened(browser, page_file("InvertedPendulumCart")) as page:
         lean = "lean => (navigator.getGamepads = () => [null, { axes: [lean, 0.05] }])"
         force = page.get_by_role("spinbutton", name="F", exact=True)
@@ -300,7 +303,7 @@ def test_a_game_pad(browser, page_file):
 
 
 def test_a_video(browser, page_file, tmp_path):
-    """What is moving between two clicks comes as a file that is WebM."""
+    """The motion between two clicks is saved as a WebM file."""
     with opened(browser, page_file("DoublePendulum")) as page:
         page.click("#play")
         page.click("#video")
@@ -315,7 +318,7 @@ def test_a_video(browser, page_file, tmp_path):
 
 
 def test_a_ghost(browser, page_file):
-    """Beside the first run, from a start that is 1e-9 away; a parameter is set in both."""
+    """A second run starts 1e-9 away from the first; parameters are set in both."""
     with opened(browser, page_file("DoublePendulum")) as page:
         page.click("#ghost")
         page.wait_for_function("live.history.runs === 2")
@@ -331,7 +334,7 @@ def test_a_ghost(browser, page_file):
 
 
 def test_size(page_file):
-    """With the renderer and without, in kB."""
+    """Sizes with the renderer and without, in bytes."""
     text = page_file("DoublePendulum").read_text(encoding="utf-8")
     renderer = len(json.loads(re.search('<script id="data" type="application/json">(.*?)</script>', text, re.S)[1])["renderer"])
     assert len(text) < 900_000 and len(text) - renderer < 150_000

@@ -1,4 +1,4 @@
-"""Meshes on the page in which an FMU runs, in headless Chromium: every triangle is where the file has it, in its colour."""
+"""Meshes on the page in which an FMU runs, in headless Chromium: every triangle has the position of the file, and its colour."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from scripts.live_page.editor import files_of
 from scripts.live_page.page import page_of
 from scripts.problem import Problem
 
-# With more triangles than are drawn.
+# More triangles than the page draws.
 ANGLES = np.meshgrid(np.linspace(0, 2 * np.pi, 101)[:-1], np.linspace(0, 2 * np.pi, 61)[:-1])
 RING = np.stack([(0.4 + 0.1 * np.cos(ANGLES[1])) * np.cos(ANGLES[0]), (0.4 + 0.1 * np.cos(ANGLES[1])) * np.sin(ANGLES[0]), 0.1 * np.sin(ANGLES[1])], -1)
 SQUARES = [[100 * i + j, 100 * i + (j + 1) % 100, 100 * ((i + 1) % 60) + (j + 1) % 100, 100 * ((i + 1) % 60) + j] for i in range(60) for j in range(100)]
@@ -41,7 +41,7 @@ def page(tmp_path_factory):
 
 
 def test_triangles(page):
-    """All of a small mesh, to a 65536th of its size; those of a large one lie on it. A shape that is not drawn is not there."""
+    """All triangles of a small mesh, to a 65536th of its size; those of a large one lie on it. Shapes that are not drawn are absent."""
     die, ring, twin = page.evaluate(MESHES)
     faces = np.array(TETRAHEDRON)[triangles_of(TETRAHEDRON)] * [0.5, 0.5, -0.5]
     turned = Rotation.from_euler("xyz", [0.3, 0, 0.5]).apply(faces.reshape(-1, 3)) + [0.1, 0, 0]

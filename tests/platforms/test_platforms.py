@@ -1,6 +1,6 @@
 """
-FMUs for several platforms in one archive: Windows' libraries run under wine, those for ARM under qemu-user; those for the Mac, which
-nothing here runs, are looked into. FMU_PLATFORM_SYSTEMS=all takes all systems instead of one a solver.
+FMUs for several platforms in one archive: libraries for Windows run under wine, those for ARM under qemu-user; those for macOS, which
+cannot run here, are inspected. FMU_PLATFORM_SYSTEMS=all takes all systems instead of one per solver.
 """
 
 import functools
@@ -25,17 +25,17 @@ pytestmark = pytest.mark.release
 
 FOLDER = BUILD / "platforms"
 ENVIRONMENT = {**os.environ, "WINEPREFIX": str(FOLDER / "wine"), "WINEDEBUG": "-all"}
-# By taylor, auto, exact, nothing, erk, bdf, and bdf with KLU; and one with events.
+# taylor, auto, exact, no solver, erk, bdf, and bdf with KLU; and one with events.
 SYSTEMS = ["SimplePendulum", "ElasticPendulum", "ParticleCartesian", "StateFeedback", "BeadOnHoop", "FurutaPendulum", "Lattice", "BouncingBall"]
 if os.environ.get("FMU_PLATFORM_SYSTEMS") == "all":
     SYSTEMS = [*fmu.all_names(), *fmu.further_names()]
-# Programs for each, and what runs them.
+# Programs that run the libraries of each platform.
 RUNNERS = {"linux64": [], "win64": ["wine"], "aarch64-linux": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"]}
-MESSAGES_DIFFER = re.compile(r"-?[0-9][0-9.e+-]*")  # but for rounding of numbers
+MESSAGES_DIFFER = re.compile(r"-?[0-9][0-9.e+-]*")  # messages are compared without numbers, whose rounding may differ
 
 
 def source_of(name):
-    """The folder of a system; that of the lattice has bdf for its solver, and is large enough for KLU."""
+    """The folder of a system; the lattice's solver is bdf, and it is large enough for KLU."""
     folder = ROOT / "fmu" / name
     folder = folder if folder.exists() else ROOT / "tests" / "systems" / name
     if name != "Lattice":
@@ -51,7 +51,7 @@ def source_of(name):
 
 @functools.cache
 def platforms():
-    """Builds the archives and the programs that drive them, once for all processes that test; returns the folder."""
+    """Build the archives and the programs that drive them, once for all test processes; return the folder."""
     bring_up_to_date(ROOT / "build")
     FOLDER.mkdir(parents=True, exist_ok=True)
     with alone(FOLDER / "lock"):
@@ -94,12 +94,12 @@ def libraries(name, platform, fmi=2):
 
 
 def library(name, platform, fmi=2):
-    """The one in the platform's own folder, where a processor has another one."""
+    """The library in the folder of the processor, if there is one."""
     return libraries(name, platform, fmi)[0]
 
 
 def run(platform, program, name, *words):
-    """What the program prints of the FMU's library for the platform."""
+    """Output of the program for the FMU's library of the platform."""
     guid = fmpy.read_model_description(unpacked(name)).guid
     command = [*RUNNERS[platform], path_of(platform, program), library(name, platform), guid, *map(str, words)]
     result = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, timeout=600)
@@ -112,14 +112,14 @@ def output_of(*words):
 
 
 def reals_of(name):
-    """How many variables are Real before the first that is not."""
+    """Number of Real variables before the first of another type."""
     types = [variable.type for variable in fmpy.read_model_description(unpacked(name)).modelVariables]
     return next((i for i, kind in enumerate(types) if kind != "Real"), len(types))
 
 
 @functools.cache
 def life(platform, name):
-    """What it logs in its whole life: two instances, states saved and restored, unloaded and loaded again."""
+    """Log of a whole life cycle: two instances, saved and restored states, unloaded and loaded again."""
     states = fmpy.read_model_description(unpacked(name)).numberOfContinuousStates
     return run(platform, "drive", name, reals_of(name), states)
 
@@ -145,7 +145,7 @@ def test_archive(name):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_same_motion_of_fmi3(name):
-    """By the library for this platform, to the bit."""
+    """Results of the library for this platform agree to the last bit."""
     second, third = (fmpy.simulate_fmu(str(unpacked(name, fmi)), fmi_type="CoSimulation", stop_time=0.5, output_interval=0.1) for fmi in (2, 3))
     columns = [column for column in second.dtype.names if column in third.dtype.names]
     assert len(columns) > 1
@@ -171,7 +171,7 @@ def test_same_motion(name, platform):
 
 @pytest.mark.parametrize("name", [name for name in ("SimplePendulum", "ElasticPendulum", "ParticleCartesian", "BeadOnHoop") if name in SYSTEMS])
 def test_this_machine_has_the_same_motion(name):
-    """By the compiler of this machine, in the archive that scripts/run builds."""
+    """The archive of scripts/run, from this machine's compiler, has the same motion."""
     guid = fmu.description(name).guid
     words = [BUILD / "bin" / "stepping", fmu.library(name), guid, *map(str, (1e-8, 0.5, 50, 0, first_reals(name), 10, ","))]
     lines = output_of(*words).splitlines()[:10]
@@ -182,13 +182,13 @@ def test_this_machine_has_the_same_motion(name):
 @pytest.mark.parametrize("platform", ["win64", "aarch64-linux"])
 @pytest.mark.parametrize("name", [name for name in ("SimplePendulum", "BeadOnHoop", "FurutaPendulum") if name in SYSTEMS])
 def test_without_memory(name, platform):
-    """Each allocation refused in turn: SUNDIALS is left by longjmp, where its memory came from the caller's functions."""
+    """Each allocation fails in turn; if SUNDIALS uses the caller's memory, longjmp leaves it."""
     output = next(v.valueReference for v in fmpy.read_model_description(unpacked(name)).modelVariables if v.causality == "output")
     assert re.fullmatch(r"[1-9]\d* allocations\n", run(platform, "out_of_memory", name, output))
 
 
 def functions(fmi):
-    """All that this version of FMI has."""
+    """All functions of this version of FMI."""
     return sorted(set(re.findall(rf"FMI{fmi}_EXPORT [^(;]*\b(fmi{fmi}\w+)\(", (ROOT / "include" / f"fmi{fmi}.h").read_text())))
 
 
@@ -196,7 +196,7 @@ def functions(fmi):
 @pytest.mark.parametrize("platform", ["linux64", "aarch64-linux"])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_linux_libraries(name, platform, fmi):
-    """They export FMI's functions alone, and need nothing newer than glibc 2.17."""
+    """They export FMI's functions only, and require glibc 2.17 at most."""
     path = library(name, platform, fmi)
     table = output_of("llvm-objdump", "-T", path).splitlines()
     exported = sorted(line.split()[-1] for line in table if " g " in line and "*UND*" not in line)
@@ -210,7 +210,7 @@ def test_linux_libraries(name, platform, fmi):
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_windows_libraries(name, fmi):
-    """They export FMI's functions alone, and need what every Windows since 10 has."""
+    """They export FMI's functions only, and require libraries of Windows 10 and later."""
     text = output_of("llvm-readobj", "--coff-exports", "--coff-imports", library(name, "win64", fmi))
     exports, imports = re.findall(r"Export \{.*?Name: (\S+)", text, re.S), re.findall(r"Import \{\s+Name: (\S+)", text)
     assert sorted(exports) == functions(fmi)
@@ -219,13 +219,13 @@ def test_windows_libraries(name, fmi):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_mac_libraries(name):
-    """For both processors in one file, which load where the folder of the FMU lies, from macOS 11 on; that for ARM is signed, as it must be."""
+    """One file for both processors, loadable from the FMU's folder, from macOS 11 on; the ARM library is signed, as it must be."""
     both, apple = libraries(name, "darwin64")
     intel, arm = libraries(name, "darwin64", 3)
     for path, processor, fmi in ((both, "x86_64", 2), (both, "arm64", 2), (apple, "arm64", 2), (intel, "x86_64", 3), (arm, "arm64", 3)):
         dump = functools.partial(output_of, "llvm-objdump", "--macho", f"--arch={processor}")
         exported = re.findall(r"^0x[0-9A-F]+\s+(\S+)$", dump("--exports-trie", path), re.M)
-        # zig's linker adds the two by which every library for the Mac finds its own header.
+        # zig's linker adds two symbols by which every macOS library finds its own header.
         assert sorted(set(exported) - {"__mh_dylib_header", "___dso_handle"}) == [f"_{function}" for function in functions(fmi)]
         headers = dump("--private-headers", path)
         assert re.search(r"\bDYLIB\b", headers)
@@ -245,7 +245,7 @@ def test_no_path_of_this_machine(name):
 
 @pytest.mark.parametrize("name", ["StateFeedback", "BeadOnHoop"])
 def test_same_bytes_from_another_folder(name, tmp_path):
-    """Another place of the sources, of the system, and of what zig keeps."""
+    """Other folders of sources, system, and zig's cache give the same bytes."""
     for folder in ("include", "src"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / "work").mkdir()
@@ -258,7 +258,7 @@ def test_same_bytes_from_another_folder(name, tmp_path):
 
 
 def test_large_systems_take_seconds(tmp_path):
-    """Three on an idle machine, and some 20 more where zig has nothing in its cache yet; unrolled series take minutes."""
+    """Three seconds on an idle machine, and some 20 more with an empty zig cache; unrolled series would take minutes."""
     system = ROOT / "scripts" / "numerics" / "systems" / "StewartPlatform" / "system.xml"
     assert fmu.lagc(system, "-o", tmp_path).returncode == 0
     words = [sys.executable, ROOT / "scripts" / "cross.py", "fmu", "linux64", tmp_path / "system.c", tmp_path, "StewartPlatform"]
@@ -280,8 +280,8 @@ def test_what_cannot_be_compiled(tmp_path):
 
 
 def test_lagc_for_windows(tmp_path):
-    """Under wine, it writes the same bytes as here for every system."""
-    platforms()  # wine's folder
+    """lagc under wine writes the same bytes as here for every system."""
+    platforms()  # initializes wine's folder
     folder = FOLDER / "lagc-win64"
     compiler = f"{sys.executable};-m;ziglang;cc;-target;x86_64-windows-gnu"
     with alone(FOLDER / "lagc.lock"):

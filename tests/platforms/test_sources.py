@@ -1,4 +1,4 @@
-"""FMUs without SUNDIALS carry their sources, and FMPy builds them anew (rule 24)."""
+"""FMUs without SUNDIALS contain their sources, from which FMPy builds them."""
 
 import re
 import shutil
@@ -42,7 +42,7 @@ def test_fmpy_builds_the_sources(name, tmp_path):
         for path in (folder, fmu.unpacked(name))
     )
     for output in packed.dtype.names:
-        # Another compiler setting may contract a * b + c: rounding, no more.
+        # Another compiler option may contract a * b + c, which changes rounding only.
         np.testing.assert_allclose(built[output], packed[output], rtol=1e-9, atol=1e-12)
 
 
@@ -52,7 +52,7 @@ def source_of(name):
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_sources_are_plain_c11(compiler):
-    """Without any extension of the compiler, and with all its warnings."""
+    """The sources compile without extensions of the compiler, with all warnings."""
     for name in WITH_SOURCES:
         if compiler == "gcc" or name in fmu.OF_EACH_KIND:
             assert complaints_about(source_of(name), compiler) == ""
@@ -61,14 +61,14 @@ def test_sources_are_plain_c11(compiler):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_no_names_of_the_runtime_clash(version):
-    """Whatever a system takes of it; what lagc writes beside it is looked at too."""
+    """Names do not clash, whichever part of the runtime a system uses; the names that lagc generates are checked too."""
     unit = clashes.unit(version)
     assert clashes.complaints(unit) == ""
     assert "'rests_on' redeclared" in clashes.complaints(unit + "static const int rests_on[] = {0};\n").replace("‘", "'").replace("’", "'")
     assert {"rests", "variables", "derivatives", "lu_place", "switching_values"} <= set(clashes.generated_names())
 
 
-# What makes lagc take other files of the runtime, with the words for lagc; FMI 2.0 and 3.0 in turn.
+# Systems and lagc's arguments that select different files of the runtime; FMI 2.0 and 3.0 alternately.
 KINDS = [
     *(("StickSlip", "--solver", method) for method in ("taylor", "erk", "bdf", "radau", "auto")),
     ("BouncingBall",),
@@ -81,7 +81,7 @@ KINDS = [
 
 @pytest.mark.parametrize("kind", KINDS, ids=" ".join)
 def test_one_piece_has_all_that_it_calls(kind, tmp_path):
-    """What lagc includes of the runtime, as for other platforms and for packages: nothing is missing, and no names clash."""
+    """The runtime files that lagc includes, as for other platforms and packages, are complete, and no names clash."""
     system, *words = kind
     assert fmu.lagc(ROOT / "fmu" / system / "system.xml", "-o", tmp_path, *words).returncode == 0
     version = 2 + KINDS.index(kind) % 2
@@ -101,7 +101,7 @@ def global_names(source, folder, *words):
 
 
 def test_global_names_are_those_of_the_fmu(tmp_path):
-    """FMI 2.0.4, section 2.1.1: sources of several FMUs may become one program."""
+    """FMI 2.0.4, section 2.1.1: sources of several FMUs may be linked into one program."""
     for name in ("SimplePendulum", "SimplePendulumLinear", "StateFeedback", "ChainPendulum"):
         defined = global_names(source_of(name), tmp_path)
         assert f"{name}_fmi2DoStep" in defined and f"{name}_instance_create" in defined
@@ -110,7 +110,7 @@ def test_global_names_are_those_of_the_fmu(tmp_path):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_functions_of_a_shared_library_have_no_prefix(version, tmp_path):
-    """As the official headers do it, and where CMake says that it makes one of the FMU's name; a prefix that is given wins."""
+    """As in the official headers, and if CMake declares a shared library of the FMU's name; an explicit prefix takes precedence."""
     name = "SimplePendulum"
     source, function = {2: fmu, 3: fmi3}[version].unpacked(name) / "sources" / f"{name}.c", f"fmi{version}DoStep"
     for prefix, *words in [(f"{name}_",), ("", f"-DFMI{version}_OVERRIDE_FUNCTION_PREFIX"), ("", f"-D{name}_EXPORTS"), ("My_", f"-DFMI{version}_FUNCTION_PREFIX=My_")]:
@@ -119,7 +119,7 @@ def test_functions_of_a_shared_library_have_no_prefix(version, tmp_path):
 
 @pytest.mark.parametrize("names", [("SimplePendulum", "DoublePendulum"), ("SimplePendulumLinear", "SimplePendulum")])
 def test_two_fmus_in_one_program(names, tmp_path, open_fmu):
-    """Stepped in turn, each gives what its shared library gives."""
+    """Stepped alternately, each gives the results of its shared library."""
     program = tmp_path / "program"
     objects = [tmp_path / f"{name}.o" for name in names]
     for name, compiled in zip(names, objects):
@@ -146,7 +146,7 @@ def refuses_to_be_fast(source, compiler, option):
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("option", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
 def test_fast_math_is_refused(compiler, option):
-    """It takes away the checks for what is not finite, and the sums that carry their rounding along."""
+    """Fast-math removes checks for nonfinite values and compensated summation."""
     assert refuses_to_be_fast(source_of("SimplePendulum"), compiler, option)
 
 

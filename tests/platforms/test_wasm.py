@@ -1,5 +1,5 @@
 """
-FMUs as WebAssembly components (the draft FMI-LS-WASM), run by wasmtime through the functions of the draft, beside the native FMUs through
+FMUs as WebAssembly components (the draft FMI-LS-WASM), run by wasmtime through the functions of the draft, against the native FMUs through
 FMI 3.0.
 """
 
@@ -22,14 +22,14 @@ from fmu import BUILD, ROOT
 pytestmark = pytest.mark.release
 
 FOLDER = BUILD / "wasm"
-# By taylor, with impacts, by auto with a closed loop; and one without anything that moves.
+# taylor, with impacts, auto with a closed loop, and one without states.
 SYSTEMS = ["DoublePendulum", "BouncingBall", "FourBar", "StateFeedback"]
 ENGINE = Engine()
 
 
 @functools.cache
 def archives():
-    """The FMUs of FMI 3.0 for this machine and for WebAssembly, in one archive each; returns their folder."""
+    """Build the FMUs of FMI 3.0 for this machine and for WebAssembly, in one archive each; return their folder."""
     bring_up_to_date(ROOT / "build")
     FOLDER.mkdir(parents=True, exist_ok=True)
     systems = ";".join(str(ROOT / "fmu" / name) for name in SYSTEMS)
@@ -59,7 +59,7 @@ def states_of(name):
 
 
 class Instance:
-    """An instance in a component; its methods are those of the draft, with _ for -. messages: what it has logged."""
+    """An instance in a component, with the draft's methods, whose names have _ in place of -. messages: its log."""
 
     def __init__(self, name, kind="co-simulation", token=None, memory=-1):
         self.kind, self.messages, self.store = kind, [], Store(ENGINE)
@@ -101,7 +101,7 @@ def native(name, kind="co-simulation"):
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "BouncingBall", "FourBar"])
 def test_steps(name):
-    """The same states as the native FMU's, step by step."""
+    """The states are those of the native FMU at every step."""
     ours, theirs = Instance(name).started(), native(name)
     of_states = references(name, *states_of(name))
     for k in range(50):
@@ -115,7 +115,7 @@ def test_steps(name):
 
 
 def test_saved_states():
-    """A step that is repeated from saved bytes, in another instance too, gives the same bits."""
+    """A step repeated from saved bytes, also in another instance, gives the same bits."""
     name = "BouncingBall"
     of_states = references(name, *states_of(name))
     first, second = Instance(name).started(), Instance(name).started()
@@ -131,7 +131,7 @@ def test_saved_states():
 
 
 def test_model_exchange():
-    """Rates, indicators, nominals and Jacobians are the native FMU's."""
+    """Rates, indicators, nominal values and Jacobians are those of the native FMU."""
     name = "BouncingBall"
     ours, theirs = Instance(name, "model-exchange").started(), native(name, "model-exchange")
     info = ours.update_discrete_states()
@@ -167,7 +167,7 @@ def test_derivatives():
 
 
 def test_messages():
-    """What is wrong is said through the host's function, and told as a status."""
+    """Errors are logged through the host's function, and returned as a status."""
     name = "DoublePendulum"
     wrong = Instance(name, token="{no}")
     assert wrong.handle is None and "expected '{" in wrong.messages[-1][3]
@@ -184,7 +184,7 @@ def test_messages():
 
 
 def test_memory():
-    """Lists that go in and out leave nothing behind: 800 MB of them pass through 16 MB."""
+    """Lists passed in and out leak no memory: 800 MB of them pass through 16 MB."""
     name = "DoublePendulum"
     instance = Instance(name, memory=16 << 20).started()
     of_states = references(name, *states_of(name)) * 250
@@ -196,7 +196,7 @@ def test_memory():
 
 
 def test_archive():
-    """The manifest obeys FMI's schema, and the draft's words; without inputs from outside but the messages' function."""
+    """The manifest is valid by FMI's schema and the draft; the component imports only the function for messages."""
     with zipfile.ZipFile(archives() / "DoublePendulum.fmu") as archive:
         manifest, as_in_fmi = (etree.fromstring(archive.read(f"extra/org.modelica.fmi-ls-wasm/{file}.xml")) for file in ("manifest", "fmi-ls-manifest"))
     schema = Path(fmpy.__path__[0]) / "schema" / "fmi3" / "fmi3LayeredStandardManifest.xsd"

@@ -1,4 +1,4 @@
-"""The wheel, on a machine with Python alone: commands, errors, FMUs equal to those of the tree, the same bytes from two clones."""
+"""The wheel on a machine with Python alone: commands, errors, FMUs equal to those of the tree, identical bytes from two clones."""
 
 import hashlib
 import re
@@ -27,25 +27,25 @@ def succeed(*words, cwd, **options):
 
 
 def test_any_linux_can_install_it():
-    """By its name, and by what its program asks of the C library. It is small, and knows no paths of this machine."""
+    """The name and the C library symbols fit manylinux. The wheel is small, and contains no paths of this machine."""
     archive = wheel.installed()
     version = re.search(r"project\(lagrange-fmu VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
     assert archive.name == f"lagrange_fmu-{version}-py3-none-manylinux_2_17_x86_64.whl"
     shown = subprocess.run([sys.executable, "-m", "auditwheel", "show", archive], capture_output=True, text=True).stdout
     assert re.search(r'consistent\s+with\s+the\s+following\s+platform\s+tag:\s+"manylinux_2_(5|12|17)_x86_64"', shown), shown
     with zipfile.ZipFile(archive) as file:
-        assert sum(member.file_size for member in file.infolist()) < 13.5e6  # of them SUNDIALS 6.7e6, lagc and the laboratory 1.5e6 each, three.js 0.9e6
+        assert sum(member.file_size for member in file.infolist()) < 13.5e6  # SUNDIALS has 6.7e6, lagc and the laboratory 1.5e6 each, three.js 0.9e6
         assert str(ROOT).encode() not in b"".join(file.read(member) for member in file.namelist())
         assert "lagrange_fmu/licenses/libxml2.txt" in file.namelist()
 
 
 def test_one_version_of_the_compiler():
-    """What builds the wheel, what it asks for, and what the tree takes for other platforms."""
+    """The wheel's build requirement, its dependency, and the tree's requirement have the same version."""
     pin = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
     assert re.findall(r'"(ziglang[^"]*)"', (ROOT / "scripts" / "wheel" / "pyproject.toml").read_text()) == [pin, pin]
 
 
-# The tag, how lagc begins, and where its format names the processor, with how.
+# The tag, the program's name and first bytes, and a test of the processor in its header.
 OTHER_WHEELS = {
     "aarch64-linux": ("manylinux_2_17_aarch64", "lagc", b"\x7fELF", lambda program: program[18:20] == (183).to_bytes(2, "little")),
     "win64": ("win_amd64", "lagc.exe", b"MZ", lambda program: program[int.from_bytes(program[60:64], "little") :].startswith(b"PE\0\0\x64\x86")),
@@ -56,7 +56,7 @@ OTHER_WHEELS = {
 
 @pytest.mark.parametrize("platform", OTHER_WHEELS)
 def test_wheels_of_other_platforms(platform, tmp_path):
-    """Have the same content as this machine's but for lagc, which is for the wheel's own platform."""
+    """The content is that of this machine's wheel, except for lagc, which is for the wheel's own platform."""
     tag, name, beginning, is_for_the_processor = OTHER_WHEELS[platform]
     archive = wheel.build_wheel(ROOT / "scripts" / "wheel", tmp_path, "-C", f"platform={platform}")
     assert archive.name.endswith(f"-py3-none-{tag}.whl")
@@ -76,7 +76,7 @@ def test_a_platform_without_wheels():
 
 
 def test_the_source_distribution_builds_the_wheel(tmp_path):
-    """Far from the tree, and without what the tree gets from its distribution; lagc alone knows where libxml2 was."""
+    """It builds away from the tree, without the distribution's libraries that the tree uses; only the path of libxml2 differs in lagc."""
     sources = wheel.build_sdist(tmp_path)
     subprocess.run([sys.executable, "-m", "tarfile", "-e", sources, tmp_path / "unpacked"], check=True)
     [folder] = (tmp_path / "unpacked").iterdir()
@@ -113,7 +113,7 @@ def test_templates(template, tmp_path):
 
 
 def test_a_live_page(tmp_path):
-    """Of a system bodies can be pulled, and it can be saved; the page compiles by itself, also where the FMU was built before."""
+    """Bodies can be pulled, and the system can be saved; the page is compiled if the FMU was built before, too."""
     succeed("new", "Mine", "--template", "cart", cwd=tmp_path)
     succeed("build", "Mine.xml", cwd=tmp_path)
     succeed("live", "Mine.xml", cwd=tmp_path)
@@ -122,7 +122,7 @@ def test_a_live_page(tmp_path):
 
 
 def test_a_page_to_write_in(tmp_path):
-    """Without a compiler: lagc and the runtime are in it."""
+    """The page needs no compiler: it contains lagc and the runtime."""
     succeed("new", "Mine", cwd=tmp_path)
     assert succeed("live", "Mine.xml", "--edit", cwd=tmp_path) == f"{tmp_path}/Mine-edit.html\n"
     page = (tmp_path / "Mine-edit.html").read_text()
@@ -133,7 +133,7 @@ def test_a_page_to_write_in(tmp_path):
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
 def test_it_is_the_fmu_of_the_tree(name, tmp_path):
-    """But for the compiler of the binary."""
+    """All files except the compiled libraries are equal."""
     succeed("build", ROOT / "fmu" / name, cwd=tmp_path)
     with zipfile.ZipFile(tmp_path / f"{name}.fmu") as built, zipfile.ZipFile(fmu.archive(name)) as packed:
         assert built.namelist() == packed.namelist()
@@ -145,7 +145,7 @@ def test_it_is_the_fmu_of_the_tree(name, tmp_path):
 
 
 def test_fmi3(tmp_path):
-    """It is what the tree packs, for all that is not compiled."""
+    """All files except the compiled libraries are those of the tree."""
     succeed("build", ROOT / "fmu" / "DoublePendulum", "--fmi", "3", "--platforms", "linux64", "aarch64-linux", cwd=tmp_path)
     path = tmp_path / "DoublePendulum.fmu"
     with zipfile.ZipFile(path) as built, zipfile.ZipFile(fmi3.archive("DoublePendulum")) as packed:
@@ -159,7 +159,7 @@ def test_fmi3(tmp_path):
 
 
 def test_another_compiler_of_lagc_changes_nothing(tmp_path):
-    """Arguments of one call are evaluated in any order; here zig's clang, in the tree gcc."""
+    """The evaluation order of arguments is unspecified in C; the wheel's lagc is compiled by zig's clang, the tree's by gcc."""
     wheel.installed()
     [lagc] = (wheel.FOLDER / "venv" / "lib").glob("python*/site-packages/lagrange_fmu/bin/lagc")
     for system in [*(ROOT / "fmu").glob("*/system.xml"), *(ROOT / "tests" / "systems").glob("*/system.xml")]:
@@ -179,7 +179,7 @@ def test_platforms(tmp_path):
 
 
 def test_solvers_of_sundials(tmp_path):
-    """Their libraries, for all platforms, come with the wheel."""
+    """The wheel contains the SUNDIALS libraries for all platforms."""
     for solver in ("bdf", "erk", "radau"):
         words = ["--solver", solver, "-o", solver]
         succeed("build", ROOT / "fmu" / "DoublePendulum", *words, *(["--platforms", "linux64", "aarch64-linux"] if solver == "bdf" else []), cwd=tmp_path)
@@ -211,7 +211,7 @@ def test_mistakes(words, message, tmp_path):
 
 
 def test_no_words_show_the_help(tmp_path):
-    """As with pip: somebody who types the command alone asks what it can do."""
+    """As with pip, the command without arguments shows the help."""
     shown = succeed(cwd=tmp_path)
     assert shown == succeed("--help", cwd=tmp_path) and "linearize" in shown
 
