@@ -1,4 +1,4 @@
 """
-A differential test of random systems: the generator writes system.xml, SymPy derives the same system's equations from
-the generator's own expressions, long doubles follow its motion, and the FMU has to agree or to refuse with a message.
+Differential test with random systems: the generator writes system.xml, SymPy derives the equations from the generator's own expressions,
+long doubles integrate them, and the FMU has to agree or to fail with a message.
 """

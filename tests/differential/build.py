@@ -1,4 +1,4 @@
-"""From a random system to its FMU, unpacked, by one of two compilers; what goes wrong on the way is told apart."""
+"""Build a random system's FMU, unpacked, by one of two compilers, and classify errors."""
 
 import re
 import subprocess
@@ -13,11 +13,11 @@ TIME_LIMIT = 300  # s, for one program
 
 
 class Refused(Exception):
-    """By lagc, with a line; or by the FMU, with a message."""
+    """An error message of lagc, with a line, or of the FMU."""
 
 
 class Wrong(Exception):
-    """What must not happen."""
+    """A failure of lagc, the compiler or the FMU."""
 
 
 def run(words, what):
@@ -28,7 +28,7 @@ def run(words, what):
 
 
 def compile_system(system, folder):
-    """The folder of the unpacked FMU."""
+    """Return the folder of the unpacked FMU."""
     source = folder / "system.xml"
     system.write(folder)
     target = folder / "fmu"
@@ -49,7 +49,7 @@ def compile_system(system, folder):
 
 
 def pack(system, folder, library):
-    """As users get it: packed, and unpacked by FMPy."""
+    """Pack the FMU as users get it, and unpack it by FMPy."""
     archive, content = folder / f"{system.name}.fmu", folder / "fmu"
     result = run(pack_words(content, library, archive, 2), "pack.cmake")
     if result.returncode != 0:

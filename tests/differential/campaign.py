@@ -36,7 +36,7 @@ def examine(task):
 
 
 def leave(kind, seed, number, keep, outcome):
-    """A folder for each wrong system."""
+    """Write a folder for each wrong system."""
     place = keep / f"{kind}-{seed}-{number}"
     place.mkdir(parents=True, exist_ok=True)
     system = GENERATORS[kind](seed, number)
@@ -48,7 +48,7 @@ def leave(kind, seed, number, keep, outcome):
 
 
 def general(message):
-    """A message without its numbers and names, for counting."""
+    """The message without its numbers and names, for counting."""
     return re.sub(r"'[^']*'", "'...'", re.sub(r"-?\d+(\.\d+)?(e[-+]?\d+)?", "#", message))[:150]
 
 
@@ -95,7 +95,7 @@ def main():
     numbers = [words.only] if words.only is not None else range(words.first, words.first + words.count)
     outcomes, begin = {}, time.perf_counter()
     tasks = [(words.kind, words.seed, number, words.keep) for number in numbers]
-    # Not a Pool, whose workers may not have children.
+    # Workers of a Pool may not have child processes.
     with ProcessPoolExecutor(words.jobs, multiprocessing.get_context("fork")) as pool:
         for future in as_completed([pool.submit(examine, task) for task in tasks]):
             number, outcome = future.result()

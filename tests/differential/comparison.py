@@ -1,4 +1,4 @@
-"""The verdict on a system: its FMU against the truth, with bounds from how the system itself makes errors grow."""
+"""Verdict on a system: its FMU against the reference, with bounds from the system's own error growth."""
 
 import math
 import random
@@ -15,10 +15,10 @@ from .event_reference import EventReference
 from .reference import Reference, Undecided
 from .simulation import simulate_apart
 
-# Errors of the solvers, of all their steps together, in units of what errors of the tolerance make.
+# Allowed errors of all steps of a solver, in units of the effect of errors of the size of the tolerance.
 FACTORS = {None: 30, "taylor": 30, "erk": 30, "bdf": 1000, "radau": 100, "auto": 100, "exact": 30}
-KICKS = 3  # perturbed references
-HOPELESS = 0.3  # of the path: a bound that large decides nothing
+KICKS = 3  # number of perturbed references
+HOPELESS = 0.3  # share of the path at which a bound is too large to decide anything
 ROUNDING = 2.0**-52
 
 
@@ -26,14 +26,14 @@ ROUNDING = 2.0**-52
 class Outcome:
     verdict: str = "agrees"  # or refused, undecided, wrong
     message: str = ""
-    regular: bool = False  # the motion exists to the end and is known
-    error: float = 0.0  # the largest, in units of its bound
-    unavailable: list = field(default_factory=list)  # messages of refused derivatives
+    regular: bool = False  # True if the motion exists to the end and is known
+    error: float = 0.0  # largest error, in units of its bound
+    unavailable: list = field(default_factory=list)  # messages of failed derivatives
     families: set = field(default_factory=set)
 
 
 def judge_system(system, folder, time_limit=60):
-    """The outcome of one system; folder is left with its files."""
+    """Outcome for one system; its files remain in the folder."""
     outcome = Outcome(families=system.families)
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -55,7 +55,7 @@ def judge_system(system, folder, time_limit=60):
 
 
 def compare(system, record, folder, outcome):
-    """What the FMU did up to its end, or until it refused to go on. Raises Wrong or Undecided."""
+    """Compare the FMU's results up to its end, or until it failed. Raises Wrong or Undecided."""
     if record.wrong:
         raise Wrong(record.wrong)
     derivation = Derivation(system)
@@ -67,7 +67,7 @@ def compare(system, record, folder, outcome):
 
 
 def note(outcome, what, ours, exact, bound):
-    """Raises Wrong where a value is off by more than its bound."""
+    """Raise Wrong if the error of a value exceeds its bound."""
     if not math.isfinite(exact) or not math.isfinite(bound):
         return
     if not math.isfinite(ours):
@@ -82,7 +82,7 @@ def note(outcome, what, ours, exact, bound):
 
 
 def kicks(seed, tolerance):
-    """Changes of the state of the size of the tolerance, with random signs."""
+    """Return perturbations of the state of the size of the tolerance, with random signs."""
     choose = random.Random(seed)
     return lambda state: [choose.choice([-1, 1]) * tolerance * max(1.0, abs(x)) for x in state]
 
@@ -97,11 +97,11 @@ def compare_motion(derivation, record, folder, outcome):
     spread = np.zeros_like(exact)
     for seed in range(KICKS):
         spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-15, 0.5, kicks(seed, tolerance)) - exact))
-    if system.switches:  # a jump is later or earlier by what errors of all steps make
+    if system.switches:  # errors of all steps shift the time of a jump
         factor = FACTORS[system.method]
         for seed in range(KICKS):
             spread = np.maximum(spread, np.abs(reference.trajectory(6, 1e-15, 0.5, kicks(seed, factor * tolerance)) - exact) / factor)
-    # Three differences may all be near 0 at a moment, so that neighbours in time count too.
+    # All three differences may be near 0 at one time, so that neighbours in time are included.
     spread = np.array([spread[max(0, i - 3) : i + 4].max(axis=0) for i in range(len(spread))])
     size = np.maximum(1.0, np.abs(exact))
     bound = FACTORS[system.method] * np.maximum(spread, tolerance * size) + 20 * doubt + 1e-15 * size
@@ -122,7 +122,7 @@ def compare_motion(derivation, record, folder, outcome):
 
 
 def moved(at, choose):
-    """By some roundings."""
+    """Perturb the values by some rounding errors."""
     return {name: value * (1 + choose.uniform(-8, 8) * ROUNDING) for name, value in at.items()}
 
 
@@ -134,7 +134,7 @@ def compare_point(derivation, exact, point, outcome):
     when = f" at {point.time!r}"
 
     def check(what, ours, evaluate, extra, indices):
-        """ours by index of labels; bounds from the value, the terms that cancel, and from roundings of the arguments."""
+        """Compare values by index of labels; bounds follow from the value, the terms that cancel, and rounding of the arguments."""
         right = evaluate(at)
         shifted = [evaluate(moved(at, choose)) for _ in range(3)]
         for value, i in zip(ours, indices):

@@ -1,4 +1,4 @@
-"""The truth about a system: SymPy's Lagrange equation from the generator's trees; nothing of lagc's is read."""
+"""Reference equations of a system: SymPy's Lagrange equation from the generator's trees, independent of lagc."""
 
 import numpy as np
 import sympy as sp
@@ -13,7 +13,7 @@ AXES = "xyz"
 
 
 def curve(table):
-    """SciPy's cubics, each of the way in its interval, and straight on outside."""
+    """SciPy's cubics by the distance in each interval, with linear extrapolation."""
     x, y = table.x, table.y
     cubics = {
         "monotone": lambda: PchipInterpolator(x, y).c,
@@ -25,7 +25,7 @@ def curve(table):
     number = lambda value: sp.Float(float(value), 40)
 
     def at(u):
-        """At a knot the slope is that of the interval behind it alone."""
+        """At a knot the slope is that of the interval to its right."""
         beyond = [Maximum(u - number(knot), 0) for knot in x]
         value = number(y[0]) + number(cubics[2, 0]) * Minimum(u - number(x[0]), 0) + number(slope) * beyond[-1]
         for i, (d, c, b, _) in enumerate(cubics.T):
@@ -38,13 +38,13 @@ def curve(table):
 
 class Derivation:
     """
-    mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the names, as the FMU
-    has them, of the symbols of mechanics: time, coordinates, velocities, inputs, parameters.
+    Equations of a system. mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the FMU's
+    names of the symbols of mechanics: time, coordinates, velocities, inputs, parameters.
     """
 
     def __init__(self, system):
         self.system = system
-        symbol = lambda label: sp.Symbol(label.replace(".", "_"), real=True)  # names of C too
+        symbol = lambda label: sp.Symbol(label.replace(".", "_"), real=True)  # valid names in C, too
         self.symbols = {"time": time}
         q = [symbol(c.name) for c in system.coordinates]
         v = [symbol(c.velocity) for c in system.coordinates]
@@ -64,7 +64,7 @@ class Derivation:
         potential += sum(self.symbols[c.name] ** 2 for c in system.coordinates if c.part)
         dissipation = sp.sympify(sum(map(self.convert, system.dissipations)))
         forces = [sp.sympify(-sp.diff(dissipation, vi)) for vi in v]
-        self.driven_power = sp.Integer(0)  # of forces whose points move in a given way
+        self.driven_power = sp.Integer(0)  # of forces whose points have prescribed motions
         for label, force in system.forces:
             forces[[c.name for c in system.coordinates].index(label)] += self.convert(force)
         for label, force in system.cartesian_forces:
@@ -98,7 +98,7 @@ class Derivation:
             self.symbols[label] = self.convert(tree)
 
     def _bodies(self, q, v):
-        """Their kinetic energy."""
+        """Kinetic energy of the bodies."""
         energy = sp.Integer(0)
         for body in self.system.bodies:
             position = [self.symbols[f"{body.name}.{axis}"] for axis in body.position]
@@ -109,7 +109,7 @@ class Derivation:
         return energy
 
     def _add_energies(self, potential, v):
-        """As the README defines them: the energy that motion keeps."""
+        """Energies as the README defines them: the Jacobi integral for terms that are not quadratic in the velocities."""
         kept = lambda term: sum(sp.diff(term, vi) * vi for vi in v) - term
         energy = self.bodies
         for term in map(self.convert, self.system.kinetic):

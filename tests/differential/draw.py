@@ -7,7 +7,7 @@ from .expressions import function, name, node
 
 
 class Draw:
-    """For one system: its choices, and the parameters that its expressions ask for."""
+    """Random choices for one system, and the parameters that its expressions need."""
 
     def __init__(self, key, system):
         self.random, self.system = random.Random(key), system
@@ -22,7 +22,7 @@ class Draw:
         return self.random.randint(low, high)
 
     def value(self, low, high):
-        """With three digits, so that files stay readable."""
+        """Random number with three digits, so that files stay readable."""
         return float(f"{self.random.uniform(low, high):.3g}")
 
     def logarithmic(self, low, high):
@@ -73,7 +73,7 @@ BINARY = [
 
 
 def smooth(draw, atoms, depth=2):
-    """A smooth expression of the atoms, regular wherever they are."""
+    """A smooth expression of the atoms, regular everywhere."""
     if depth == 0 or draw.chance(0.15):
         atom = draw.choice(atoms)
         return atom if draw.chance(0.6) else draw.quantity(0.4, 1.8) * atom

@@ -1,7 +1,6 @@
 """
-Motions that switch, in long doubles: events.c follows them up to a change; what holds behind it is found here from
-mechanics: impacts by Newton's law through M with friction by Coulomb's, and of all combinations of what may hold, the one
-that a short way shows to be right.
+Motions with events in long doubles. events.c integrates up to a change. The state and modes after it follow here: impacts by Newton's law
+of restitution through M, friction by Coulomb's law, and the first combination of modes that a short trial motion confirms.
 """
 
 import ctypes
@@ -16,7 +15,7 @@ from mechanics import velocity
 from .reference import EVALUATIONS, INPUT_COEFFICIENTS, OUTCOMES, REAL, Undecided, compile_c, declarations, guards_of, in_c, part
 from .system import course
 
-AHEAD = 1e-7  # the way that is tried, in s
+AHEAD = 1e-7  # duration of the trial motion, in s
 OFF_KINK = 1e-16  # s
 TOUCHING, SLOW, REST = 1e-12, 1e-12, 1e-13
 EVENT_LIMIT, ROUND_LIMIT = 20000, 100
@@ -32,7 +31,7 @@ def pointer(array):
 
 
 def parts_in_c(derivation):
-    """The source for one system, and the number of its parts."""
+    """C source for one system, and the number of its parts."""
     mechanics, system = derivation.mechanics, derivation.system
     n, size, switches = len(mechanics.q), len(mechanics.terms), system.switches
     convert = lambda tree: sp.sympify(derivation.convert(tree))
@@ -71,7 +70,7 @@ def parts_in_c(derivation):
 
 
 class Modes:
-    """closed, sliding, held and modes, as they stand behind the constants."""
+    """Arrays closed, sliding, held and modes, in the order that follows the constants."""
 
     def __init__(self, sizes, system):
         counts = [sizes["CONTACTS"], sizes["FRICTIONS"], sizes["EVENTS"], len(system.switches.modes)]
@@ -82,7 +81,7 @@ class Modes:
 
 
 class EventReference:
-    """As Reference; the columns are the states, and what System.columns adds."""
+    """Reference for systems with events; its columns are the states, and those that System.columns adds."""
 
     def __init__(self, derivation, folder):
         from .reference import PRELUDE
@@ -135,7 +134,7 @@ class EventReference:
                 self._settle()
 
     def _follow(self, end):
-        """To the end or the first change; whether there is one."""
+        """Integrate to the end or the first change; return True if there is a change."""
         columns, tolerance, fraction = self.options
         all_constants = np.concatenate([self.constants, self.flags.values])
         time, last, reached, changed = real([self.time]), real([end]), real([0]), ctypes.c_int()
@@ -158,14 +157,14 @@ class EventReference:
 
     def _row(self):
         p, f = self._look(), self.flags
-        # A friction whose contact is open rubs at nothing.
+        # The friction of an open contact has no direction.
         sliding = [np.nan if h is not None and f.closed[h] == 0 else s for h, s in zip(self.holders, f.sliding)]
         return [float(x) for x in [*self.state, *f.modes, *p.forces, *f.closed, *sliding]]
 
-    # --- What holds ---
+    # --- Modes after a change ---
 
     def _settle(self, starts=False):
-        if starts:  # at a kink of a gap the side counts to which the motion goes
+        if starts:  # at a kink of a gap, the piece towards which the motion goes applies
             self.state[: self.n] += OFF_KINK * self.state[self.n :]
         for _ in range(ROUND_LIMIT):
             self._collide()
@@ -179,7 +178,7 @@ class EventReference:
         raise Undecided("the reference finds events without end")
 
     def _happen(self, p):
-        """Events whose expression has passed 0; all values are those before the first is set."""
+        """Apply events whose expression has passed 0, with all values from before the first setting. Return True if there are any."""
         first, writes = 0, []
         for i, event in enumerate(self.system.switches.events):
             is_positive = p.events[i] > 0
@@ -208,7 +207,7 @@ class EventReference:
         raise Undecided("the reference finds impacts without end")
 
     def _hit(self, p, i):
-        """Newton's law for one contact, and Coulomb's for the friction that rests on it, across which the impact does not reach."""
+        """Apply Newton's law of restitution to one contact, and Coulomb's law to its friction, if the impact does not act across it."""
         along = p.response(p.gradients[i])
         push = -(1 + self.contacts[i].restitution) * p.rates[i] / (p.gradients[i] @ along)
         self.state[self.n :] += push * along
@@ -224,7 +223,10 @@ class EventReference:
             self.state[self.n :] += (least if abs(least) <= most else -np.sign(slip) * most) * across
 
     def _choose(self):
-        """The combination of contacts and sticking frictions that a short way ahead shows to be right, those that hold most first."""
+        """
+        Choose the first combination of contacts and sticking frictions that a short trial motion confirms, in descending order of active
+        constraints.
+        """
         p, flags = self._look(), self.flags
         close = [i for i in range(len(self.contacts)) if self._touches(p, i) and abs(p.rates[i]) <= SLOW]
         flags.closed[:] = 0
@@ -253,11 +255,11 @@ class EventReference:
         return self.holders[j] is not None and self.flags.closed[self.holders[j]] == 0
 
     def _is_idle_right(self, slow):
-        """Of a friction whose contact is open one direction stands for all."""
+        """True if each friction of an open contact has direction 1, which stands for all of its directions."""
         return all(self.flags.sliding[j] == 1 for j in slow if self._is_idle(j))
 
     def _held_state(self, p, closed, stuck):
-        """Without what rounding has left of the velocities of what holds."""
+        """The state without rounding errors in the velocities of active constraints."""
         state = self.state.copy()
         rows = [p.gradients[i] for i in closed] + [p.ways[j] for j in stuck]
         rates = [p.rates[i] for i in closed] + [p.slips[j] for j in stuck]
@@ -288,11 +290,11 @@ class EventReference:
         return True
 
     def _ahead(self):
-        """Looks a short way ahead, whatever changes there."""
+        """State after a short time, ignoring further changes."""
         end, operands = self.time + AHEAD, real(np.zeros(2 * self.n))
         constants = np.concatenate([self.constants, self.flags.values])
         k = []
-        for share in (0, 0.5, 0.5, 1):  # Runge and Kutta's method
+        for share in (0, 0.5, 0.5, 1):  # classical Runge-Kutta method
             state = self.state + (share * AHEAD * k[-1] if k else 0)
             p = self._look(self.time + share * AHEAD, state)
             if not np.all(np.isfinite(p.accelerations)):
@@ -302,7 +304,7 @@ class EventReference:
         return self._look(end)
 
     def _kick(self, kick):
-        """Changes that leave what holds as it is."""
+        """Perturb the state along the active constraints."""
         change = real(kick([float(x) for x in self.state]))
         p = self._look()
         held = [p.gradients[i] for i in np.flatnonzero(self.flags.closed)]
@@ -316,12 +318,12 @@ class EventReference:
 
 
 def REAL_of(value):
-    """A c_longdouble of all digits, which its constructor would round to those of a double."""
+    """A c_longdouble with all digits; its constructor would round to a double."""
     return REAL.from_buffer_copy(np.longdouble(value).tobytes())
 
 
 def solve(matrix, right):
-    """Gauss with pivots, in long doubles, which numpy.linalg does not have."""
+    """Gaussian elimination with pivoting in long doubles, which numpy.linalg does not support."""
     a, x = np.array(matrix, dtype=np.longdouble), np.array(right, dtype=np.longdouble)
     count = len(a)
     for k in range(count):
@@ -339,7 +341,7 @@ def solve(matrix, right):
 
 
 class Parts:
-    """What look() finds, by name."""
+    """Results of look(), by name."""
 
     def __init__(self, reference, p):
         s, self.n, self.size = reference.sizes, reference.n, reference.size
@@ -355,7 +357,7 @@ class Parts:
         self.accelerations, self.forces = p[s["PARTS"] :][: self.n], p[s["PARTS"] + self.size :]
 
     def response(self, row):
-        """How velocities answer to a push of 1 along a row, with constraints."""
+        """Change of velocities by a unit impulse along a row, with constraints."""
         return solve(self.mass, np.concatenate([row, np.zeros(self.size - self.n)]))[: self.n]
 
     def least_change(self, rows, rates):

@@ -1,4 +1,4 @@
-"""What is computed at one point, to 60 digits: accelerations, results, derivatives along directions and in time."""
+"""Values at one point to 60 digits: accelerations, results, directional and time derivatives."""
 
 import functools
 
@@ -15,7 +15,7 @@ def leading(x):
     return x[0] if isinstance(x, arb_series) else arb(x)
 
 
-NOTHING = arb("nan")  # what is read at a kink is one-sided, and not compared
+NOTHING = arb("nan")  # values at a kink are one-sided, and not compared
 
 
 def sign(x):
@@ -36,7 +36,7 @@ def minimum(a, b):
 
 
 def atan2(y, x):
-    """On the branch of C's atan2."""
+    """atan2 of series, on the branch of C's atan2."""
     a, b = leading(y), leading(x)
     if b > 0 and b >= abs(a):
         return references.FUNCTIONS["atan"](y / x)
@@ -49,7 +49,7 @@ def atan2(y, x):
 
 
 def tanh(x):
-    """Without the overflow of exp."""
+    """tanh without overflow of exp."""
     negative = leading(x) < 0
     e = references.FUNCTIONS["exp"](2 * x if negative else -2 * x)
     return (e - 1) / (e + 1) if negative else (1 - e) / (1 + e)
@@ -62,7 +62,7 @@ FUNCTIONS = references.FUNCTIONS | {
 
 
 def or_nothing(function):
-    """Where FLINT refuses to divide series by 0, there is nothing to compare with."""
+    """Raise NoValue if FLINT cannot divide a series by 0."""
 
     @functools.wraps(function)
     def guarded(self, *arguments):
@@ -95,21 +95,21 @@ class Exact:
         )
 
     def _split(self, numbers):
-        """Accelerations and results; constraints have rows of their own behind the coordinates'."""
+        """Accelerations and results; rows of constraints follow those of the coordinates."""
         n = self.rows
         mass = [numbers[i * n : (i + 1) * n] for i in range(n)]
         return solve(mass, numbers[n * n : n * n + n])[: self.n], numbers[n * n + n :]
 
     @or_nothing
     def values(self, at):
-        """{der(v): value, result: value}, from numbers by name."""
+        """Values of der(v) and of the results, from numbers by name."""
         with precision(DIGITS, 1):
             accelerations, results = self._split(self.evaluate(*[arb(at[name]) for name in self.arguments]))
             return [float(coefficient(x, 0)) for x in [*accelerations, *results]]
 
     @or_nothing
     def magnitudes(self, at):
-        """Of the terms that cancel in the accelerations."""
+        """Magnitudes of the terms that cancel in the accelerations."""
         n = self.rows
         with precision(DIGITS, 1):
             numbers = self.evaluate_terms(*[arb(at[name]) for name in self.arguments])
@@ -125,7 +125,7 @@ class Exact:
 
     @or_nothing
     def along(self, at, direction):
-        """The derivative of values() along {name: part}."""
+        """Derivative of values() along {name: part}."""
         with precision(DIGITS, 2):
             arguments = [arb_series([arb(at[name]), arb(direction.get(name, 0.0))]) for name in self.arguments]
             accelerations, results = self._split(self.evaluate(*arguments))
@@ -133,7 +133,7 @@ class Exact:
 
     @or_nothing
     def in_time(self, at, inputs, order):
-        """Rows of the coordinates, velocities and results: derivatives 0..order; inputs: coefficients by name."""
+        """Rows of the coordinates, velocities and results: time derivatives 0..order; inputs: coefficients by name."""
         n = self.n
         states = self.arguments[1 : 1 + 2 * n]
         x = [[arb(at[name])] for name in states]

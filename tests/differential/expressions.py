@@ -1,14 +1,14 @@
-"""Expressions of the language of system.xml as trees: written as text for lagc, and as SymPy's for the truth."""
+"""Expressions of the language of system.xml as trees, which are written as text for lagc and converted to SymPy for the reference."""
 
 from dataclasses import dataclass
 
 import sympy as sp
 
-CONSTANT_DIGITS = 40  # digits of the decimal numbers in SymPy
+CONSTANT_DIGITS = 40  # of the decimal numbers in SymPy
 
 
 class Kinked(sp.Function):
-    """Functions whose derivatives SymPy would write with DiracDelta; away from the kink these are right."""
+    """Functions whose derivatives SymPy would write with DiracDelta; away from the kink these derivatives are right."""
 
     is_extended_real = True
 
@@ -36,7 +36,7 @@ class Absolute(Kinked):
 
 
 class Less(Kinked):
-    """1 where the first argument is less than the second, else 0."""
+    """1 if the first argument is less than the second, else 0."""
 
     nargs = 2
 
@@ -67,7 +67,7 @@ class Maximum(Kinked):
 
 
 class Raised(sp.Function):
-    """A power whose exponent is no number: SymPy's own derivative divides by the base, which may be 0."""
+    """A power with a nonconstant exponent: SymPy's own derivative divides by the base, which may be 0."""
 
     nargs = 2
     is_extended_real = True
@@ -97,7 +97,7 @@ PRECEDENCE = {"+": 1, "-": 1, "*": 2, "/": 2, "negative": 3, "^": 4}
 
 @dataclass(frozen=True)
 class Node:
-    """operation: number, name, negative, + - * / ^, der, or a function's name; leaves hold their text."""
+    """Expression tree. operation: number, name, negative, + - * / ^, der, or a function's name; leaves have text."""
 
     operation: str
     operands: tuple = ()
@@ -137,7 +137,7 @@ class Node:
         return Node("negative", (self,))
 
     def __str__(self):
-        """With as few parentheses as the grammar of the README allows."""
+        """Text with as few parentheses as the README's grammar allows."""
         if self.operation in ("number", "name"):
             return self.text
         if self.operation in CONDITIONS and self.operation != "if":
@@ -171,7 +171,7 @@ class Node:
 
 
 def node(value):
-    """A number is written so that both sides read the same decimal."""
+    """Node of a number, written so that lagc and SymPy read the same decimal."""
     if isinstance(value, Node):
         return value
     text = value if isinstance(value, str) else f"{value:.10g}"
@@ -187,13 +187,15 @@ def function(operation, *operands):
 
 
 def number_in_sympy(text):
-    """Whole numbers and halves exactly, since SymPy treats such exponents by themselves; else many digits."""
+    """Integers and halves exactly, since SymPy treats such exponents specially; others with many digits."""
     value = sp.Rational(text)
     return value if value.q <= 2 else sp.Float(text, CONSTANT_DIGITS)
 
 
 def in_sympy(tree, symbols, rate):
-    """symbols: SymPy's expressions by name, and functions of tables; rate: the total time derivative, for der(...)."""
+    """
+    Convert a tree to SymPy. symbols: SymPy's expressions by name, and functions of tables; rate: the total time derivative, for der(...).
+    """
     convert = lambda operand: in_sympy(operand, symbols, rate)
     if tree.operation == "number":
         return number_in_sympy(tree.text)

@@ -1,6 +1,6 @@
 """
-What makes systems hard, one function a family: each adds terms to a system whose coordinates already move. Widths are
-those of switching terms that textbooks advise, down to 1e-5 of the path.
+Difficult terms, one function per family: each adds terms to a system whose coordinates have inertia. Widths are those of the smoothed
+switches that textbooks recommend, down to 1e-5 of the path.
 """
 
 from .draw import (
@@ -26,7 +26,7 @@ def all_velocities(draw):
 
 
 def moment(draw):
-    """A time within the run."""
+    """A random time within the run."""
     plan = draw.system.plan
     return node(draw.value(plan.start_time + 0.1 * plan.length, plan.start_time + 0.9 * plan.length))
 
@@ -151,7 +151,7 @@ def hill(draw):
 
 
 def switch(draw):
-    """Sigmoids in space, with which a textbook replaces a jump."""
+    """Sigmoids in space, by which textbooks replace a jump."""
     c, q, _ = any_coordinate(draw)
     w, width = draw.width()
     argument = (q - node(draw.value(c.start - 1, c.start + 1))) / width
@@ -196,7 +196,7 @@ def time_function(draw):
 
 
 def disguised_kink(draw):
-    """Kinks by other names."""
+    """Kinks written without abs."""
     c, q, v = any_coordinate(draw)
     rate = draw.quantity(0.7, 2)
     forms = [sqrt(q**2), (q**2) ** 1.5, v * sqrt(v**2), sqrt((time - moment(draw)) ** 2), asin(sin(rate * q)), acos(cos(rate * time)), atan(tan(rate * q)),

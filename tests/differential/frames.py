@@ -1,4 +1,4 @@
-"""Bodies in frames that are moved and turned step by step."""
+"""Bodies in frames that are translated and rotated step by step."""
 
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr
@@ -14,7 +14,7 @@ AXES = "xyz"
 
 @dataclass
 class FrameBody:
-    """moments: of inertia about the centre of mass, by Ixx, Iyy, Izz, Ixy, Ixz, Iyz."""
+    """Body in a frame. moments: of inertia about the centre of mass, by Ixx, Iyy, Izz, Ixy, Ixz, Iyz."""
 
     name: str
     mass: float
@@ -24,7 +24,7 @@ class FrameBody:
 
 @dataclass
 class Frame:
-    """steps: ("translate", three expressions) or ("rotate", axis, angle)."""
+    """Frame with steps ("translate", three expressions) or ("rotate", axis, angle)."""
 
     name: str
     parent: object
@@ -60,7 +60,7 @@ class Frame:
         return origin, turn
 
     def places(self, convert):
-        """The centre of mass of each body by name."""
+        """Centre of mass of each body by name."""
         origin, turn = self.pose(convert)
         return {body.name: origin + turn * sp.Matrix([sp.Rational(repr(x)) for x in body.place]) for body in self.bodies}
 
@@ -79,7 +79,7 @@ class Frame:
 
 
 def chain(draw, coordinate):
-    """One to three frames in each other, each turned or shifted by a coordinate, with bodies of full inertia tensors and weight."""
+    """One to three nested frames, each rotated or translated by a coordinate, with bodies of full inertia tensors and weight."""
     system, parent = draw.system, None
     for i in range(draw.whole(1, 3)):
         q, _ = coordinate(draw)

@@ -1,4 +1,4 @@
-"""The system that belongs to a seed and a number."""
+"""The random system of a seed and a number."""
 
 import math
 
@@ -8,7 +8,7 @@ from .families import FAMILIES, inputs
 from .skeletons import SKELETONS, coordinate, body
 from .system import Action, Body, Coordinate, Plan, System, Table
 
-LIMIT = 4  # coordinates
+LIMIT = 4  # largest number of coordinates
 TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-6, 1e-8, 1e-8, 1e-10, 1e-10, 1e-12, 1e-13]
 
 
@@ -23,7 +23,7 @@ def generate(seed, number):
     outputs(draw)
     actions(draw)
     forces = system.forces or system.cartesian_forces or system.dissipations
-    system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # work is not linear in the state
+    system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # the work is not linear in the state
     follow(Draw(f"{seed}/{number}/constraints", system))
     extend(Draw(f"{seed}/{number}/parts", system))
     return system
@@ -59,7 +59,7 @@ def nonlinear(draw):
 
 
 def extra(draw):
-    """A mass that a spring couples to another coordinate."""
+    """A mass coupled by a spring to another coordinate."""
     other = name(draw.choice(draw.system.coordinates).name)
     q, _ = coordinate(draw)
     body(draw, x=q)
@@ -67,7 +67,7 @@ def extra(draw):
 
 
 def follow(draw):
-    """Some systems get a mass, or two, that a constraint ties to another coordinate, by position or by velocity."""
+    """Some systems get one or two masses that a constraint ties to another coordinate, by position or by velocity."""
     system = draw.system
     for _ in range(draw.choice([0, 0, 0, 0, 1, 2])):
         if system.method == "exact" or system.work:
@@ -90,7 +90,7 @@ def follow(draw):
 
 
 def extend(draw):
-    """What the language has beside equations: a driven coordinate, a displacement, a table, an included part."""
+    """Further features of the language: a driven coordinate, a displacement, a table, an included part."""
     for extension in (drive, displacement, table, part):
         if draw.chance(0.2) and draw.system.method != "exact" and draw.system.coordinates:
             extension(draw)
@@ -98,7 +98,7 @@ def extend(draw):
 
 
 def drive(draw):
-    """Another coordinate hangs on it by a spring."""
+    """A driven coordinate, coupled by a spring to another one."""
     system, (amplitude, rate) = draw.system, (draw.value(0.2, 1.5), draw.value(0.5, 4))
     other = name(draw.choice(system.coordinates).name)
     q, v = coordinate(draw)
@@ -108,7 +108,7 @@ def drive(draw):
     system.driven_velocities.append(v - driven.velocity_start - moved)
     system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
     body(draw, **{draw.choice("xyz"): q})
-    system.work = False  # knows of drives, which the truth does not
+    system.work = False  # would include the drive, which the reference does not
 
 
 def displacement(draw):
@@ -134,7 +134,7 @@ def table(draw):
 
 
 def part(draw):
-    """An oscillator of its own file, whose mass another coordinate pulls at."""
+    """An oscillator in a file of its own, whose mass is coupled to another coordinate."""
     system = draw.system
     other = name(draw.choice([c for c in system.coordinates if c.acceleration is None]).name)
     system.coordinates.append(Coordinate("part.x", "part.v", draw.value(-0.8, 0.8), draw.value(-0.8, 0.8)))
@@ -179,7 +179,7 @@ def outputs(draw):
 
 
 def actions(draw):
-    """Parameters that change during the run, and steps that are taken twice."""
+    """Parameters that change during the run, and repeated steps."""
     system = draw.system
     tunable = [p for p in system.parameters if p not in system.fixed]
     steps = system.plan.actions

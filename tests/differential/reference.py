@@ -1,4 +1,4 @@
-"""Motions in long doubles: SymPy's equations as C, followed by reference.c, twice with different orders and step limits."""
+"""Motions in long doubles: SymPy's equations as C, integrated by reference.c, twice with different orders and step limits."""
 
 import ctypes
 import functools
@@ -16,7 +16,7 @@ from .system import course
 REAL = ctypes.c_longdouble
 INPUT_COEFFICIENTS = 4
 STATES, GUARDS = 20, 400  # as in reference.c
-EVALUATIONS = 4_000_000  # of one trajectory
+EVALUATIONS = 4_000_000  # limit for one trajectory
 OUTCOMES = ["", "the reference takes too many steps", "the motion leaves the domain of a function"]
 
 PRELUDE = """
@@ -49,7 +49,7 @@ static void solve(int n, real m[], real x[]) {
 }
 """  # fmt: skip
 
-# The change of an operand g on which a function bends; where exp and tanh have died away, that of getting back.
+# Distance by an operand g over which a function bends; where exp and tanh are negligible, the distance back.
 SCALES = {
     "exp": "g < -60 ? fmaxl(1, (-60 - g) / 2) : 1",
     "tanh": "fabsl(g) > 25 ? fmaxl(1, (fabsl(g) - 25) / 2) : 1",
@@ -62,7 +62,7 @@ SCALES = {
 
 
 class Undecided(Exception):
-    """The truth is not known well enough."""
+    """The reference is not known accurately enough."""
 
 
 def guards_of(derivation):
@@ -116,7 +116,7 @@ def compile_c(source, library, optimization):
 
 
 def declarations(derivation):
-    """The names of an expression, from the time t, the state y and the constants k."""
+    """Declarations of the names in an expression, from the time t, the state y and the constants k."""
     mechanics, system = derivation.mechanics, derivation.system
     lines = ["real time_ = t;"]
     for i, s in enumerate([*mechanics.q, *mechanics.v]):
@@ -132,7 +132,7 @@ def declarations(derivation):
 
 
 def in_c(expressions):
-    """Statements for what they share, and the text of each."""
+    """Statements for common subexpressions, and the text of each expression."""
     printer = C99CodePrinter({"type_aliases": {real: float80}, "user_functions": {
         name: name for name in ("Sign", "Absolute", "Less", "Minimum", "Maximum", "Raised")}})  # fmt: skip
     parts, results = sp.cse([sp.sympify(e).subs(sp.Symbol("time"), sp.Symbol("time_")) for e in expressions],
@@ -173,7 +173,7 @@ def right_side_in_c(derivation):
 
 
 class Reference:
-    """One system's motion under its plan."""
+    """Motion of one system under its plan."""
 
     def __init__(self, derivation, folder):
         self.system = derivation.system
@@ -187,8 +187,8 @@ class Reference:
 
     def trajectory(self, columns, tolerance, fraction, kick=None):
         """
-        States at the communication points as doubles. kick(values) gives changes of the state, made at the start and
-        at least at twelve moments of the run. Raises Undecided.
+        States at the communication points as doubles. kick(values) returns perturbations of the state, applied at the start and at at least
+        twelve times of the run. Raises Undecided.
         """
         system, plan = self.system, self.system.plan
         state = (REAL * self.states)(*system.start)

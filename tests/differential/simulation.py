@@ -1,4 +1,4 @@
-"""A built FMU under its system's plan, in a process of its own: a crash or a hang is an outcome, not an end."""
+"""A built FMU under its system's plan, in a separate process, so that a crash or a hang is an outcome."""
 
 import multiprocessing
 import random
@@ -15,7 +15,7 @@ from . import switching_simulation
 from .build import Wrong
 from .system import course
 
-POINTS = 3  # communication points where everything that can be computed is read
+POINTS = 3  # number of communication points at which all available values are read
 ORDERS = 3  # of output derivatives
 
 
@@ -40,7 +40,7 @@ class Built(fmu.Instance):
 
 @dataclass
 class Point:
-    """What the FMU says at a communication point; coefficients of the inputs in input."""
+    """The FMU's values at a communication point, with the coefficients of the inputs."""
 
     time: float
     state: list
@@ -56,7 +56,7 @@ class Record:
     rows: list = field(default_factory=list)  # states at the communication points
     points: list = field(default_factory=list)
     refusal: str = None
-    unavailable: list = field(default_factory=list)  # messages of derivatives that are refused
+    unavailable: list = field(default_factory=list)  # messages of failed derivatives
     wrong: str = None
 
 
@@ -104,7 +104,7 @@ def read_point(record, instance, system, step, time):
 
 
 def take_step(record, instance, system, step, states):
-    """One step, or twice the same where the plan rewinds."""
+    """Take one step, or the same step twice if the plan rewinds."""
     length = step.end - step.time
     saved = instance.fmu.getFMUstate() if step.action.rewind else None
     instance.fmu.doStep(step.time, length)
@@ -157,7 +157,7 @@ def in_child(pipe, system, folder):
 
 
 def simulate_apart(system, folder, time_limit):
-    """The Record; raises Wrong for a crash or a hang."""
+    """Return the Record; raise Wrong for a crash or a hang."""
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     child = context.Process(target=in_child, args=(theirs, system, Path(folder)))

@@ -1,4 +1,4 @@
-"""What moves: kinetic energies with a regular mass matrix, by particles, bodies and <kinetic> terms."""
+"""Coordinates with inertia: kinetic energies with a regular mass matrix, by particles, bodies and <kinetic> terms."""
 
 from .draw import cos, sin, smooth
 from .expressions import name, node
@@ -8,7 +8,7 @@ time = name("time")
 
 
 def coordinate(draw, start=None, rate=None):
-    """Many start at a symmetric place with zeros."""
+    """Add a coordinate; many start at symmetric positions with zeros."""
     system = draw.system
     i = len(system.coordinates) + 1
     symmetric = draw.choice([(0.0, 1.0), (0.0, 0.0), (1.0, 0.0), None, None, None, None, None])
@@ -72,7 +72,7 @@ def double_pendulum(draw):
 
 
 def spherical(draw):
-    """Away from the pole."""
+    """Spherical coordinates, away from the pole."""
     polar_angle, _ = coordinate(draw, start=draw.value(1, 2), rate=draw.value(-0.3, 0.3))
     azimuth, _ = coordinate(draw, rate=draw.value(0.5, 1.2))
     r = draw.quantity(0.7, 1.3)
@@ -95,7 +95,7 @@ def hinged_body(draw):
 
 
 def kinetic(draw):
-    """Positive definite by its diagonal."""
+    """Kinetic energy that is positive definite by its diagonal."""
     pairs = [coordinate(draw) for _ in range(draw.whole(1, 3))]
     for q, v in pairs:
         draw.system.kinetic.append((draw.quantity(1, 2) + 0.3 * sin(draw.choice(pairs)[0]) ** 2) * v**2 / 2)

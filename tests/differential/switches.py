@@ -1,4 +1,4 @@
-"""What switches a system: contacts, stops, dry friction, modes and events, and what of them is known between steps."""
+"""Causes of events: contacts, stops, dry friction, modes and events; and their variables between steps."""
 
 from dataclasses import dataclass, field
 from xml.sax.saxutils import escape, quoteattr
@@ -31,7 +31,7 @@ class Stop:
 
 @dataclass
 class Friction:
-    """On a contact, force and stiction are coefficients."""
+    """Friction; on a contact, force and stiction are coefficients."""
 
     name: str
     velocity: Node
@@ -42,7 +42,7 @@ class Friction:
 
 @dataclass
 class Event:
-    """when: an expression with a direction, or a condition without one. sets: (velocity or mode, its name, value)."""
+    """Event. when: an expression with a direction, or a condition without one; sets: (velocity or mode, its name, value)."""
 
     when: Node
     direction: str
@@ -56,8 +56,8 @@ class Switches:
     frictions: list = field(default_factory=list)
     modes: dict = field(default_factory=dict)
     events: list = field(default_factory=list)
-    finest: float = 1e-3  # the narrowest that is there, for the truth
-    are_followed: bool = False  # from event to event
+    finest: float = 1e-3  # smallest width in the system, for the reference
+    are_followed: bool = False  # integrate from event to event
 
     def __bool__(self):
         return self.are_followed

@@ -1,4 +1,4 @@
-"""Random systems that switch: contacts, stops, friction, modes, events and pieces, and narrow hills in all that can switch."""
+"""Random systems with contacts, stops, friction, modes, events and pieces, and narrow hills in all of them."""
 
 import math
 
@@ -43,14 +43,14 @@ def generate(seed, number):
         system.families.add(family.__name__)
     if draw.chance(0.3):
         draw.choice(system.plan.actions).rewind = not system.plan.event_mode
-    # The smallest bounce that can be told is higher then, which decides at tighter tolerances.
+    # Coarse gaps raise the smallest resolvable bounce, which would decide at tighter tolerances.
     if draw.chance(0.2) and system.plan.tolerance >= 1e-8:
         look_from_afar(draw)
     return system
 
 
 def look_from_afar(draw):
-    """Gaps as distances from a point far away, so that their roundings are large beside the state's own."""
+    """Replace gaps by distances from a far point, so that their rounding errors exceed those of the state."""
     for contact in draw.system.switches.contacts:
         far = node(draw.choice([30.0, 500.0]))
         contact.gap = ((contact.gap + far) ** 2 + 1) ** 0.5 - far
@@ -61,7 +61,7 @@ def look_from_afar(draw):
 
 
 def hill(draw, z, centre, length, narrowest=1e-5):
-    """0 far away, 1 at the centre; its width."""
+    """A function that is 0 far away and 1 at the centre; and its width."""
     system, exact = draw.system, node(centre)
     w = draw.logarithmic(narrowest, 0.3) * min(1.0, length)
     width = node(w)
@@ -92,7 +92,7 @@ def hill(draw, z, centre, length, narrowest=1e-5):
 
 
 def any_hill(draw, narrowest=1e-5):
-    """In time or along a coordinate: (value, width, whether it is in time)."""
+    """A hill in time or along a coordinate: (value, width, True if in time)."""
     system, plan = draw.system, draw.system.plan
     if draw.chance(0.5):
         centre = draw.value(plan.start_time + 0.05 * plan.length, plan.start_time + 0.95 * plan.length)
@@ -138,7 +138,7 @@ def pulse_event(draw, value, w, in_time):
 
 
 def pulse_gap(draw, value, w, in_time):
-    """What moves against a coordinate for a moment, or stands in its way."""
+    """A gap that moves against a coordinate for a short time, or blocks its way."""
     system, c = draw.system, free_coordinate(draw)
     if not in_time:
         value, w = hill(draw, time, draw.value(system.plan.start_time + 0.1, system.plan.start_time + 0.9 * system.plan.length), system.plan.length)
@@ -181,7 +181,7 @@ def pulse_table(draw, value, w, in_time):
     system.forces.append((c.name, strength(draw, w) * function(label, value)))
 
 
-# --- What switches without hills ---
+# --- Events without hills ---
 
 
 def free_coordinate(draw):
@@ -212,7 +212,7 @@ def stop(draw):
 
 
 def contact(draw):
-    """Curved, or moving."""
+    """A curved or moving contact."""
     c = free_coordinate(draw)
     q, shift = name(c.name), draw.value(0.05, 0.7)
     moving = draw.value(0.05, 0.3) * sin(draw.value(1, 8) * (time - node(draw.system.plan.start_time)))
@@ -267,7 +267,7 @@ FAMILIES = {pulse: 6, stop: 3, contact: 3, friction: 3, event: 3, piece: 2}
 
 
 def line(draw):
-    """Masses on a line, which springs hold and a force shakes."""
+    """Masses on a line, held by springs and moved by a force."""
     system = draw.system
     for _ in range(draw.whole(1, 3)):
         q, _ = coordinate(draw)
@@ -292,7 +292,7 @@ def line(draw):
 
 
 def ball(draw):
-    """A disk that spins and bounces, with friction at the ground."""
+    """A disk that spins and bounces, with friction on the ground."""
     system = draw.system
     x, _ = coordinate(draw)
     y, _ = coordinate(draw, start=draw.choice([0.0, 0.3, 1.0]), rate=draw.choice([0.0, 0.0, 0.5]))

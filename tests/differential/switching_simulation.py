@@ -1,4 +1,4 @@
-"""An FMU that switches under its system's plan, by FMI 2.0, by FMI 3.0, or by FMI 3.0 through event mode."""
+"""An FMU with events under its system's plan, by FMI 2.0, by FMI 3.0, or by FMI 3.0 through event mode."""
 
 import fmpy
 from fmpy.fmi1 import FMICallException
@@ -9,7 +9,7 @@ import fmu
 
 from .system import course
 
-EVENT_LIMIT = 100000  # through which the importer goes
+EVENT_LIMIT = 100000  # largest number of events that the importer handles
 
 
 class Built3(fmi3.Instance):
@@ -29,7 +29,7 @@ class Built3(fmi3.Instance):
 
 
 class By2:
-    """What the simulation asks of an importer, by FMI 2.0."""
+    """Importer by FMI 2.0, as the simulation needs it."""
 
     def __init__(self, system, folder):
         from .simulation import Built

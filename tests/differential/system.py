@@ -1,4 +1,4 @@
-"""A random system, how it is written as system.xml, and how it is run."""
+"""A random system, its text as system.xml, and its plan."""
 
 from dataclasses import dataclass, field
 from xml.sax.saxutils import quoteattr, escape
@@ -12,17 +12,17 @@ class Coordinate:
     velocity: str
     start: float
     velocity_start: float
-    acceleration: object = None  # of a driven one
+    acceleration: object = None  # of a driven coordinate
 
     @property
     def part(self):
-        """The name of the part that it belongs to, "" for the system itself."""
+        """Name of the part that contains it, "" for the system itself."""
         return self.name.rpartition(".")[0]
 
 
 @dataclass
 class Body:
-    """A <particle>, or a <body> where angle is given."""
+    """A <particle>, or a <body> if it has an angle."""
 
     name: str
     mass: object
@@ -43,7 +43,7 @@ class Table:
 
 @dataclass
 class Action:
-    """What is done before a communication step: parameters and inputs set, input derivatives by order, a rewind."""
+    """Settings before a communication step: parameters, inputs, input derivatives by order, and a rewind."""
 
     parameters: dict = field(default_factory=dict)
     inputs: dict = field(default_factory=dict)
@@ -55,14 +55,14 @@ class Action:
 class Plan:
     start_time: float
     length: float
-    actions: list  # one a communication step
+    actions: list  # one per communication step
     tolerance: float
-    packed: bool = False  # through the packed FMU
+    packed: bool = False  # simulate the packed FMU
     compiler: str = "gcc"
     unrolled: bool = False  # as users build it, which takes long to compile
     form: str = "statements"  # of the generated code
     fmi: int = 2
-    event_mode: bool = False  # an importer of FMI 3.0 that goes through events
+    event_mode: bool = False  # by an importer of FMI 3.0 that handles events
 
     @property
     def times(self):
@@ -84,7 +84,7 @@ class System:
     forces: list = field(default_factory=list)  # (coordinate's name, expression)
     cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
     constraints: list = field(default_factory=list)
-    driven_velocities: list = field(default_factory=list)  # each less what its acceleration makes of it: 0 at all times
+    driven_velocities: list = field(default_factory=list)  # each minus the integral of its acceleration: 0 at all times
     displacements: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     definitions: dict = field(default_factory=dict)
@@ -110,7 +110,7 @@ class System:
 
     @property
     def columns(self):
-        """What is compared at the communication points."""
+        """Values compared at the communication points."""
         return [*self.states, *self.switches.reals, *self.switches.integers]
 
     @property
@@ -123,7 +123,7 @@ class System:
         return states + ([0.0] if self.work else [])
 
     def expressions(self):
-        """All of which the motion is made."""
+        """All expressions of the motion."""
         for body in self.bodies:
             yield from body.position.values()
             if body.angle is not None:
@@ -141,7 +141,7 @@ class System:
 
     @property
     def parts(self):
-        """Files of included systems by name: an oscillator each, that others pull at."""
+        """Files of included systems by name: one oscillator each, coupled to others."""
         return {
             f"{c.part}.xml": f"""<system name={quoteattr(c.part)}>
   <coordinate name="x" velocity="v" start="{c.start!r}" velocityStart="{c.velocity_start!r}"/>
@@ -191,7 +191,7 @@ class System:
             )
         for body in self.bodies:
             if "." in body.name:
-                continue  # has its own file
+                continue  # it has a file of its own
             if body.angle is None:
                 add("particle", name=body.name, mass=body.mass, **body.position)
             else:
@@ -224,7 +224,7 @@ FACTORIALS = [1, 1, 2, 6]
 
 @dataclass
 class Step:
-    """One communication step: coefficients of the inputs' polynomials from its begin."""
+    """One communication step; inputs are polynomials by their coefficients at its start."""
 
     time: float
     end: float
@@ -233,7 +233,7 @@ class Step:
     inputs: dict
 
     def inputs_at_end(self):
-        """The polynomials' coefficients there."""
+        """Coefficients of the polynomials at the end."""
         step = self.end - self.time
         binomial = lambda n, k: FACTORIALS[n] / FACTORIALS[k] / FACTORIALS[n - k]
         return {
@@ -246,7 +246,7 @@ class Step:
 
 
 def course(system):
-    """The steps of the plan; an input without new values stays where the last step left it."""
+    """The steps of the plan; an input without new values stays at its value at the end of the last step."""
     parameters, inputs = dict(system.parameters), {name: [value] for name, value in system.inputs.items()}
     times = system.plan.times
     for time, end, action in zip(times, times[1:], system.plan.actions):
