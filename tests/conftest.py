@@ -1,11 +1,12 @@
-"""Finds what the build made; every test runs on the packed FMUs."""
+"""Fixtures for the built FMUs, of which every test uses the packed archives, and reports of sizes and times."""
 
 import os
 from collections import Counter
 
 import pytest
 
-# Matrices are small: threads of linear algebra would only wait for each other, and a hundred times as long. Before NumPy looks.
+# Matrices are small, so that threads of linear algebra would wait for each other a hundred times longer than they compute. NumPy reads this
+# at its import.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import fmi3  # noqa: E402
@@ -14,7 +15,7 @@ from linked import sizes  # noqa: E402
 
 
 def pytest_generate_tests(metafunc):
-    """A test with an argument `name` runs for every system, or for those that it names itself."""
+    """Run a test with an argument `name` for every system, unless it lists systems itself."""
     named = any(
         "name" in mark.args[0].replace(" ", "").split(",") for mark in metafunc.definition.iter_markers("parametrize")
     )
@@ -23,11 +24,11 @@ def pytest_generate_tests(metafunc):
 
 
 def processor_seconds():
-    """Of this process and of all that it has waited for, however busy the machine is."""
+    """Processor time of this process and of its finished children, independent of the machine's load."""
     return sum(os.times()[:4])
 
 
-known = 0.0  # when the last report was made
+known = 0.0  # at the last report
 
 
 def pytest_collection_finish():
@@ -44,7 +45,7 @@ def pytest_runtest_makereport():
 
 
 def seconds_of_files(terminalreporter):
-    """What the tests of each file took, with all that they built; the longest first."""
+    """Processor time by file of tests, including builds, in descending order."""
     seconds = Counter()
     for reports in terminalreporter.stats.values():
         for report in reports:
@@ -64,7 +65,7 @@ def pytest_terminal_summary(terminalreporter):
 
 
 def created(kind):
-    """A function that creates instances; they are freed behind it."""
+    """Yield a function that creates instances; free these afterwards."""
     instances = []
 
     def create(name, **options):
@@ -78,11 +79,11 @@ def created(kind):
 
 @pytest.fixture
 def open_fmu():
-    """Creates instances, and frees them after the test."""
+    """Yield a function that creates instances of FMI 2.0, which are freed after the test."""
     yield from created(fmu.Instance)
 
 
 @pytest.fixture
 def opened():
-    """The same for FMI 3."""
+    """The same for FMI 3.0."""
     yield from created(fmi3.Instance)

@@ -1,4 +1,4 @@
-"""What lagc tells of rods, joints and surfaces in <scene>, against what is written in the systems."""
+"""Rods, joints and surfaces that lagc writes to <scene>, against the systems."""
 
 import xml.etree.ElementTree as ElementTree
 
@@ -16,7 +16,7 @@ def scene_of(path, folder):
 
 
 def test_joints_of_a_linkage(tmp_path):
-    """Crank, coupler and rocker of lengths a, b, c on pivots d apart; loopX and loopY are what closes the loop."""
+    """Crank, coupler and rocker of lengths a, b, c on pivots d apart; loopX and loopY close the loop."""
     joints = scene_of(fmu.ROOT / "fmu" / "FourBar" / "system.xml", tmp_path).findall("joint")
     assert {(one.get("of"), one.get("with")): [one.get(name) for name in ("x", "y", "withX", "withY")] for one in joints} == {
         ("crank", None): ["-0.5*a", "0", "0", "0"],
@@ -29,7 +29,7 @@ def test_joints_of_a_linkage(tmp_path):
 
 
 def test_places_of_joints(tmp_path):
-    """Sums of multiples of parameters with what remains; a number where the law is another."""
+    """Linear combinations of parameters plus a constant; a number if the expression is not linear."""
     (tmp_path / "system.xml").write_text(f"""{HEAD}<parameter name="h" start="0.3"/><coordinate name="phi" velocity="omega"/>
   <body name="bar" mass="1" inertia="1" angle="phi" x="h - 2*l + 0.1 + 0.5*l*cos(phi)" y="sqrt(l) + 0.5*l*sin(phi)"/></system>""")
     (joint,) = scene_of(tmp_path / "system.xml", tmp_path).findall("joint")
@@ -38,7 +38,7 @@ def test_places_of_joints(tmp_path):
 
 @pytest.mark.parametrize("constraint, factor", [("sqrt(x^2 + y^2) - l", "-1"), ("(x^2 + y^2 - l^2)/2", "-2"), ("l^2 - x^2 - y^2", "4")])
 def test_a_rod_by_a_constraint(tmp_path, constraint, factor):
-    """Its tension is force*|grad c|, which pulls the ball towards the origin where c grows outwards."""
+    """The tension is force*|grad c|; it pulls the ball towards the origin if c increases outwards."""
     (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="x" velocity="vx" start="2"/><coordinate name="y" velocity="vy"/>
   <particle name="ball" mass="1" x="x" y="y"/><potential>g*y</potential><constraint name="rod">{constraint}</constraint></system>""")
     (rod,) = scene_of(tmp_path / "system.xml", tmp_path).findall("rod")
@@ -46,7 +46,7 @@ def test_a_rod_by_a_constraint(tmp_path, constraint, factor):
 
 
 def test_surfaces(tmp_path):
-    """A slope that is hit at the distance 0.5 from the origin, and a stop of an angle."""
+    """A slope at the distance 0.5 from the origin, and a stop of an angle."""
     (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="x" velocity="vx" start="3"/><coordinate name="y" velocity="vy"/>
   <coordinate name="phi" velocity="omega"/>
   <particle name="ball" mass="1" x="x" y="y"/><particle name="bob" mass="1" x="l*sin(phi)" z="-l*cos(phi)"/>
@@ -59,7 +59,7 @@ def test_surfaces(tmp_path):
 
 
 def test_stops_of_what_shapes_draw(tmp_path):
-    """Where the shapes touch is not known: a block would lie in them."""
+    """The contact position of shapes is unknown: a drawn block would intersect them."""
     (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="phi" velocity="omega"/><frame name="arm"><rotate axis="y" angle="phi"/></frame>
   <body name="rod" in="arm" x="l" mass="1" Iyy="1"/><shape name="rodShape" in="arm" type="capsule" radius="0.1" length="l"/>
   <stop coordinate="phi" max="0.5*pi"/></system>""")
@@ -67,7 +67,7 @@ def test_stops_of_what_shapes_draw(tmp_path):
 
 
 def test_stops_of_a_closed_chain(tmp_path):
-    """Each stop is shown where the chain is still closed, which is found by steps that a large system does not take as a whole."""
+    """Each stop is shown at a position where the chain is still closed, found by partial steps, since a large chain allows no full step."""
     inside = ""
     for k in range(20, 0, -1):
         joint = f'<joint axis="{"0 1 0" if k % 2 else "0 0.6 0.8"}" range="-1 1"/><inertial pos="0.1 0 0" mass="4" diaginertia="0.007 0.017 0.017"/>'

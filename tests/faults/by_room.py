@@ -1,7 +1,7 @@
 """
-Which rooms of tests see a fault, beside the test that the list names: scripts/faults --rooms ROOM,... [PLACE IN THE LIST ...]. A room is a
-folder of tests/, or compiler, the tests in C. Leaves build/faults-by-room.csv, to which a later run adds: what only one room sees
-would go unseen without it, and what none sees but the named test hangs on that test.
+List the rooms of tests that detect a fault, beside the test named in faults.py: scripts/faults --rooms ROOM,... [INDEX IN THE LIST ...]. A
+room is a folder of tests/, or compiler, the tests in C. Writes build/faults-by-room.csv, which later runs extend. A fault detected by a
+single room shows what that room alone covers.
 """
 
 import csv
@@ -16,20 +16,20 @@ FAULT = ["file", "right", "wrong"]
 
 
 def build():
-    """Also the systems of tests/systems, where tests look for them."""
+    """Build everything, including the systems of tests/systems in the folder where tests look for them."""
     systems = [f"-DSYSTEMS={TREE / 'tests' / 'systems'}", f"-DTOOLS={TREE / 'build'}"]
     return build_all() and succeeds("scripts/build", "build/test-systems", *systems)
 
 
 def passes(room):
-    """Without what is for a release; ends at the first test that fails."""
+    """True if the room's tests pass, without those for a release; ends at the first failure."""
     if room == "compiler":
         return succeeds("ctest", "--test-dir", "build", "--no-tests=error", "--stop-on-failure")
     return succeeds("build/venv/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", "not release", f"tests/{room}")
 
 
 def outcomes(fault, rooms):
-    """By room; where FMUs cannot be built any more, the build has seen it."""
+    """Outcomes of a fault by room; if FMUs cannot be built, the build detects it."""
     with planted(fault):
         if not build():
             return {"build": "seen"}

@@ -1,6 +1,6 @@
 """
-Small faults, each with the cheapest test that sees it: (what stands in the sources once, what is planted, the test), and the name of
-the function where the text stands in several.
+Small faults, each with the cheapest test that detects it: (the right text, which is unique in the sources, the wrong text, the test), and
+the name of the function if the text is in several.
 """
 
 from places import Fault
@@ -115,7 +115,7 @@ PLACES = [
     ("== NULL ? OUTPUT_ORDER : 1;", "== NULL ? 1 : OUTPUT_ORDER;", pytest(by_hand, "capabilities")),
     ("if (method != NULL && method->uses_library) return;", "if (method != NULL) return;", pytest(by_hand, "capabilities")),
     ("isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time", "0.0", broken("time that begins later"), "start_values"),
-    # The compiler: what it reads
+    # The compiler: reading
     ('require_dimensionless(parser, exponent, "an exponent");', "", broken("unit of an exponent")),
     ("if (functions[operation].units != UNIT_KEPT) return result;", "",
      broken("unit of an angle")),
@@ -156,7 +156,7 @@ PLACES = [
      pytest(by_hand, "values_of_variables"), "write_real"),
     # The drawing
     ("remainder & 1 ? 0xedb88320u : 0u", "remainder & 1 ? 0xedb88320u : 1u", pytest("test_pictures", "png", "DoublePendulum", "BouncingBall", "ElasticPendulum")),
-    # The compiler: programs, and how they are written
+    # The compiler: programs, and writing them
     ("case VELOCITY: return place_in(SPACE_STATE, n + index);", "case VELOCITY: return place_in(SPACE_STATE, index);",
      pytest("test_evaluated_code", "taylor-statements")),
     ('[CUBE] = {"$1 * $1 * $1"', '[CUBE] = {"$1 * $1"', pytest("test_evaluated_code", "taylor-statements")),
@@ -169,7 +169,7 @@ PLACES = [
     ("direction, index - n);", "direction, index);", pytest("test_evaluated_code", "taylor-statements")),
     ("level = larger(level, larger(result->written, result->read));", "level = larger(level, result->written);",
      pytest("test_evaluated_code", "tables")),
-    # What generated code includes
+    # Headers that generated code includes
     ("return (a[k] - middle) / (2.0 * c[0]);", "return (a[k] - middle) / c[0];", ctest("test_series")),
     ("m[i] += (a)[(from) + k - 3] * (b)[2];", "m[i] += (a)[(from) + k - 2] * (b)[2];", ctest("test_series")),
     ("m[i] = k == 2 ? (a)[from] * (b)[1] : 0.0;", "m[i] = (a)[from] * (b)[1];", ctest("test_series")),
@@ -387,7 +387,7 @@ PLACES = [
      pytest("test_switching_systems", "takes_back")),
     ("if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;", "if (found < switches->contact_count) continue;",
      pytest("test_switching_systems", "two_contacts")),
-    # Turns, and slopes of tables
+    # Rotations, and slopes of tables
     ("Node forth = difference_of_products(graph, q[0], rate[i + 1], q[i + 1], rate[0]);", "Node forth = multiply(graph, q[0], rate[i + 1]);",
      pytest("test_frames", "")),
     ("Node around = difference_of_products(graph, q[k + 1], rate[j + 1], q[j + 1], rate[k + 1]);",
@@ -403,7 +403,7 @@ PLACES = [
      pytest("test_tables", "values_and_derivatives")),
     ("slopes_of_lines(surface->x, columns, rows, 1, columns, interpolation, surface->along_y, other);",
      "slopes_of_lines(surface->x, columns, rows, 1, columns, interpolation, surface->along_x, other);", pytest("test_tables_of_two", "values_and_derivatives")),
-    # Where numbers of contacts are coarse
+    # Contacts at the limit of rounding
     ("(has_stopped || is_stuck) && value[gap] < -found_again * noise[gap];", "(has_stopped || is_stuck) && value[gap] < -1e99 * found_again * noise[gap];",
      pytest("test_roundings_of_contacts", "spring")),
     ("return go_nearer(instance, step, progress) ? NULL", "return false && go_nearer(instance, step, progress) ? NULL",
@@ -420,7 +420,7 @@ PLACES = [
     ("static const double rounding = 1e-10;", "static const double rounding = 0.0;", pytest("test_massless", "rounding_leaves")),
     ("case LIMIT_ANGLE: series_limit_angle(limit, u, at(frame->base, check->other_row)); break;", "case LIMIT_ANGLE: break;",
      pytest("test_instructions", "angle_jumps")),
-    # Up to twice the length the bounds have to spare.
+    # The bounds have a margin of up to twice the length.
     ("if (half >= 0.5 * length) return true;", "if (half >= 0.1 * length) return true;", pytest("test_hills", "")),
     ("return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;", "return restitution;",
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
@@ -452,7 +452,7 @@ PLACES = [
     ("return crawls(steps, largest);", "(void)crawls;\n  return (Mask){0};", pytest("test_ensembles", "stiff_run")),
 ]
 
-# Changes that are no faults, since what they leave out follows from the rest: (what stands there, what was planted, why).
+# Equivalent changes, which no test can detect: (the text, the change, the reason).
 EQUIVALENT = [
     ("fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length)", "fmin(fmax(2.0 * half, 0.125 * length), length)",
      "half is then below half the length, so that the window shrinks all the same, and ends when it is sure"),

@@ -1,4 +1,4 @@
-"""Where a fault stands: by its text, or by the name of the function around it where that text stands in several, in whatever file."""
+"""Location of a fault: by its text, or by its text within a function, in any file."""
 
 import functools
 import re
@@ -10,7 +10,7 @@ FOLDERS = ["src", "modelDescription", "include"]
 
 
 class Fault(NamedTuple):
-    right: str  # stands once in all files, but for blanks
+    right: str  # unique in all files, ignoring white space
     wrong: str
     test: tuple
     function: str = None
@@ -24,14 +24,14 @@ class Place(NamedTuple):
 
 @functools.cache
 def sources():
-    """The texts by file, each also without blanks and with the places of all that is none."""
+    """Texts by file, each also without white space."""
     files = sorted(path for folder in FOLDERS for end in "ch" for path in (ROOT / folder).rglob(f"*.{end}"))
     texts = {path.relative_to(ROOT): path.read_text() for path in files}
     return {path: (text, "".join(text.split())) for path, text in texts.items()}
 
 
 def spans(text, function):
-    """Where the definitions of a function begin and end; of all the text, without a function."""
+    """Start and end of the definitions of a function; of the whole text without a function."""
     if function is None:
         return [(0, len(text))]
     found = re.finditer(rf"^[A-Za-z][^\n;]*\b{function}\([^;{{}}]*\)\s*\{{.*?^\}}", text, re.MULTILINE | re.DOTALL)
@@ -51,7 +51,7 @@ def places_of(fault):
 
 
 def find(fault):
-    """The place of a fault. Raises LookupError where there is none, or several."""
+    """The place of a fault. Raises LookupError if there is none, or several."""
     places = list(places_of(fault))
     if len(places) == 1:
         return places[0]

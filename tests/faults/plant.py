@@ -1,6 +1,6 @@
 """
-Plants each fault of faults.py in a copy of the project, builds what its test needs, and runs the test that should see it:
-scripts/faults [PLACE IN THE LIST ...]. Fails where one is not seen, or where these tests fail without a fault.
+Plant each fault of faults.py in a copy of the project, build the targets of its test, and run that test: scripts/faults [INDEX IN THE LIST
+...]. Fails if a fault is not detected, or if these tests fail without a fault.
 """
 
 import os
@@ -43,13 +43,13 @@ def build_all():
 
 
 def build_for(kind, test, keyword="", *systems):
-    """What a test needs: itself, or the compiler, and FMUs. The others stay as they were without a fault."""
+    """Build the targets of a test: itself, or the compiler and FMUs. Other FMUs stay as they were without the fault."""
     targets = [test] if kind == "ctest" else ["lagc", "sweep_runs", *(f"fmu_{version}{name}" for name in systems for version in ("", "3_"))]
     return succeeds("cmake", "--build", "build", "--parallel", str(os.cpu_count()), "--target", *targets)
 
 
 def run(kind, test, keyword="", *_):
-    """PASSES, FAILS, or ABSENT where there is no such test."""
+    """Return PASSES, FAILS, or ABSENT if there is no such test."""
     if kind == "ctest":
         command = ["ctest", "--test-dir", "build", "--no-tests=error", "-R", f"^({test})$"]
     else:
@@ -62,7 +62,7 @@ def run(kind, test, keyword="", *_):
 
 @contextmanager
 def planted(fault):
-    """In the copy."""
+    """Plant the fault in the copy within the context."""
     place = find(fault)
     path = TREE / place.file
     text = path.read_text()
@@ -79,13 +79,13 @@ def outcome(fault):
         is_built = build_for(*test)
         result = run(*test) if is_built else None
     if not is_built:
-        build_for(*test)  # else what could not be made is missing from now on
+        build_for(*test)  # otherwise targets that could not be built would be missing from now on
         return "DOES NOT COMPILE"
     return {PASSES: "NOT SEEN", FAILS: "seen", ABSENT: "HAS NO TEST"}[result]
 
 
 def check_without_faults(tests):
-    """Builds everything once, and runs the tests, those of one kind or module together."""
+    """Build everything once, and run the tests of one kind or module together."""
     if not build_all():
         sys.exit("the project does not build")
     together = [("ctest", "|".join({test for kind, test, *_ in tests if kind == "ctest"}))]

@@ -1,6 +1,6 @@
 """
-Writes what the fuzzer starts from: corpus.py FOLDER. These are the systems of fmu/ and tests/systems/, the
-examples of fmu/README.md, each also with mistakes, and a dictionary of the language's words (words, beside FOLDER).
+Write the fuzzer's initial inputs: corpus.py FOLDER. These are the systems of fmu/ and tests/systems/ and the examples of fmu/README.md,
+each also with mistakes, and a dictionary of the language's words (words, beside FOLDER).
 """
 
 import random
@@ -16,7 +16,7 @@ FUNCTIONS, NAMES, ELEMENTS = (re.findall(rf"^{kind} (\w+)$", WORDS, re.M) for ki
 
 
 def systems():
-    """Names and texts; repetitions are few, and a <linearization> finds its system."""
+    """Yield names and texts; numbers of repetitions are reduced, and a <linearization> finds its system."""
     for path in sorted([*(ROOT / "fmu").glob("*/system.xml"), *(ROOT / "tests" / "systems").glob("*/system.xml")]):
         text = re.sub(r'(<constant name="\w+" value=")\d+"', r'\g<1>3"', path.read_text())
         yield path.parent.name, text.replace('of="..', f'of="{ROOT / "fmu"}')

@@ -1,4 +1,4 @@
-"""Writes what the fuzzer of meshes starts from: meshes.py FOLDER. A cube in each form, behind the byte that says which."""
+"""Write the initial inputs of the fuzzer of meshes: meshes.py FOLDER. A cube in each format, after the byte that selects the format."""
 
 import struct
 import sys

@@ -93,7 +93,7 @@ def bicycle():
 def test_a_bicycle_rights_itself(bicycle, command, tmp_path):
     """
     Eigenvalues of J. P. Meijaard, J. M. Papadopoulos, A. Ruina, A. L. Schwab: Linearized dynamics equations for the balance and steer of a
-    bicycle, 2007. Each wheel is one line of the XML; the linearization moves coordinates whose start is fixed.
+    bicycle, 2007. Each wheel's contact is one <joint>; the linearization moves coordinates whose start is fixed.
     """
     benchmark = {3: [1.70675605663975 + 2.31582447384325j, -2.63366137253667, -10.3510146724592], 5: [-0.77534188219585 + 4.46486771378823j, -0.32286642900409, -14.0783896927982]}
     for v, expected in benchmark.items():
