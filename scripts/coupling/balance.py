@@ -1,6 +1,8 @@
 """
-The pendulum on its cart, held upright: gains from the linearization by LQR, then the same coupled system by a short
-FMPy script, by FMPy's SSP player and by libcosim, leaning at first or struck. Leaves a CSV, a plot and an animation.
+Stabilize the pendulum on its cart by state feedback, in several co-simulation masters.
+
+The gains are those of the linear-quadratic regulator for lagc's linearization. The coupled system runs in a short FMPy script, in FMPy's SSP player
+and in libcosim, from a tilted start and after an impulse. Writes a CSV, a plot and an animation.
 """
 
 import re
@@ -36,7 +38,7 @@ STARTS = {"leaning": dict(theta=0.2, omega=0.0), "struck": dict(theta=0.0, omega
 
 
 def linearization():
-    """A and B of the cart, upright, as numbers from lagc."""
+    """Return A and B of the upright cart, from `lagc --linearize`."""
     words = [ROOT / "build/bin/lagc", "--linearize", ROOT / "fmu/InvertedPendulumCart/system.xml", "--at", "theta=0"]
     text = subprocess.run(words, capture_output=True, text=True, check=True).stdout
     numbers = text[text.index("\nat ") :]
@@ -45,7 +47,11 @@ def linearization():
 
 
 def lqr_gains():
-    """The gains that minimize the integral of 10 x^2 + 100 theta^2 + v^2 + omega^2 + F^2."""
+    """
+    Return the gains that minimize the integral of 10 x^2 + 100 theta^2 + v^2 + omega^2 + F^2.
+
+    The continuous algebraic Riccati equation A'P + PA - P B R^-1 B' P + Q = 0 gives the gain R^-1 B' P.
+    """
     A, B = linearization()
     Q, R = np.diag([10.0, 100.0, 1.0, 1.0]), np.array([[1.0]])
     gains = np.linalg.solve(R, B.T @ solve_continuous_are(A, B, Q, R))[0]
@@ -62,12 +68,12 @@ def gains_of_ssp():
 
 
 def by_fmpy_script(start, gains, step, controller=None, push=None):
-    """Time and states in rows. The feedback sees the states of the beginning of the step; push(t) adds to its force."""
+    """Return rows of time and states. The feedback gets the states at the start of the step; push(t) is added to its force."""
     cart, feedback = Slave(FMUS / "InvertedPendulumCart.fmu", **start), Slave(controller or FMUS / "StateFeedback.fmu", **gains)
     rows = [[0.0, *cart.get(*STATES)]]
     for k in range(1, round(END / step) + 1):
         feedback.set(**dict(zip(STATES, rows[-1][1:])))
-        feedback.step_to(k * step)  # foreign FMUs may compute their outputs in doStep alone
+        feedback.step_to(k * step)  # FMUs of other tools may compute their outputs in doStep only
         cart.set(F=feedback.get("F") + (push(cart.time) if push else 0.0))
         cart.step_to(k * step)
         rows.append([cart.time, *cart.get(*STATES)])
@@ -75,13 +81,13 @@ def by_fmpy_script(start, gains, step, controller=None, push=None):
 
 
 def by_fmpy_ssp(start, gains, step):
-    """FMPy's player does not read the parameters in the SSP, and starts with inputs of 0."""
+    """Return rows of time and states by FMPy's player, which ignores the parameters in the SSP and starts with inputs of 0."""
     values = [("cart", start), ("feedback", gains)]
     parameters = [Parameter(name=f"{component}.{name}", type="Real", value=str(value))
                   for component, group in values for name, value in group.items()]  # fmt: skip
     parameter_set = ParameterSet(name="start", parameters=parameters)
     result = simulate_ssp(SSP, stop_time=END - step / 2, step_size=step, parameter_set=parameter_set)
-    columns = [result["time"] + step, *(result[f"cart.{state}"] for state in STATES)]  # its rows are a step late
+    columns = [result["time"] + step, *(result[f"cart.{state}"] for state in STATES)]  # its rows have the time of the step's start
     return np.array(columns).T
 
 
@@ -110,7 +116,7 @@ def by_libcosim(start, gains, step):
 
 def draw(runs, path):
     figure, axes = plt.subplots(2, sharex=True, figsize=(8, 5))
-    # Two runs are one until the push: a broad pale line stays visible below a narrow dark one.
+    # Two runs coincide until the push: a wide pale line stays visible below a narrow dark one.
     styles = [dict(linewidth=5, color="#9ecae1"), dict(linewidth=1.8, color="#f4a261"), dict(linewidth=1.5, color="#1b4332", linestyle="--")]
     for (name, rows), style in zip(runs.items(), styles):
         for axis, column in zip(axes, (1, 2)):
@@ -127,7 +133,7 @@ def draw(runs, path):
 
 
 def animate(rows, path, length=0.5):
-    """Twenty frames a second of the cart and its rod."""
+    """Write an animation of the cart and its rod, at 20 frames per second."""
     frames = rows[:: max(1, round(0.05 / (rows[1, 0] - rows[0, 0])))][:121]
     figure, axis = plt.subplots(figsize=(6, 2.6))
     axis.set_aspect("equal")

@@ -1,6 +1,7 @@
 """
-FMUs and masters of others: the cart balanced by a controller that PythonFMU builds, under FMPy, libcosim and ecos; the
-same by our StateFeedback. Prints what worked.
+Stabilize the cart by a controller of PythonFMU, and by this project's StateFeedback, in the masters FMPy, libcosim and ecos.
+
+Prints for each combination whether the pendulum is balanced.
 """
 
 import subprocess
@@ -17,7 +18,7 @@ FOLDER = ROOT / "build" / "foreign"
 
 
 def python_controller():
-    """The FMU that PythonFMU makes of python_controller.py."""
+    """Build the FMU of python_controller.py with PythonFMU; return its path."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     script = ROOT / "scripts" / "coupling" / "python_controller.py"
     words = [sys.executable, "-m", "pythonfmu", "build", "-f", script, "-d", FOLDER]
@@ -78,7 +79,7 @@ def main():
         for name, controller in controllers.items():
             try:
                 states = run(controller, gains)
-            except Exception as problem:  # whatever a foreign program does, the others are tried
+            except Exception as problem:  # any failure of one program must not stop the others
                 print(f"{master:9} {name:24} failed: {problem!r}")
                 continue
             balanced = np.max(np.abs(states)) < 1e-2

@@ -1,12 +1,14 @@
 """
-A cart and a pendulum, split at the hinge: the cart takes the force H of the rod and gives its acceleration a, the pendulum takes a
-and gives H. Both have direct feedthrough, so that each communication point is an algebraic loop:
+Couple a cart and a pendulum that are split at the hinge.
+
+The input of the cart is the force H of the rod, and its output the acceleration a; the pendulum has the input a and the output H. Both have direct
+feedthrough, so that each communication point is an algebraic loop:
 
     H = h(theta, omega) - m sin(theta)^2 a,    M a = H
 
-The slope of one turn through it is -m sin(theta)^2 / M. Schemes that do not solve the loop, or solve it by fixed point, have a limit
-of m / M that no shorter step moves (R. Kuebler, W. Schiehlen: Two methods of simulator coupling, 2000); Newton's method takes the
-slope from the FMUs' directional derivatives, and has none.
+The loop gain is -m sin(theta)^2 / M. Schemes without iteration, or with fixed-point iteration, converge up to a limit of m / M only, whatever the
+step (R. Kuebler, W. Schiehlen: Two methods of simulator coupling, 2000). Newton's method, with the loop gain from the FMUs' directional
+derivatives, has no limit.
 """
 
 import numpy as np
@@ -17,13 +19,13 @@ from coupling.slaves import FMUS, ROOT, Slave
 from html_page import paragraphs, table
 
 PENDULUM = ROOT / "build" / "coupling" / "fmu" / "HingedPendulum.fmu"
-START, END, G = [0.0, 0.0, np.pi / 2, 0.0], 1.0, 9.81  # x, v, theta, omega: the rod starts level, where the slope is m / M
-LARGEST = 1e4  # m/s2: a thousand times those of the motion
-RATIOS = [0.1, 0.5, 0.9, 1.1, 2.0, 10.0]  # m / M
+START, END, G = [0.0, 0.0, np.pi / 2, 0.0], 1.0, 9.81  # x, v, theta, omega: the rod starts horizontal, where the loop gain is -m / M
+LARGEST = 1e4  # m/s2, a thousand times the accelerations of the motion: larger ones mean divergence
+RATIOS = [0.1, 0.5, 0.9, 1.1, 2.0, 10.0]  # of m / M
 
 
 class Hinge(Master):
-    """ParticleCartesian on the x axis as the cart, on the left, and HingedPendulum, on the right."""
+    """A master of the cart, a ParticleCartesian on the x axis (left), and HingedPendulum (right). `now` is (H, a)."""
 
     def __init__(self, M, m, l=0.5):
         self.starts = body_on_axis(M), dict(m=m, l=l, g=G)
@@ -31,7 +33,7 @@ class Hinge(Master):
         self.mobility = self.left.partial("der(vx)", "Fx")
 
     def begin(self, state, past=()):
-        """state: x, v, theta, omega; past: (H, a) of earlier communication points, the latest first."""
+        """Start at the state x, v, theta, omega; `past` has (H, a) at earlier communication points, the latest first."""
         x, v, theta, omega = state
         self.left.restart(**(self.starts[0] | dict(x=x, vx=v)))
         self.right.restart(**(self.starts[1] | dict(theta=theta, omega=omega)))
@@ -40,7 +42,7 @@ class Hinge(Master):
         self.past = list(past)
 
     def slope(self):
-        """Of one turn through the algebraic loop."""
+        """Return the gain of the algebraic loop, dH/da * da/dH."""
         return self.right.partial("H", "a") * self.mobility
 
     def state(self):
@@ -50,7 +52,7 @@ class Hinge(Master):
         return self.now
 
     def swing(self, times, accelerations, end):
-        """Steps the pendulum under the polynomial through these accelerations; its force at the end."""
+        """Step the pendulum with the polynomial through these accelerations; return its force at the end."""
         if not np.max(np.abs(accelerations)) < LARGEST:
             raise Diverged
         push(self.right, "a", derivatives_at_start(times, accelerations), end)
@@ -58,14 +60,14 @@ class Hinge(Master):
         return self.right.get("H")
 
     def drive(self, times, forces, end):
-        """Steps the cart under the polynomial through these forces; its acceleration at the end."""
+        """Step the cart with the polynomial through these forces; return its acceleration at the end."""
         self.start = self.left.time
         push(self.left, "Fx", derivatives_at_start(times, forces), end)
         self.left.set(Fx=extrapolated(end - self.start, times, forces))
         return self.left.get("der(vx)")
 
     def advance(self, times, forces, end):
-        """The cart under the forces, then the pendulum under the acceleration that results."""
+        """Step the cart with the forces, then the pendulum with the resulting acceleration; return the force at the end."""
         acceleration = self.drive(times, forces, end)
         before = [row[1] for row in self.past[: len(times) - 1]]
         force = self.swing(times, [acceleration, *before], end)
@@ -73,24 +75,24 @@ class Hinge(Master):
         return force
 
     def jacobi(self, degree, step):
-        """Both under what is extrapolated; they could run in parallel."""
+        """Step both with extrapolated inputs; they could run in parallel."""
         end = self.left.time + step
         acceleration = self.drive(*self.known(0, degree + 1, step), end)
         self.now = self.swing(*self.known(1, degree + 1, step), end), acceleration
 
     def gauss_seidel(self, degree, step):
-        """The cart under the extrapolated force; the pendulum under the acceleration that results, interpolated."""
+        """Step the cart with the extrapolated force, then the pendulum with the resulting acceleration, interpolated."""
         times, values = self.known(0, degree, step)
         self.advance([step, *times], [extrapolated(step, *self.known(0, degree + 1, step)), *values], self.left.time + step)
 
     def newton(self, degree, step):
-        """With the slope at the start of the step, from which that at its end differs by the order of the step."""
+        """Iterate with the loop gain at the start of the step, which differs from that at the end by O(step)."""
         slope = self.slope()
         self.iterate(degree, step, lambda residual: residual / (1.0 - slope))
 
 
 def exact(M, m, l, state, times):
-    """x, v, theta, omega of the equations of the whole system."""
+    """Return x, v, theta, omega at these times, from the equations of the whole system."""
 
     def rates(t, y):
         sine, cosine = np.sin(y[2]), np.cos(y[2])
@@ -101,7 +103,7 @@ def exact(M, m, l, state, times):
 
 
 def error_of(ratio, scheme, degree, steps):
-    """The largest error of x [m] and theta [rad] at communication points, with M = 1 kg; infinite where the scheme diverges."""
+    """Return the largest error of x (m) and theta (rad) at communication points, with M = 1 kg; infinite if the scheme diverges."""
     try:
         states = Hinge(1.0, ratio).run(scheme, degree, START, END, steps)
     except Diverged:
@@ -111,9 +113,10 @@ def error_of(ratio, scheme, degree, steps):
 
 def theory(scheme, degree):
     """
-    The limit of m / M in steps so short that the rod stays level. An error of the force is multiplied by z in each step:
-    z = -r e(z) for Gauss-Seidel, z^2 = -r e(z)^2 for Jacobi, where e is the extrapolation by a polynomial of this degree from
-    1, 1/z, 1/z^2.
+    Return the limit of r = m / M in the limit of short steps, in which the rod stays horizontal.
+
+    An error of the force is multiplied by z in each step: z = -r e(z) for Gauss-Seidel, z^2 = -r e(z)^2 for Jacobi, where e is the extrapolation
+    by a polynomial of this degree from 1, 1/z, 1/z^2. A scheme is stable if all |z| <= 1.
     """
     if scheme in ("fixed_point", "newton"):
         return 1.0 if scheme == "fixed_point" else np.inf
@@ -125,7 +128,7 @@ def theory(scheme, degree):
 
 
 def bisected(grows, low, high):
-    """The ratio beyond which errors grow."""
+    """Return the ratio above which errors grow, by bisection of the logarithm."""
     while high / low > 1.01:
         middle = np.sqrt(low * high)
         low, high = (low, middle) if grows(middle) else (middle, high)
@@ -133,7 +136,7 @@ def bisected(grows, low, high):
 
 
 def limit(scheme, degree):
-    """The limit of m / M as it is found, by steps of 1e-5 s from a force that is wrong by a thousandth; infinite where there is none."""
+    """Return the observed limit of m / M, by steps of 1e-5 s from a force with an error of 1e-3; infinite if there is none."""
 
     def grows(ratio):
         master = Hinge(1.0, ratio)
@@ -152,7 +155,7 @@ def limit(scheme, degree):
 
 
 def sections():
-    """Of the page on coupling: what the two FMUs are, and the table."""
+    """Return head and rows of the table, and the section of the page on coupling."""
     text = lambda number: f"{number:.3g}" if np.isfinite(number) else "none"
     errors = lambda *scheme: ["diverges" if np.isinf(e) else f"{e:.1e}" for e in (error_of(ratio, *scheme, 200) for ratio in RATIOS)]
     rows = [[f"{words}, {DEGREES[degree]}", text(theory(scheme, degree)), text(limit(scheme, degree)), *errors(scheme, degree)]

@@ -1,7 +1,9 @@
 """
-A small master for two bodies and a spring between them, each an FMU, with the schemes of co-simulation side by side:
-Jacobi, Gauss-Seidel, and iterated with rollback, by fixed point or by Newton's method. Between communication points
-the force is a polynomial of a chosen degree, which the bodies get as derivatives of their input.
+Implement a small co-simulation master for two bodies and a spring between them, each an FMU.
+
+The schemes are Jacobi, Gauss-Seidel, and iteration with rollback, by fixed point or Newton's method. Between communication points the force is a
+polynomial of a chosen degree, which the bodies get as derivatives of their input (M. Busch: Continuous approximation techniques for
+co-simulation methods, 2016).
 """
 
 import numpy as np
@@ -18,48 +20,52 @@ class Diverged(Exception):
 
 
 def polynomial(times, values):
-    """The coefficients, that of order 0 first, of the polynomial through the points (times, values)."""
+    """Return the coefficients, in ascending order, of the polynomial through the points (times, values)."""
     return np.linalg.solve(np.vander(times, increasing=True), values)
 
 
 def derivatives_at_start(times, values):
-    """Value and derivatives at time 0 of the polynomial through the points (times, values)."""
+    """Return value and derivatives at time 0 of the polynomial through the points (times, values)."""
     coefficients = polynomial(times, values)
     return coefficients * [1.0, 1.0, 2.0, 6.0][: len(coefficients)]
 
 
 def extrapolated(time, times, values):
-    """The polynomial through the points (times, values), at another time."""
+    """Evaluate the polynomial through the points (times, values) at another time."""
     return np.polynomial.polynomial.polyval(time, polynomial(times, values))
 
 
 def push(body, name, derivatives, end):
-    """Steps a body with a polynomial as an input."""
+    """Step a body to `end`, with a polynomial input, given by value and derivatives."""
     body.set(**{name: derivatives[0]})
     body.set_derivatives(name, derivatives[1:])
     body.step_to(end)
 
 
 def body_on_axis(m, kx=0.0):
-    """Start values of a ParticleCartesian that moves along x alone, on a spring of its own."""
+    """Return start values of a ParticleCartesian that moves along x only, on its own spring of stiffness kx."""
     return dict(m=m, kx=kx, ky=0.0, kz=0.0, g=0.0, x=0.0, y=0.0, z=0.0, vx=0.0, vy=0.0, vz=0.0)
 
 
 class Master:
-    """Two ParticleCartesian on the x axis, and a SpringDamper that has no state: force F on the left, -F on the right."""
+    """
+    A master of two ParticleCartesian on the x axis and a SpringDamper without state; the force is F on the left body and -F on the right one.
 
-    iterations = 60  # at most, of one communication step
+    `past` has the observations (F, x2, v2) at the last communication points, the latest first.
+    """
+
+    iterations = 60  # of one communication step at most
 
     def __init__(self, m1, m2, k, c, own=0.0, l0=0.0):
         self.starts = [body_on_axis(m1, own), body_on_axis(m2, own)]
         self.left, self.right = (Slave(FMUS / "ParticleCartesian.fmu", **start) for start in self.starts)
         self.spring = Slave(FMUS / "SpringDamper.fmu", k=k, c=c, l0=l0)
-        # The force by position and velocity of one end, and the acceleration by the force, for Newton's method.
+        # Derivatives for Newton's method: of the force by position and velocity of one end, and of the relative acceleration by the force.
         self.stiffness, self.damping = self.spring.partial("F1", "x1"), self.spring.partial("F1", "v1")
         self.mobility = self.left.partial("der(vx)", "Fx") + self.right.partial("der(vx)", "Fx")
 
     def begin(self, state, past=()):
-        """state: x1, v1, x2, v2; past: (F, x2, v2) of earlier communication points, the latest first."""
+        """Start at the state x1, v1, x2, v2, with the `past` of earlier communication points."""
         for body, start, (x, v) in zip((self.left, self.right), self.starts, (state[:2], state[2:])):
             body.restart(**(start | dict(x=x, vx=v)))
         self.past = [tuple(row) for row in past]
@@ -72,35 +78,35 @@ class Master:
         return self.spring.get("F1")
 
     def advance(self, times, values, end):
-        """Steps both bodies under the polynomial through these forces; the spring's force at the end."""
+        """Step both bodies with the polynomial through these forces; return the spring's force at the end."""
         force = derivatives_at_start(times, values)
         push(self.left, "Fx", force, end)
         push(self.right, "Fx", -force, end)
         return self.force(*self.state())
 
     def observe(self):
-        """What later extrapolations need, the coupling force first."""
+        """Return the observation (F, x2, v2) that later extrapolations need."""
         x1, v1, x2, v2 = self.state()
         return self.force(x1, v1, x2, v2), x2, v2
 
     def known(self, column, count, step):
-        """Times before the step's start and values there of F, x2 or v2: the present, then the past."""
+        """Return the last `count` times, relative to the step's start, and values of F, x2 or v2, the latest first."""
         values = [row[column] for row in self.past[:count]]
         return [-i * step for i in range(len(values))], values
 
     def step(self, scheme, degree, step):
-        """One communication step; remembers what later extrapolations need."""
+        """Take a communication step, and record the observation before it."""
         self.past.insert(0, self.observe())
-        # Where the past is too short to extrapolate from, a step that needs less of it keeps the order.
+        # While the past is too short for the extrapolation, Newton's scheme, which needs one point less, keeps the order.
         getattr(self, scheme if len(self.past) > degree else "newton")(degree, step)
         del self.past[3:]
 
     def jacobi(self, degree, step):
-        """Both bodies under the extrapolated force; they could run in parallel."""
+        """Step both bodies with the extrapolated force; they could run in parallel."""
         self.advance(*self.known(0, degree + 1, step), self.left.time + step)
 
     def gauss_seidel(self, degree, step):
-        """The left body first; the right one under the force that the left one's new place gives, interpolated."""
+        """Step the left body with the extrapolated force, then the right one with the force at the left one's new position, interpolated."""
         end = self.left.time + step
         push(self.left, "Fx", derivatives_at_start(*self.known(0, degree + 1, step)), end)
         ahead = [extrapolated(step, *self.known(column, degree + 1, step)) for column in (1, 2)]
@@ -109,10 +115,15 @@ class Master:
         push(self.right, "Fx", -derivatives_at_start([step, *times], [new, *values]), end)
 
     def fixed_point(self, degree, step):
+        """Iterate the force at the end by fixed point."""
         self.iterate(degree, step, lambda residual: residual)
 
     def newton(self, degree, step):
-        """The force at the end moves the bodies by double integrals of its basis polynomial over their masses."""
+        """
+        Iterate the force at the end by Newton's method.
+
+        A change of this force changes velocities and positions by the first and second integrals of its basis polynomial over the masses.
+        """
         times, values = self.known(0, degree, step)
         basis = derivatives_at_start([step, *times], [1.0, *(0.0 for _ in values)])
         velocity = sum(d * step ** (i + 1) / np.prod(range(1, i + 2)) for i, d in enumerate(basis))
@@ -121,7 +132,7 @@ class Master:
         self.iterate(degree, step, lambda residual: residual / (1.0 - slope))
 
     def iterate(self, degree, step, correction):
-        """Repeats the step from saved states until the coupling force at its end is the one that was assumed."""
+        """Repeat the step from saved states until the force at its end is equal to the assumed one; raise Diverged if that fails."""
         times, values = self.known(0, degree, step)
         new, end = self.past[0][0], self.left.time + step
         for _ in range(self.iterations):
@@ -139,7 +150,7 @@ class Master:
         raise Diverged
 
     def run(self, scheme, degree, state, end, steps):
-        """The states at all communication points."""
+        """Return the states at all communication points."""
         self.begin(state)
         rows = [self.state()]
         for _ in range(steps):

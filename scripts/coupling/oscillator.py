@@ -1,7 +1,8 @@
 """
-The two-mass oscillator, the benchmark of co-simulation: two bodies, a spring and damper between them, three FMUs.
-Error against communication step and run time for each scheme, and how far each stays stable as stiffness and mass
-ratio grow. Leaves build/report/coupling.html with tables as CSV beside it.
+Compare co-simulation schemes for the two-mass oscillator: two bodies with a spring and damper between them, in three FMUs.
+
+Measures the error against communication step and run time, and the stability limit against stiffness and mass ratio. Writes
+build/report/coupling.html, and tables as CSV beside it.
 """
 
 import sys
@@ -32,13 +33,13 @@ STEPS = [20, 40, 80, 160, 320, 640]
 
 
 def exact(m1, m2, k, c, own, state, times):
-    """The linear system's matrix exponential."""
+    """Return the states at these times, by the matrix exponential of the linear system."""
     A = np.array([[0, 1, 0, 0], [-(k + own) / m1, -c / m1, k / m1, c / m1], [0, 0, 0, 1], [k / m2, c / m2, -(k + own) / m2, -c / m2]])
     return np.array([expm(A * t) @ state for t in times])
 
 
 def convergence():
-    """A row (scheme, degree, step, error, seconds, order since the step before) for each run."""
+    """Return a row (scheme, degree, step, error, seconds, order relative to the step before) for each run."""
     rows = []
     master = Master(M1, M2, K, C, OWN)
     for scheme in SCHEMES:
@@ -61,7 +62,7 @@ def convergence():
 
 
 def growth(master, scheme, degree, step):
-    """The spectral radius of one communication step, as a linear map of the states and of the remembered past."""
+    """Return the spectral radius of a communication step, a linear map of the states and the recorded past."""
     size = 4 + 3 * degree
     columns = []
     for unit in np.eye(size):
@@ -75,7 +76,7 @@ def growth(master, scheme, degree, step):
 
 
 def largest_stable_step(master, scheme, degree, omega):
-    """Largest step below which no motion grows, in units of 1/omega; up to 100."""
+    """Return the largest step up to which no motion grows, in units of 1/omega; at most 100."""
     stable = lambda h: growth(master, scheme, degree, h / omega) <= 1.0 + 1e-9
     steps = np.geomspace(1e-3, 100.0, 61)
     last = 0.0
@@ -93,13 +94,13 @@ def largest_stable_step(master, scheme, degree, omega):
 
 
 def limits():
-    """A row (scheme, degree, what grows, its value, largest stable step in s, and in units of 1/omega)."""
+    """Return rows (scheme, degree, varied quantity, its value, largest stable step in s, and in units of 1/omega)."""
     rows = []
     cases = [("stiffness", k, 1.0, k) for k in (1e2, 1e4, 1e6)] + [("mass ratio", ratio, ratio, 1e4) for ratio in (1.0, 10.0, 100.0, 1000.0)]
     for what, value, ratio, k in cases:
         reduced = ratio / (1.0 + ratio)
         omega = np.sqrt(k / reduced)
-        # A damping ratio of 0.2: without any, every explicit scheme grows, however slowly.
+        # A damping ratio of 0.2: without damping all explicit schemes are unstable, if only weakly.
         master = Master(1.0, ratio, k, 0.4 * np.sqrt(k * reduced), 1.0)
         for scheme in SCHEMES:
             for degree in DEGREES:
@@ -109,7 +110,7 @@ def limits():
 
 
 def orders(rows):
-    """The order at the smallest steps, by (scheme, degree)."""
+    """Return the order at the smallest steps, by (scheme, degree)."""
     return {(row[0], row[1]): row[5] for row in rows}
 
 
@@ -118,7 +119,7 @@ def label(scheme, degree):
 
 
 def lines_plot(rows, x, y, texts, title):
-    """A panel for each force over a step, a line for each method."""
+    """Return an SVG with a panel for each degree of the force's polynomial and a line for each scheme."""
     figure, panels = plt.subplots(1, len(DEGREES), sharex=True, sharey=True, figsize=(10, 4.2), layout="constrained")
     for (degree, text), axes in zip(DEGREES.items(), panels):
         for scheme in SCHEMES:

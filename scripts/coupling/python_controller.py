@@ -1,4 +1,4 @@
-"""State feedback for the cart as an FMU written in Python, by PythonFMU."""
+"""Define a state feedback for the cart as an FMU in Python, with PythonFMU."""
 
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 

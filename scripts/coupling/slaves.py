@@ -1,4 +1,4 @@
-"""FMUs as a master sees them: values by name, steps, saved states."""
+"""Wrap co-simulation FMUs for a master: values by name, steps, saved states."""
 
 import tempfile
 from pathlib import Path
@@ -11,10 +11,10 @@ FMUS = ROOT / "build" / "fmu"
 
 
 class Slave:
-    """A co-simulation FMU at a time of its own."""
+    """A co-simulation FMU with its current time."""
 
     def __init__(self, archive, **starts):
-        self.folder = tempfile.TemporaryDirectory()  # goes with the slave
+        self.folder = tempfile.TemporaryDirectory()  # deleted with the slave
         folder = fmpy.extract(archive, self.folder.name)
         description = fmpy.read_model_description(folder)
         self.references = {v.name: v.valueReference for v in description.modelVariables}
@@ -43,13 +43,13 @@ class Slave:
         return values[0] if len(names) == 1 else values
 
     def set_derivatives(self, name, derivatives):
-        """Of an input, from order 1 on, for the step to come."""
+        """Set the derivatives of an input for the next step, from order 1 on."""
         if len(derivatives):
             references = [self.references[name]] * len(derivatives)
             self.fmu.setRealInputDerivatives(references, list(range(1, len(derivatives) + 1)), [float(d) for d in derivatives])
 
     def partial(self, output, known):
-        """The derivative of an output, or of der(...), by a state or an input."""
+        """Return the partial derivative of an output, or of der(STATE), by a state or an input."""
         return self.fmu.getDirectionalDerivative([self.references[output]], [self.references[known]], [1.0])[0]
 
     def step_to(self, target):
@@ -60,7 +60,7 @@ class Slave:
         return self.fmu.getFMUstate(), self.time
 
     def restore(self, saved):
-        """Goes back, and gives up the saved state."""
+        """Restore a saved state, and free it."""
         state, self.time = saved
         self.fmu.setFMUstate(state)
         self.fmu.freeFMUstate(state)

@@ -1,1 +1,1 @@
-"""FMUs in the importers of others: what each makes of every FMU, beside a reference."""
+"""Run all FMUs in the importers of other tools, and compare the results with a reference."""

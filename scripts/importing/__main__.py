@@ -1,8 +1,8 @@
 """
-Simulates every FMU in every importer that is installed, and prints the table of fmu/IMPORTING.md.
+Simulate every FMU in every installed importer, and print the table of fmu/IMPORTING.md.
 
-An FMU counts where the outputs at the end are within BOUND of the reference: FMPy's co-simulation at a tolerance of
-REFERENCE. The error is the largest |value - reference| / (1 + |reference|) of those that count.
+An FMU passes if all outputs at the end are within BOUND = 1e-4 of the reference, FMPy's co-simulation at a tolerance of 1e-10. The error is the
+largest |value - reference| / (1 + |reference|).
 """
 
 import argparse
@@ -20,13 +20,13 @@ from importing import packages, programs
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = {2: ROOT / "build" / "fmu", 3: ROOT / "build" / "fmi3"}
 IMPORTERS = packages.IMPORTERS | programs.IMPORTERS
-END, FAST = 0.5, {"AndrewsSqueezer": 0.02}  # s; its crank turns a thousand times faster than others
-BOUND, REFERENCE = 1e-4, 1e-10
-PATIENCE = 60  # s for one FMU
+END, FAST = 0.5, {"AndrewsSqueezer": 0.02}  # end in s, and ends of FMUs with much faster motion
+BOUND, REFERENCE = 1e-4, 1e-10  # largest error of an FMU that passes; tolerance of the reference
+PATIENCE = 60  # s for one FMU, after which it is stopped
 
 
 def installed():
-    """Version by the name of each importer that is here."""
+    """Return the version of each installed importer by name."""
     found = {}
     for name, (version, _, _) in IMPORTERS.items():
         try:
@@ -37,7 +37,7 @@ def installed():
 
 
 def quietly(sender, run, *arguments):
-    """In a process of its own: sends the values, or what went wrong. Foreign programs print much."""
+    """Run in a child process without output, and send the values, or the message of a failure."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     os.dup2(1, 2)
     try:
@@ -47,7 +47,7 @@ def quietly(sender, run, *arguments):
 
 
 def simulated(run, *arguments):
-    """The values of run, or a sentence."""
+    """Return the values of run(*arguments) in a child process, or the message of a failure."""
     receiver, sender = multiprocessing.Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(target=quietly, args=(sender, run, *arguments))
     process.start()
@@ -63,7 +63,7 @@ def simulated(run, *arguments):
 
 
 def error_of(values, expected):
-    """The relative error, or a sentence."""
+    """Return the relative error, or a message if it is larger than BOUND or there are no values."""
     if isinstance(values, str):
         return values
     if not len(expected):
@@ -73,7 +73,7 @@ def error_of(values, expected):
 
 
 def compare(names, importer, report):
-    """Rows (importer, FMI, kind, FMU, error or sentence) of one importer."""
+    """Return the rows (importer, FMI, kind, FMU, error or message) of one importer; report(text) is called for each failure."""
     _, kinds, run = IMPORTERS[importer]
     rows = []
     for version, kind in kinds:
@@ -89,14 +89,14 @@ def compare(names, importer, report):
 
 @functools.cache
 def reference(name):
-    """Outputs, end, and the outputs at the end, for an FMU."""
+    """Return the names of an FMU's outputs, the end in s, and the reference values of the outputs at the end."""
     archive, end = FOLDERS[2] / f"{name}.fmu", FAST.get(name, END)
     outputs = [v.name for v in fmpy.read_model_description(archive).modelVariables if v.causality == "output"]
     return outputs, end, np.array(packages.fmpy(archive, "CS", end, outputs, REFERENCE), float)
 
 
 def cell(rows):
-    """n of all and the worst error."""
+    """Return the text of a cell: number of FMUs that pass, number of all, and largest error."""
     if not rows:
         return "–"
     errors = [row[4] for row in rows if not isinstance(row[4], str)]
@@ -104,7 +104,7 @@ def cell(rows):
 
 
 def table(rows, versions):
-    """Lines of Markdown."""
+    """Return the lines of the table in Markdown."""
     columns = [(2, "CS"), (3, "CS"), (2, "ME"), (3, "ME")]
     lines = ["| importer | version | " + " | ".join(f"FMI {version} {kind}" for version, kind in columns) + " |", "|---" * 6 + "|"]
     for name, version in versions.items():

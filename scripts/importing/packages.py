@@ -1,10 +1,10 @@
 """
-Importers that are Python packages. Each function simulates one FMU from time 0 to END and returns its outputs at the end:
+Simulate FMUs in importers that are Python packages. Each function simulates one FMU from 0 s on and returns its outputs at the end:
 
     run(archive, kind, end, outputs)
 
-archive: path of the FMU, of either version of FMI; kind: "CS" for co-simulation, "ME" for model exchange; outputs: names.
-Importers of model exchange integrate with the relative tolerance TOLERANCE, masters of co-simulation step by STEP.
+`archive` is the path of an FMU of FMI 2.0 or 3.0; `kind` is "CS" for co-simulation or "ME" for model exchange; `end` is in s; `outputs` are names.
+Importers of model exchange integrate with the relative tolerance TOLERANCE; masters of co-simulation step by STEP.
 """
 
 import tempfile
@@ -12,9 +12,9 @@ from importlib.metadata import version as version_of
 
 import numpy as np
 
-STEP = 0.01
-TOLERANCE = 1e-8
-NANOSECONDS = 10**9  # libcosim counts time in them
+STEP = 0.01  # s
+TOLERANCE = 1e-8  # relative
+NANOSECONDS = 10**9  # of a second, libcosim's unit of time
 
 
 def fmpy(archive, kind, end, outputs, tolerance=None):
@@ -60,7 +60,7 @@ def ecos(archive, kind, end, outputs):
 
 
 def casadi(archive, kind, end, outputs):
-    """By CVODES with the FMU's own Jacobian. CasADi goes through no events, and takes start values as they are in the file."""
+    """Simulate by CVODES with the FMU's Jacobian. CasADi has no events, and does not run the FMU's initialization."""
     import casadi
     import fmpy
 
@@ -82,8 +82,10 @@ def casadi(archive, kind, end, outputs):
 
 def pathsim(archive, kind, end, outputs):
     """
-    By its Runge-Kutta method of order 5 and its search for events. It sets all inputs, so that constants give them their start
-    values. It makes the first step of co-simulation at time 0, so that outputs are those of the next communication point.
+    Simulate by pathsim's Runge-Kutta method of order 5, with event location.
+
+    pathsim sets all inputs, so constants provide their start values. It takes the first co-simulation step at time 0, so outputs belong to the
+    next communication point.
     """
     from pathsim import Connection, Simulation
     from pathsim.blocks import Constant
@@ -103,7 +105,7 @@ def pathsim(archive, kind, end, outputs):
 
 
 def pyfmi(archive, kind, end, outputs):
-    """By CVode of Assimulo in model exchange."""
+    """Simulate by PyFMI; in model exchange by CVode of Assimulo."""
     from pyfmi import load_fmu
 
     model = load_fmu(str(archive), kind=kind, log_level=0)
@@ -116,11 +118,11 @@ def pyfmi(archive, kind, end, outputs):
 
 
 def of(package):
-    """The installed version of a package."""
+    """Return a function that returns the installed version of a package."""
     return lambda: version_of(package)
 
 
-# Name: (installed version, what it reads, function).
+# Name: (function that returns the installed version, supported (version of FMI, kind), function that simulates).
 BOTH = [(2, "CS"), (2, "ME"), (3, "CS"), (3, "ME")]
 IMPORTERS = {
     "FMPy": (of("fmpy"), BOTH, fmpy),

@@ -1,6 +1,7 @@
 """
-Importers that are programs on the PATH: each simulates an FMU and writes a CSV file, of which the last row counts.
-Functions are as in packages.py. Their options are those that their manuals give.
+Simulate FMUs in importers that are programs on the PATH, with functions as in packages.py.
+
+Each program writes a CSV file, whose last row has the results. The options are those of the programs' manuals.
 """
 
 import csv
@@ -14,7 +15,7 @@ from importing.packages import BOTH, STEP, TOLERANCE
 
 
 def last_row(path, delimiter=","):
-    """The last values by the name of the column, without quotes and units."""
+    """Return the values of the last row by the names of columns, without units."""
     with open(path, newline="") as file:
         rows = [row for row in csv.reader(file, delimiter=delimiter) if row]
     names = [re.sub(r"\s*\[[^\]]*\]$", "", name.strip()) for name in rows[0]]
@@ -29,7 +30,7 @@ def call(*words, cwd):
 
 
 def values_of(row, outputs):
-    """Of a row whose names may have the path of the FMU before them, as model.root.fmu.x."""
+    """Return the outputs from a row, whose names may have the path of the FMU as a prefix, such as model.root.fmu.x."""
     found = []
     for output in outputs:
         names = [name for name in row if name == output or name.endswith("." + output)]
@@ -38,7 +39,11 @@ def values_of(row, outputs):
 
 
 def by_program(words_of, file="out.csv", delimiter=","):
-    """A function as in packages.py. words_of(archive, kind, end, step, folder): the command, called in a folder where it leaves the file."""
+    """
+    Return a function as in packages.py that runs a program.
+
+    words_of(archive, kind, end, step, folder) returns its command; it is run in the folder, where it writes `file`.
+    """
 
     def run(archive, kind, end, outputs):
         with tempfile.TemporaryDirectory() as folder:
@@ -62,7 +67,7 @@ def omsimulator(archive, kind, end, step, folder):
 
 @by_program
 def fmi4c(archive, kind, end, step, folder):
-    """By fmi4ctest, whose method for model exchange is Euler's, of order 1."""
+    """Return the command of fmi4ctest, which uses the explicit Euler method in model exchange."""
     return "fmi4ctest", "-m", kind, "-s", end, "-h", step, "-o", "out.csv", archive
 
 
@@ -90,7 +95,7 @@ mastersim = by_program(project_of_mastersim, "project/results/values.csv", "\t")
 
 
 def on_path(program):
-    """The version that a program prints, where it is on the PATH."""
+    """Return a function that returns the version of a program; it raises ModuleNotFoundError if the program is not on the PATH."""
 
     def version():
         if shutil.which(program) is None:

@@ -1,4 +1,4 @@
-"""What scripts/optimize prints: motions in least time and controllers in closed loop, each with a CSV and a plot."""
+"""Compute time-optimal motions, and controllers in closed loop, each with a CSV and a plot; for scripts/optimize."""
 
 import sys
 import tempfile
@@ -23,7 +23,7 @@ from scripts.whole_files import write_whole
 
 BUILD = Path(__file__).resolve().parent.parent.parent / "build"
 FOLDER = BUILD / "results"
-CONTROL = "control"  # the task that is none of those in least time
+CONTROL = "control"  # the task of the controllers; all others are time-optimal motions
 COLORS = plt.rcParams["axes.prop_cycle"].by_key()["color"]
 
 
@@ -33,13 +33,13 @@ def archive(task):
 
 
 def write_motion(path, task, motion, played):
-    """A row for each end of an interval, with the inputs from there on."""
+    """Write a row for each boundary of an interval, with the inputs of the interval that follows."""
     header, inputs = ["time", *task.inputs, *task.states, *(f"{name} played back" for name in task.states)], [*motion.inputs, motion.inputs[-1]]
     write_csv(path, header, ([now, *values, *states, *again] for now, values, states, again in zip(motion.times, inputs, motion.states, played)))
 
 
 def plot(path, task, motion, played):
-    """The coordinates, as they were found and as the FMU plays them back, and the inputs as shares of their bounds."""
+    """Plot the optimal coordinates, those of the FMU with the optimal inputs, and the inputs relative to their bounds."""
     figure, (places, inputs) = plt.subplots(2, sharex=True, figsize=(8, 6.5), layout="constrained", height_ratios=(3, 2))
     for k, name in enumerate(task.states[: len(task.states) // 2]):
         places.plot(motion.times, motion.states[:, k], color=COLORS[k], label=name)
@@ -85,7 +85,7 @@ def plot_runs(path, runs):
 
 
 def control(unpacked):
-    """All controllers, on the same noise."""
+    """Run all controllers with the same noise."""
     plant = plant_of(unpacked)
     runs = {name: run(unpacked, plant, controller(plant)) for name, controller in CONTROLLERS.items()}
     csv_path, plot_path = (FOLDER / f"closed-loop.{kind}" for kind in ("csv", "png"))

@@ -1,6 +1,8 @@
 """
-The cart's pendulum, held upright by a controller at 1 kHz through the co-simulation FMU: its places are measured with noise, its force acts after a
-delay, and is bounded. The controllers know the FMU's linearization alone.
+Stabilize the cart's pendulum by a controller at 1 kHz, through the co-simulation FMU.
+
+Positions are measured with noise; the force is bounded and acts after a delay. The controllers, an LQR and an MPC, know the FMU's linearization
+only, discretized with x(k+1) = a x(k) + b F(k). A Kalman filter estimates the state.
 """
 
 import time
@@ -19,19 +21,20 @@ DELAY = 3  # periods
 NOISE = np.array([5e-4, 2e-3])  # standard deviations of the measured x (m) and theta (rad)
 FORCE, TRACK = CART.strength[0], 0.28  # N and m
 START = np.array([0.2, 0.1, 0.0, 0.0])
-WEIGHTS, EFFORT = np.diag([20.0, 10.0, 1.0, 1.0]), 0.02
-LEAVING = 1e3  # the cost of leaving the track by 1 m, squared, in units of that of forces
-BLOCKS, BLOCK = 20, 40  # of the prediction: so many forces, each for so many periods
+WEIGHTS, EFFORT = np.diag([20.0, 10.0, 1.0, 1.0]), 0.02  # weights of the squared states (x, theta, v, omega) and of the squared force
+LEAVING = 1e3  # weight of the squared distance beyond the track in m, relative to the scaled weight of forces
+BLOCKS, BLOCK = 20, 40  # of the prediction horizon: number of constant forces, and periods of each
 
 
 class Plant(NamedTuple):
-    """x' = a x + b F over a period, with the forces that are on their way as further states; the last of them acts."""
+    """The discrete plant x(k+1) = a x(k) + b F(k); states 0 to 3 are the cart's, and the others the delayed forces, of which state 4 acts."""
 
     a: np.ndarray
     b: np.ndarray
 
 
 def plant_of(unpacked):
+    """Return the Plant of the FMU's linearization in upright position, discretized exactly by the matrix exponential."""
     slopes = slopes_of(unpacked, CART)
     states, force = casadi.MX.sym("x", 4), casadi.MX.sym("F")
     matrix = casadi.Function("matrix", [states, force], [casadi.horzcat(casadi.jacobian(slopes(states, force), states), casadi.jacobian(slopes(states, force), force))])
@@ -47,7 +50,7 @@ def plant_of(unpacked):
 
 
 def regulator_of(plant):
-    """The gain of the linear-quadratic regulator, and the cost of all that is to come."""
+    """Return the gain of the linear-quadratic regulator, the matrix of its cost-to-go, and the weights of the states."""
     weights = np.zeros_like(plant.a)
     weights[:4, :4] = PERIOD * WEIGHTS
     cost = solve_discrete_are(plant.a, plant.b, weights, np.array([[PERIOD * EFFORT]]))
@@ -56,7 +59,7 @@ def regulator_of(plant):
 
 
 class Regulator:
-    """LQR: a linear law, cut at the bounds of the force."""
+    """LQR: linear state feedback, saturated at the bounds of the force."""
 
     def __init__(self, plant):
         self.gain, _, _ = regulator_of(plant)
@@ -66,7 +69,11 @@ class Regulator:
 
 
 class Predictor:
-    """MPC: the forces of some blocks of time that cost least, within the bounds of force and track, of which the first is taken."""
+    """
+    MPC: minimizes the cost over BLOCKS constant forces within the bounds of force and track, and applies the first one.
+
+    The states are eliminated, which leaves a dense quadratic program in the forces; LQR's cost-to-go is the terminal cost. DAQP solves it.
+    """
 
     def __init__(self, plant):
         _, cost, weights = regulator_of(plant)
@@ -81,7 +88,7 @@ class Predictor:
             inner += power.T @ stage @ power
             power = whole @ power
         a, b = power[:count, :count], power[:count, count:]
-        free, forced = np.eye(count), np.zeros((count, BLOCKS))  # the state at the beginning of a block, of the first state and of the forces
+        free, forced = np.eye(count), np.zeros((count, BLOCKS))  # derivatives of the state at a block's start by the first state and by the forces
         hessian, mixed, self.track_free, self.track_forced = np.zeros((BLOCKS, BLOCKS)), np.zeros((BLOCKS, count)), [], []
         for k in range(BLOCKS):
             chosen = np.zeros((1, BLOCKS))
@@ -90,12 +97,12 @@ class Predictor:
             hessian += left.T @ inner @ left
             mixed += left.T @ inner @ right
             free, forced = a @ free, a @ forced + b @ chosen
-            self.track_free.append(free[0])  # behind the block
+            self.track_free.append(free[0])  # of x at the block's end
             self.track_forced.append(forced[0])
         hessian += forced.T @ cost @ forced
         size = hessian.diagonal().max()
         self.mixed = np.vstack([mixed + forced.T @ cost @ free, np.zeros((1, count))]) / size
-        # The last unknown is by how much the cart may leave its track, which costs much: there is a solution always.
+        # The last unknown is a slack variable, the distance beyond the track, with a large weight: the problem is always feasible.
         self.hessian = np.zeros((BLOCKS + 1, BLOCKS + 1))
         self.hessian[:BLOCKS, :BLOCKS], self.hessian[BLOCKS, BLOCKS] = (hessian + hessian.T) / (2 * size), LEAVING
         self.track_free, left = np.array(self.track_free), np.array(self.track_forced)
@@ -112,7 +119,7 @@ class Predictor:
 
 
 class Observer:
-    """Kalman's filter of the measured places, at rest; it knows the forces."""
+    """A stationary Kalman filter of the measured positions, with known forces."""
 
     def __init__(self, plant, start):
         self.plant, self.look = plant, np.eye(2, len(plant.a))
@@ -131,14 +138,16 @@ class Observer:
 
 
 class Run(NamedTuple):
-    times: np.ndarray
-    states: np.ndarray  # as they are, a row for each period
-    forces: np.ndarray  # as the controller wishes them
-    seconds: np.ndarray  # that observer and controller took
+    """A closed-loop run, with a row for each period."""
+
+    times: np.ndarray  # s
+    states: np.ndarray  # true states, without noise
+    forces: np.ndarray  # requested by the controller, in N
+    seconds: np.ndarray  # computing time of observer and controller
 
 
 def run(unpacked, plant, controller, duration=5.0, seed=1):
-    """The nonlinear FMU, measured and driven."""
+    """Run the nonlinear FMU in closed loop with a controller; return the Run."""
     description = fmpy.read_model_description(str(unpacked))
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
     cart = FMU2Slave(guid=description.guid, unzipDirectory=str(unpacked), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="cart")

@@ -1,6 +1,10 @@
 """
-Motions in least time, by collocation: CasADi reads the FMU, IPOPT solves the collocated problem with the FMU's derivatives, and the
-co-simulation FMU plays the inputs back.
+Compute time-optimal motions by direct collocation.
+
+The problem is min T subject to x' = f(x, u), x(0) = start, x(T) = end, and bounds on inputs and states. The inputs are constant in each interval, and
+the states polynomials that satisfy the equations at Radau points, which gives an order of 2 points - 1 at the intervals' ends (L. Biegler: Nonlinear
+programming, 2010, chapter 10). IPOPT solves the nonlinear program; CasADi gets f and its derivatives from the FMU. The co-simulation FMU with
+these inputs verifies the motion.
 """
 
 from typing import NamedTuple
@@ -10,35 +14,37 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
-LONGEST = 10.0  # s
+LONGEST = 10.0  # s, upper bound of T
 
 
 class Task(NamedTuple):
-    """From rest to rest, and back to the same inputs' bounds."""
+    """A time-optimal motion between two states, with bounded inputs."""
 
-    fmu: str  # its name
-    states: list  # names, and of the inputs
-    inputs: list
-    start: np.ndarray
-    end: np.ndarray
-    strength: np.ndarray  # the bounds of the inputs, on both sides
-    reach: dict  # by the number of a state: its bounds, on both sides
-    duration: float  # a guess, in s
-    swings: float  # how often the inputs change their sign, as a guess
+    fmu: str  # name of the FMU
+    states: list  # names
+    inputs: list  # names
+    start: np.ndarray  # states
+    end: np.ndarray  # states
+    strength: np.ndarray  # bounds of |input|
+    reach: dict  # bounds of |state|, by the index of the state
+    duration: float  # initial guess of T, in s
+    swings: float  # periods of a sine, the initial guess of the inputs
     intervals: int  # of constant inputs
-    points: int  # Radau points in each, so that the error at its end is of order 2 points - 1
-    has_hessian: bool  # by differences of the FMU's derivatives; else IPOPT gathers it, which is cheaper with many states
+    points: int  # Radau points in each interval
+    has_hessian: bool  # True for a Hessian by differences of the FMU's derivatives; False for IPOPT's limited-memory BFGS, cheaper with many states
 
 
 class Motion(NamedTuple):
-    times: np.ndarray  # s, of the intervals' ends
-    states: np.ndarray  # a row for each of them
+    """A time-optimal motion."""
+
+    times: np.ndarray  # of the intervals' boundaries, in s
+    states: np.ndarray  # a row for each boundary
     inputs: np.ndarray  # a row for each interval
     iterations: int  # of IPOPT
 
 
 def slopes_of(unpacked, task):
-    """d state / dt of states and inputs, evaluated by the FMU, with derivatives."""
+    """Return the CasADi function f(x, u) of the FMU, with derivatives; x and u are in the order of the task."""
     builder = casadi.DaeBuilder("system", str(unpacked), {})
     states, inputs = casadi.MX.sym("x", len(task.states)), casadi.MX.sym("u", len(task.inputs))
     inner = casadi.vertcat(*(states[task.states.index(name)] for name in builder.x()))
@@ -48,7 +54,7 @@ def slopes_of(unpacked, task):
 
 
 def _guess(task, taus):
-    """Straight from the start to the end: the states at the intervals' ends and within, and the inputs."""
+    """Return the initial guess: states on a straight line, at the intervals' boundaries and at the Radau points, and sinusoidal inputs."""
     way = lambda share: task.start + share * (task.end - task.start)
     shares = np.arange(task.intervals + 1) / task.intervals
     within = [(k + tau) / task.intervals for k in range(task.intervals) for tau in taus]
@@ -57,7 +63,7 @@ def _guess(task, taus):
 
 
 def least_time(unpacked, task):
-    """The fastest Motion that IPOPT finds."""
+    """Return the time-optimal Motion, a local minimum that IPOPT finds."""
     taus = casadi.collocation_points(task.points, "radau")
     slope_matrix, end_row, _ = casadi.collocation_coeff(taus)
     slopes = slopes_of(unpacked, task).map(task.intervals * task.points)
@@ -90,7 +96,7 @@ def least_time(unpacked, task):
 
 
 def play_back(unpacked, task, motion):
-    """The states at the intervals' ends by the co-simulation FMU, whose inputs are those of each interval."""
+    """Return the states at the intervals' boundaries, simulated by the co-simulation FMU with the inputs of the motion."""
     description = fmpy.read_model_description(str(unpacked))
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
     slave = FMU2Slave(guid=description.guid, unzipDirectory=str(unpacked), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="player")

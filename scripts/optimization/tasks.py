@@ -1,10 +1,10 @@
-"""What is to be done in least time."""
+"""Define the tasks of time-optimal motions."""
 
 import numpy as np
 
 from optimization.collocation import Task
 
-# The pendulum swings up from hanging at rest to standing at rest in the same place; 15 N, a track of 0.8 m.
+# Swing-up of the pendulum, from hanging at rest to upright at rest at the same position, with 15 N on a track of 0.8 m.
 CART = Task(
     fmu="InvertedPendulumCart",
     states=["x", "theta", "v", "omega"],
@@ -19,7 +19,7 @@ CART = Task(
     points=6,
     has_hessian=True,
 )
-# Both rods from hanging to standing, by a motor that could not hold them level.
+# Swing-up of both rods by a motor that is too weak to hold them horizontal.
 DOUBLE_PENDULUM = Task(
     fmu="DrivenDoublePendulum",
     states=["theta1", "theta2", "omega1", "omega2"],
@@ -34,7 +34,7 @@ DOUBLE_PENDULUM = Task(
     points=6,
     has_hessian=True,
 )
-# From pose to pose with the torques that the motors of a PUMA 560 have at their joints (Corke: Robotics, Vision and Control).
+# Motion between two poses, with the maximal joint torques of a PUMA 560 (P. Corke: Robotics, Vision and Control).
 ARM = Task(
     fmu="RobotArm",
     states=[f"{name}[{i}]" for name in "qw" for i in range(1, 7)],

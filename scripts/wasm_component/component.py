@@ -1,4 +1,4 @@
-"""A WebAssembly component around an FMU's module: adapter.c's functions with the types of interface.py, and the resources that hold instances."""
+"""Build a WebAssembly component around an FMU's module: functions of adapter.c with the types of interface.py, and resources for instances."""
 
 import re
 from pathlib import Path
@@ -6,14 +6,14 @@ from pathlib import Path
 from .interface import KINDS, LOG_MESSAGE, PACKAGE, TYPES
 
 ADAPTER = Path(__file__).resolve().parent / "adapter.c"
-MEMORY_PAGES = 128  # of 64 kB, with which the module begins
+MEMORY_PAGES = 128  # initial memory of the module, in pages of 64 kB
 LINK_WORDS = ["-mexec-model=reactor", "-s", "-Wl,--gc-sections", "-Wl,--import-memory", "-Wl,-z,stack-size=1048576",
               f"-Wl,--initial-memory={MEMORY_PAGES * 65536}"]  # fmt: skip
 
-# Holds the memory, since a function of the host that reads it must be there before the module that calls it.
+# A module for the memory alone: functions of the host that read the memory must exist before the module that calls them.
 MEMORY = f'(core module $memory (memory (export "memory") {MEMORY_PAGES}))'
 
-# Makes an instance: the module's address becomes the handle of a resource, or none where it is 0.
+# A module that makes an instance: it wraps the instance's address into the handle of a resource, or returns none if the address is 0.
 MAKER = """
 (core module $make-{kind}
   (import "module" "instantiate" (func $instantiate (param {parameters}) (result i32)))
@@ -28,7 +28,7 @@ MAKER = """
     (call $place)))
 """
 
-# Begins the module's C library.
+# A module that initializes the C library of the FMU's module.
 BEGINNER = """
 (core module $begin (import "module" "_initialize" (func $initialize)) (start $initialize))
 (core instance (instantiate $begin (with "module" (instance $module))))
@@ -36,7 +36,7 @@ BEGINNER = """
 
 
 def split(text):
-    """The parts of "a, b<c, d>" at its outer commas."""
+    """Split a text such as "a, b<c, d>" at its outer commas."""
     parts, depth = [""], 0
     for character in text:
         depth += (character == "<") - (character == ">")
@@ -48,7 +48,7 @@ def split(text):
 
 
 def typed(text, prefix=""):
-    """A type in the text format; names of types begin with $ and the prefix."""
+    """Return a type in the text format; names of types begin with $ and the prefix."""
     if isinstance(text, dict) and "enum" in text:
         return f"(enum {' '.join(map(quoted, text['enum']))})"
     if isinstance(text, dict):
@@ -71,7 +71,7 @@ def parameters_of(parameters, prefix=""):
 
 
 def functions_of(kind):
-    """Each function of a kind of instance: its name in the interface, the name of what adapter.c does for it, parameters, and what comes back."""
+    """Yield each function of a kind of instance: its name in the interface, the name in adapter.c, the parameters, and the result type."""
     resource, content = f"{kind}-instance", KINDS[kind]
     yield f"[static]{resource}.instantiate-{kind}", f"instantiate-{kind}", content["instantiate"], f"option<own<{resource}>>"
     for name, (parameters, result) in content["methods"].items():
@@ -83,12 +83,12 @@ def signature(parameters, result, prefix=""):
 
 
 def types_of(kind):
-    """The types that an interface of a kind offers by name: those of `types` first, which it uses."""
+    """Return the types of a kind's interface by name, those of the interface `types` first."""
     return TYPES | KINDS[kind]["types"]
 
 
 def flat(parameters):
-    """The numbers that a function of a module gets for parameters without options."""
+    """Return the core types of a module's function for these parameters; options are not supported."""
     flat_types = {"string": "i32 i32", "bool": "i32"}
     return " ".join(flat_types.get(kind, "i32 i32") for kind in parameters.values())
 
@@ -101,8 +101,10 @@ def maker(kind):
 
 def naming_component(kind):
     """
-    A component that gives types and functions their names: what is exported may refer to types only as they are exported
-    themselves, so functions come in with the types as they are, and go out with those of the interface.
+    Return the lines of a component that names types and functions.
+
+    Exported functions may only refer to exported types. This component imports functions with plain types, and exports them with the
+    exported types of the interface.
     """
     resource = f"{kind}-instance"
     lines = [f"(component $naming-{kind}"]
@@ -119,7 +121,7 @@ def naming_component(kind):
 
 
 def kind_of_instance(kind):
-    """The resource, its functions and the interface's instance."""
+    """Return the lines of a kind of instance: the resource, its functions, and the instance of the interface."""
     resource = f"{kind}-instance"
     lines = [f"(type ${name} {typed(content)})" for name, content in KINDS[kind]["types"].items()]
     lines.append(f'(type ${resource} (resource (rep i32) (dtor (func $module "free-instance"))))')
@@ -144,7 +146,7 @@ def kind_of_instance(kind):
 
 
 def imports():
-    """Of the host: the types, and the function that takes messages."""
+    """Return the lines of the imports from the host: the types, and the function that receives log messages."""
     lines = [f"(import {quoted(PACKAGE.format('types'))} (instance $types"]
     for name, content in TYPES.items():
         lines.append(f"(type $plain-{name} {typed(content, 'offered-')}) (export {quoted(name)} (type $offered-{name} (eq $plain-{name})))")
@@ -156,7 +158,7 @@ def imports():
 
 
 def component_text():
-    """All of the component, with an empty module in the place of the FMU's, which stands first."""
+    """Return the text of the component, with an empty module, the first one, in place of the FMU's module."""
     lines = ["(component", "(core module $fmu)", *imports(), MEMORY, "(core instance $memory (instantiate $memory))"]
     lines.append('(core func $log-message (canon lower (func $callbacks "log-message") (memory $memory "memory")))')
     lines.append("""(core instance $module (instantiate $fmu (with "env" (instance $memory))
@@ -170,12 +172,12 @@ def component_text():
     return "\n".join([*lines, ")"])
 
 
-# Kinds of sections in a component.
+# Identifiers of sections in a component.
 NAMES, MODULE, COMPONENT = 0, 1, 4
 
 
 def number_in(data, place):
-    """A number of seven bits a byte, the last byte below 128, and the place behind it."""
+    """Decode an unsigned LEB128 number; return it, and the offset after it."""
     value, shift = 0, 0
     while data[place] >= 0x80:
         value, shift, place = value | (data[place] & 0x7F) << shift, shift + 7, place + 1
@@ -183,6 +185,7 @@ def number_in(data, place):
 
 
 def number_as_bytes(value):
+    """Encode an unsigned number as LEB128."""
     low, rest = value & 0x7F, value >> 7
     return bytes([low]) if rest == 0 else bytes([low | 0x80]) + number_as_bytes(rest)
 
@@ -197,7 +200,7 @@ def sections_of(component):
 
 
 def rewritten(content, is_module, module=None):
-    """A component, or a module, without the names of the text format; with another module in the place of a component's first."""
+    """Return a component or module without its name sections; `module`, if given, replaces the first module of a component."""
     parts = [content[:8]]
     for kind, section in sections_of(content):
         if kind == MODULE and not is_module and module is not None:
@@ -210,7 +213,7 @@ def rewritten(content, is_module, module=None):
 
 
 def component_of(module):
-    """The bytes of the component around those of an FMU's module."""
+    """Return the bytes of the component around an FMU's module."""
     from wasmtime import wat2wasm
 
     return rewritten(bytes(wat2wasm(component_text())), False, module)

@@ -1,11 +1,13 @@
 """
-The functions of FMI-LS-WASM's draft, a layer of FMI 3.0 for WebAssembly components, with their types: names, types and their order are those of
-its package fmi:fmi3@3.0.0. Types are written as there: list<f64>, option<f64>, tuple<f64, u32>, result<VALUE, status>.
+Define the functions and types of FMI-LS-WASM, a draft of a layered standard of FMI 3.0 for WebAssembly components.
+
+Names, types and their order are those of the package fmi:fmi3@3.0.0. Types have the syntax of WIT: list<f64>, option<f64>, tuple<f64, u32>,
+result<VALUE, status>.
 """
 
 PACKAGE = "fmi:fmi3/{}@3.0.0"
 
-# Those of the interface `types`; a record's fields have types of their own.
+# Types of the interface `types`, by name.
 TYPES = {
     "value-reference": "u32",
     "status": {"enum": ["ok", "warning", "discard", "error", "fatal"]},
@@ -29,11 +31,11 @@ _REQUESTS = {"requests": "list<tuple<value-reference, u32>>"}
 _NAMES = {"instance-name": "string", "instantiation-token": "string", "visible": "bool", "logging-on": "bool"}
 _NO_SET_BEFORE = {"no-set-fmu-state-prior-to-current-point": "bool"}
 
-# The types of variables: what their functions are called by, and the type of a value.
+# Types of variables, by the suffix of their get and set functions.
 _VALUES = {"float32": "f32", "float64": "f64", "int8": "s8", "int16": "s16", "int32": "s32", "int64": "s64", "uint8": "u8", "uint16": "u16",
            "uint32": "u32", "uint64": "u64", "boolean": "bool", "string": "string", "binary": "list<u8>", "clock": "bool"}  # fmt: skip
 
-# Of both kinds of instances: parameters but for the instance, and the type of what comes back.
+# Methods of both kinds of instances: parameters without the instance, and the result type.
 _COMMON = {
     "set-debug-logging": ({"logging-on": "bool", "categories": "list<string>"}, "status"),
     "enter-initialization-mode": ({"tolerance": "option<f64>", "start-time": "f64", "stop-time": "option<f64>"}, "status"),
@@ -59,7 +61,7 @@ _COMMON = {
     "set-shift-fraction": ({**_REFERENCES, "shifts": "list<interval-fraction>"}, "status"),
 }  # fmt: skip
 
-# Each kind: types of its own, the function that makes an instance, with its parameters, and the methods of one.
+# Kinds of instances: their own types, the parameters of instantiate, and the methods.
 KINDS = {
     "co-simulation": {
         "types": {"do-step-result": {"record": {"last-successful-time": "f64", "event-handling-needed": "bool", "terminate-simulation": "bool",
