@@ -1,4 +1,4 @@
-"""Error against run time, stability and footprint of all FMUs: python -m numerics [--quick]"""
+"""Write the report on error against run time, stability and footprint of all FMUs: python -m numerics [--quick]"""
 
 import argparse
 import importlib.metadata
@@ -34,10 +34,12 @@ FOLDER = ROOT / "build" / "report"
 
 
 class Section(NamedTuple):
-    summary: list  # for the first screen: sentences, and (sentence, items)
+    """A section of the report."""
+
+    summary: list  # for the head of the page: sentences, and pairs (sentence, list of items)
     content: str  # HTML
-    wrong: int = 0  # how many wrong results of our FMUs it found
-    runs: list = []  # for the comparison on the first screen
+    wrong: int = 0  # number of wrong results of FMUs
+    runs: list = []  # overview.Run, for the comparison in the head of the page
 
 
 def machine_section(quick, progress):
@@ -143,7 +145,7 @@ def mechanisms_section(quick, progress):
         measure = problem.levels[0][0]
         points = {method: mechanisms.points_of(samples, problem.system, method, measure) for method in mechanisms.METHODS}
         plots += mechanism_plot(problem.title, mechanisms.text_of(problem, measure), points)
-        names = {"taylor": "FMU"}  # and radau is no program of others
+        names = {"taylor": "FMU"}  # radau has no column, since it is not another program
         runs += [Run("Mechanisms", problem.title, names.get(method, method), *pair) for method, pairs in points.items() for pair in pairs]
     level, times, ratios = slice(0, len(mechanisms.LEVEL)), mechanisms.TIMES, mechanisms.FASTEST
     tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
@@ -252,7 +254,7 @@ SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_s
 
 
 def attempt(title, section, quick, progress):
-    """What fails leaves a sentence in its place, and the sections before it on the disk."""
+    """Return the section; after a failure one with a sentence about it, so that the report continues."""
     try:
         return section(quick, progress)
     except Exception as error:
@@ -261,7 +263,7 @@ def attempt(title, section, quick, progress):
 
 
 def write_page(sections):
-    """sections: by title, those that there are so far."""
+    """Write the page of the sections so far, by title."""
     times = ("Times are the processor's for the doStep loop alone, in a C program, the fastest of several runs; those of Python's packages "
              "include Python, as their users see them, but no loading and no compilation.")  # fmt: skip
     summary = [line for section in sections.values() for line in section.summary]
@@ -272,7 +274,7 @@ def write_page(sections):
 
 
 def main(words=None):
-    """1 where an FMU gave a wrong result; what others' programs or a reference lack is a sentence in the page."""
+    """Write the report; return 1 if an FMU gives a wrong result. Missing programs and references are sentences in the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="compare five systems at few tolerances, in two minutes")
     quick = parser.parse_args(words).quick

@@ -1,4 +1,4 @@
-"""Runs FMUs in a small C program, so that no Python is in the times."""
+"""Run FMUs in a small C program, so that times do not include Python."""
 
 import functools
 import subprocess
@@ -10,25 +10,28 @@ import numpy as np
 from fmu import ROOT
 
 BUILD = ROOT / "build"
-SOLVERS = ["taylor", "erk", "bdf"]  # each has a build of all systems, as have those of numerics.stiff
-POINTS = 100
+SOLVERS = ["taylor", "erk", "bdf"]  # each has a build folder of all systems, as have the methods of numerics.stiff
+POINTS = 100  # recorded communication points of a run
 
 
 @dataclass
 class Stepped:
+    """A run of an FMU."""
+
     seconds: float
-    names: list
+    names: list  # of the recorded variables
     rows: np.ndarray  # a row for each recorded communication point
-    steps: int  # of the solver, 0 where it does not count them
+    steps: int  # of the solver; 0 if the FMU does not count them
     evaluations: int  # of the equations of motion
-    events: int  # that switched it
+    events: int
 
     def columns(self, names):
+        """Return the columns of these variables."""
         return self.rows[:, [self.names.index(name) for name in names]]
 
 
 def folder_of(solver):
-    """The build in which every system has this solver; "shipped" is the system's own."""
+    """Return the build folder in which every system has this solver; "shipped" is the system's own."""
     return BUILD if solver == "shipped" else BUILD / solver
 
 
@@ -38,15 +41,16 @@ def description_of(solver, name):
 
 
 def changing_input(amplitude, k):
-    """The value of an input that changes at every step, in step k; the same as in tests/c/stepping.c."""
+    """Return the value in step k of an input that changes at every step, as in tests/c/stepping.c."""
     return amplitude * (7 * k % 11 - 5) / 5
 
 
 def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, timeout=60, changing=(), importer=False):
     """
-    The time and the states of a simulation; None where the FMU gives up or takes longer than the timeout.
-    changing: (input, amplitude), an input that changes at every step. The points are recorded in a run of their own; without
-    repeats that one is timed, and without points there is none. importer: by CVODE in model exchange in place of the solver.
+    Simulate an FMU; return a Stepped, or None if the FMU fails or takes longer than `timeout` s.
+
+    The points are recorded in a separate run, which is timed if `repeats` is 0, and left out if `points` is 0. `changing` is (input, amplitude) of
+    an input that changes at every step. If `importer`, CVODE integrates the FMU in model exchange.
     """
     description = description_of(solver, name)
     references = {v.name: v.valueReference for v in description.modelVariables}
@@ -73,7 +77,7 @@ def step(solver, name, starts, end, tolerance, steps, repeats, points=POINTS, ti
 
 
 def step_repeatedly(solver, name, starts, end, tolerance, steps):
-    """The same, with as many repeats as a twentieth of a second has room for, but at least 3."""
+    """Simulate as step() does, with the repeats that fit into 0.05 s, from 3 to 500."""
     first = step(solver, name, starts, end, tolerance, steps, 0)
     if first is None:
         return None

@@ -1,10 +1,10 @@
-"""Parts of the report that fail on a machine: the others go on."""
+"""Report parts of the report that fail, while the others continue."""
 
 import sys
 
 
 def failure(what, error):
-    """The sentence that takes the place of what failed, also as a warning."""
+    """Return a sentence in place of the failed part, and print it as a warning."""
     sentence = f"Left out, {what}: {error or type(error).__name__}."
     print(f"scripts/report: {sentence}", file=sys.stderr)
     return sentence

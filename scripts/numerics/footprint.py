@@ -1,4 +1,4 @@
-"""What is in each FMU, and what is not: bytes by origin, memory and time of an instance, exported symbols."""
+"""Measure the footprint of FMUs: bytes by origin, memory and time of an instance, exported symbols, and features that are left out."""
 
 import ctypes
 import subprocess
@@ -16,11 +16,13 @@ FEATURES = {
 
 
 class Mallinfo(ctypes.Structure):
+    """struct mallinfo2 of glibc."""
+
     _fields_ = [(name, ctypes.c_size_t) for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()]
 
 
 def heap():
-    """Bytes in use, of this process."""
+    """Return the bytes of heap memory in use by this process."""
     function = ctypes.CDLL(None).mallinfo2
     function.restype = Mallinfo
     info = function()
@@ -32,7 +34,7 @@ def code_of(name):
 
 
 def form(name):
-    """How the equations are written, see src/compiler/program/program.h."""
+    """Return the form of the equations in system.c, see src/compiler/program/program.h."""
     code = code_of(name)
     if "InstructionTables tables" not in code:
         return "statements"
@@ -50,7 +52,7 @@ def absent_features(name, members):
 
 
 def instance_costs(name):
-    """(bytes of an instance after its first step, microseconds to instantiate and free one)."""
+    """Return the bytes of an instance after its first step, and the microseconds to instantiate and free one."""
     callbacks = fmu.callbacks_of(None)
     description = fmu.description(name)
     slave = FMU2Slave(guid=description.guid, unzipDirectory=str(fmu.unpacked(name)), instanceName="i",
@@ -82,7 +84,7 @@ def exported_symbols(name):
 
 
 def rows():
-    """A row for each FMU: name, form, bytes of archive, library, equations, runtime, SUNDIALS; memory, time, symbols, absent."""
+    """Return a row for each FMU: name, form, bytes of archive, library, equations, runtime, SUNDIALS; memory, time, symbols, absent features."""
     table = []
     for name in fmu.all_names():
         members = linked_members(name)

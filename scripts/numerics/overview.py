@@ -1,10 +1,10 @@
-"""The report's first screen: how much longer other programs take to the same error, each problem by each program, as a picture and a table."""
+"""Write the head of the report: ratios of other programs' run times to that of the FMU at equal error, as a plot and a table."""
 
 import html
 import math
 from typing import NamedTuple
 
-LEVELS = [1e-6, 1e-10]  # errors; the first one is that of the picture and of the colours
+LEVELS = [1e-6, 1e-10]  # errors at which times are compared; the first one defines plot and colors
 OURS = {"shipped", "auto", "FMU"}
 COLOURS = {"SUNDIALS, same FMU": "#2a6f97", "SciPy": "#e09f3e", "FMPy CVode": "#8338ec", "CVODE in C": "#b07d4f", "heyoka": "#d62976", "exudyn": "#2d6a4f",
            "MuJoCo": "#0a9396"}  # fmt: skip
@@ -12,6 +12,8 @@ NEVER = math.inf
 
 
 class Run(NamedTuple):
+    """Time and error of a method on a problem."""
+
     section: str
     problem: str
     method: str
@@ -20,12 +22,14 @@ class Run(NamedTuple):
 
 
 class Cell(NamedTuple):
-    ratio: float  # of the times to the first error level; NEVER, or NaN where nobody can tell
-    text: str  # what the pointer shows
+    """A cell of the table."""
+
+    ratio: float  # of the times to the first error level; NEVER if the program does not reach it, NaN if the FMU does not
+    text: str  # shown under the pointer
 
 
 def program_of(method):
-    """Methods of one program are one column, the best of them; None for those that have none."""
+    """Return the program of a method; all methods of a program share a column. Return None for methods without a column."""
     if method in OURS:
         return "FMU"
     if method in ("erk", "bdf"):
@@ -34,7 +38,7 @@ def program_of(method):
 
 
 def fastest(runs, level):
-    """The fastest that gets to the error; None where none does."""
+    """Return the fastest run that reaches the error; None if there is none."""
     return min((run for run in runs if run.error <= level), key=lambda run: run.seconds, default=None)
 
 
@@ -61,7 +65,7 @@ def cell_of(ours, theirs):
 
 
 def cells_of(runs):
-    """For each (section, problem) the cell of each program, and the time of the FMU."""
+    """Return by (section, problem) the fastest run of the FMU, and the Cell of each program."""
     problems = {}
     for run in runs:
         if (program := program_of(run.method)) is not None and math.isfinite(run.error):
@@ -77,7 +81,7 @@ def programs_in(cells):
 
 
 def shade(ratio):
-    """The class of a cell: by powers of ten that the FMU is faster or slower."""
+    """Return the CSS class of a cell, by the power of ten of the ratio."""
     if math.isnan(ratio):
         return "unknown"
     if ratio == NEVER:
@@ -102,7 +106,7 @@ def table(cells):
 
 
 def picture(cells):
-    """A row for each program, a dot for each problem, at the ratio of the times; 1 is the FMU."""
+    """Return an SVG with a row for each program and a dot for each problem, at the ratio of the times."""
     programs = programs_in(cells)
     dots = {program: [(problem, row[program]) for (_, problem), (_, row) in cells.items() if program in row] for program in programs}
     ratios = [cell.ratio for row in dots.values() for _, cell in row if math.isfinite(cell.ratio)]
@@ -132,7 +136,7 @@ def picture(cells):
 
 
 def overview(runs):
-    """HTML; empty where there is nothing to compare."""
+    """Return the HTML of plot and table; "" if there is nothing to compare."""
     cells = cells_of(runs)
     caption = (f"Ratios of run times to an error of {LEVELS[0]:g}: green where the FMU is faster, red where it is slower, grey where no run of the program "
                "gets there. A program's fastest method counts. Times and errors show themselves under the pointer.")  # fmt: skip

@@ -1,4 +1,4 @@
-"""The plots of the report."""
+"""Draw the plots of the report."""
 
 import math
 
@@ -10,7 +10,7 @@ from numerics.work_precision.scenarios import SCENARIOS
 
 COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "#588157"}
 STIFF_COLOURS = {"auto": "#c1121f", "radau": "#5a6acf", "taylor": "#f4a261", "bdf": "#588157"}
-STYLES = ["-", "--", ":"]  # of the ways of communication
+STYLES = ["-", "--", ":"]  # line styles of the ways of communication
 PEER_STYLES = {"SciPy DOP853": ("#e09f3e", "s"), "SciPy LSODA": ("#9c6644", "v"), "SciPy Radau": ("#6b705c", "^"), "FMPy CVode (model exchange)": ("#8338ec", "D"),
                "heyoka": ("#d62976", "*"), "MuJoCo RK4": ("#0a9396", "P"), "MuJoCo Euler": ("#4cc9f0", "X"), "MuJoCo implicitfast": ("#4cc9f0", "X"),
                "exudyn generalized-alpha": ("#2d6a4f", "s"), "exudyn trapezoidal, index 2": ("#52b788", "v")}  # fmt: skip
@@ -25,13 +25,13 @@ LABELS = {"shipped": "this FMU as shipped", "taylor": "built with taylor", "erk"
 
 
 def draw(axes, points, method, style="-", **looks):
-    """Points (seconds, error), which show themselves under the pointer."""
+    """Draw points (seconds, error), which show their values under the pointer."""
     [line] = axes.loglog(points[:, 1], points[:, 0], style, **looks)
     with_tips(line, [f"{method}: {seconds:.3g} s, error {error:.2g}" for seconds, error in points])
 
 
 def front(points):
-    """Those that no other point beats in both error and time, by ascending time."""
+    """Return the Pareto front of points (seconds, error), by ascending time."""
     kept, best = [], np.inf
     for seconds, error in sorted(points):
         if error < best:
@@ -69,7 +69,7 @@ def work_precision_plot(samples, name):
 
 
 def legend():
-    """One for all work-precision plots."""
+    """Return the common legend of all work-precision plots."""
     figure, axes = plt.subplots(figsize=(11, 1.1))
     for method, colour in COLOURS.items():
         for style, what in (("-", "one step"), ("--", "steps of 0.01 s")):
@@ -83,7 +83,7 @@ def legend():
 
 
 def stiff_plot(samples, problem):
-    """All methods and ways of communication on a problem of numerics.stiff.problems."""
+    """Return the plot of all methods and ways of communication for a problem of numerics.stiff.problems."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     methods = PEER_STYLES | {method: (colour, "o") for method, colour in STIFF_COLOURS.items()}
     for way, style in zip(problem.ways, STYLES):
@@ -101,7 +101,7 @@ def stiff_plot(samples, problem):
 
 
 def stiff_legend(peers):
-    """One for all plots of stiff problems."""
+    """Return the common legend of all plots of stiff problems."""
     figure, axes = plt.subplots(figsize=(11, 0.7))
     for method, colour in STIFF_COLOURS.items():
         axes.plot([], [], color=colour, marker="o", markersize=3, label=method)
@@ -116,7 +116,7 @@ def stiff_legend(peers):
 
 
 def mechanism_plot(title, measure, points, styles=MECHANISM_STYLES):
-    """points: (seconds, error) of each method; the first style is that of the FMU."""
+    """Return the plot of (seconds, error) of each method; the first style is that of the FMU."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     for method, pairs in points.items():
         if pairs:
@@ -133,7 +133,7 @@ def mechanism_plot(title, measure, points, styles=MECHANISM_STYLES):
 
 
 def events_plot(title, points, styles):
-    """points: (number of events, error) of each method."""
+    """Return the plot of (number of events, error) of each method."""
     figure, axes = plt.subplots(figsize=(6.2, 4.6))
     for method, pairs in points.items():
         if pairs:
@@ -150,7 +150,7 @@ def events_plot(title, points, styles):
 
 
 def mechanism_legend(styles=MECHANISM_STYLES):
-    """One for all plots of mechanisms, or of other methods."""
+    """Return the common legend of all plots with these styles."""
     figure, axes = plt.subplots(figsize=(11, 0.25 * math.ceil(len(styles) / 6) + 0.25))
     for method, (colour, marker) in styles.items():
         axes.plot([], [], color=colour, marker=marker, label=method)

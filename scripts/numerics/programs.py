@@ -1,4 +1,4 @@
-"""How programs of others run: for how long, how often, how quietly; and FMPy's CVode, which several comparisons have."""
+"""Time, limit and silence the runs of other programs; and run FMPy's CVode, which several comparisons use."""
 
 import contextlib
 import os
@@ -12,14 +12,16 @@ from fmpy.fmi2 import FMU2Model
 from fmu import archive, unpacked
 from numerics.driver import POINTS
 
-SHORT = 1e-3  # seconds of what other work on the machine rarely interrupts
-PATIENCE = 20.0  # seconds, after which a run counts as never ending
+SHORT = 1e-3  # s, below which other load rarely interrupts a run
+PATIENCE = 20.0  # s, after which a run is stopped
 
 
 def timed(run):
     """
-    (seconds, result): by the processor's time, or, of what is short, by the machine's. Where a virtual machine is denied its processor, the processor's clock is
-    set back by microseconds, and the shortest of many times would be one of those.
+    Call run(); return the seconds and its result.
+
+    The time is processor time, or for short runs wall-clock time: when a virtual machine loses its processor, the processor clock is set back
+    by microseconds, and the minimum of many short times would be wrong.
     """
     passed, of_processor = time.perf_counter(), time.process_time()
     result = run()
@@ -28,7 +30,7 @@ def timed(run):
 
 
 def fastest(run, budget=2.0, repeats=10):
-    """The shortest time of several runs within a budget of seconds, and the last result."""
+    """Return the shortest time of several runs within a budget in s, and the last result."""
     best, spent, result = np.inf, 0.0, None
     while repeats > 0 and (spent < budget or best == np.inf):
         taken, result = timed(run)
@@ -37,7 +39,7 @@ def fastest(run, budget=2.0, repeats=10):
 
 
 def impatient(function, patience=PATIENCE):
-    """The function, which raises TimeoutError from so many seconds on."""
+    """Return the function, which raises TimeoutError once `patience` seconds have passed from now."""
     deadline = time.perf_counter() + patience
 
     def call(*arguments):
@@ -50,7 +52,7 @@ def impatient(function, patience=PATIENCE):
 
 @contextlib.contextmanager
 def silence():
-    """What C libraries write to the standard error, too."""
+    """Suppress stderr, also the output of C libraries."""
     saved, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 2)
     try:
@@ -62,7 +64,7 @@ def silence():
 
 
 class FmpyCvode:
-    """Model exchange by FMPy, whose CVode knows no Jacobian; loading the FMU is not in the time."""
+    """Model exchange by FMPy's CVode, which gets no Jacobian; loading the FMU is not part of the time."""
 
     def __init__(self, name, starts, end, outputs, tolerance):
         description = read_model_description(archive(name))
@@ -76,7 +78,7 @@ class FmpyCvode:
                           output=outputs, record_events=False)  # fmt: skip
 
     def simulate(self):
-        """A row for each of the communication points, unless it gives up."""
+        """Return a row for each communication point; fewer if the simulation fails."""
         with silence():
             self.instance.reset()
             result = simulate_fmu(self.folder, **self.words)

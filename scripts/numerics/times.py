@@ -1,4 +1,4 @@
-"""Times of runs: taken by turns, and compared at the same error."""
+"""Measure the times of runs in turns, and compare them at equal error."""
 
 import math
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from numerics.plots import front
 
-LONG = 0.5  # seconds, from which on two rounds are enough
+LONG = 0.5  # s, from which on two rounds are enough
 
 
 def take_turns(runners, quick):
-    """Adds the seconds of each round to the samples of what runs."""
+    """Run all runners in turns; add the seconds of each round to their samples."""
     for turn in range(2 if quick else 5):
         for runner, sample in runners:
             if turn < 2 or min(sample.times) < LONG:
@@ -18,7 +18,7 @@ def take_turns(runners, quick):
 
 
 def time_to(points, level):
-    """The time to this error, between points of (seconds, error) by powers; infinite where they never get there."""
+    """Return the time to an error, by log-log interpolation between points (seconds, error); infinite if no point reaches it."""
     points = [(seconds, max(error, 1e-17)) for seconds, error in points]
     if min((error for _, error in points), default=math.inf) > level:
         return math.inf
@@ -27,7 +27,7 @@ def time_to(points, level):
 
 
 def ratio(numerator, denominator):
-    """Not a number where neither method gets there."""
+    """Return the ratio of times, which may be infinite; NaN if both are."""
     if math.isinf(denominator):
         return math.nan if math.isinf(numerator) else 0.0
     return numerator / denominator

@@ -1,4 +1,4 @@
-"""Error against run time of systems with constraints, beside exudyn and MuJoCo in the same run."""
+"""Compare the error against run time of systems with constraints with exudyn and MuJoCo, in the same run."""
 
 import contextlib
 import io
@@ -37,18 +37,20 @@ NOTES = [
     "inf: never gets there with the steps that end in ten seconds. –: not installed, or the program cannot express it.",
 ]
 PROBLEMS = [*PLANAR, *SPATIAL]
-SOLVERS = ["taylor", "radau"]  # each has a build of all systems
+SOLVERS = ["taylor", "radau"]  # each has a build folder of all systems
 METHODS = [*SOLVERS, *PEERS]
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12]
-PATIENCE = 10.0  # seconds of a run; longer ones are not tried
+PATIENCE = 10.0  # s; longer runs are not tried
 
 
 @dataclass
 class Sample:
+    """The error and the times of a method with one setting."""
+
     system: str
     method: str
-    setting: float  # tolerance, or the number of steps where these are fixed
-    drift: float  # of the energy, the largest at the communication points [J]
+    setting: float  # tolerance, or the number of fixed steps
+    drift: float  # largest drift of the energy at the communication points, in J
     error: float  # against the reference
     times: list = field(default_factory=list)  # seconds of each round
 
@@ -57,14 +59,14 @@ class Sample:
 
 
 class Fmu:
-    """Our FMU with as many communication steps as there are points."""
+    """The FMU with POINTS communication steps."""
 
     def __init__(self, problem, tolerance, solver, patience):
         self.problem, self.words = problem, (solver, problem.system, {}, problem.end, tolerance, POINTS)
         self.patience, self.repeats = patience, 1
 
     def run(self):
-        """The fastest of several repeats, whose loop alone is timed."""
+        """Return the seconds of the fastest of several repeats of the doStep loop."""
         stepped = step(*self.words, self.repeats, 0, timeout=10 * PATIENCE)
         self.repeats = int(min(max(0.02 / stepped.seconds, 1), 500))
         return stepped.seconds
@@ -77,7 +79,7 @@ class Fmu:
 
 
 class Peer:
-    """Another program, of whose one call the processor time counts: long runs would suffer more from other work on the machine."""
+    """Another program, measured by the processor time of one call, which other load on the machine disturbs less than wall-clock time."""
 
     def __init__(self, problem, steps, peer):
         program, method = PEERS[peer]
@@ -93,14 +95,14 @@ class Peer:
 
 
 def drift(problem, energies):
-    """Where motors and springs work, the energy of bodies alone is no measure."""
+    """Return the largest drift of the energy in J; NaN for mechanisms with motors and springs, whose bodies' energy is not constant."""
     if not any(measure == "drift" for measure, _, _ in problem.levels):
         return math.nan
     return float(np.max(np.abs(energies - problem.model.start_energy())))
 
 
 def first_run(problem, method, setting, patience=PATIENCE):
-    """(what runs, its sample), or None where the method gives up; what it prints is not for the report's reader."""
+    """Return a runner and its Sample without times; None if the method fails."""
     try:
         runner = Fmu(problem, setting, method, patience) if method in SOLVERS else Peer(problem, setting, method)
         with np.errstate(all="ignore"):
@@ -113,23 +115,23 @@ def first_run(problem, method, setting, patience=PATIENCE):
 
 
 def settings_of(problem, method, quick):
-    """From rough to fine."""
+    """Return the tolerances or numbers of steps of a method, from coarse to fine."""
     settings = TOLERANCES if method in SOLVERS else problem.steps
     return settings[1::2] if quick else settings
 
 
 def methods_of(problem):
-    """Those that can express it."""
+    """Return the methods that can express the mechanism."""
     return [*SOLVERS, *(peer for peer, (program, _) in PEERS.items() if program in problem.programs)]
 
 
 def runners_of(problem, quick):
-    """(what runs with its sample, methods that are not installed). What would take longer than the patience is not tried."""
+    """Return pairs of runner and Sample, and the methods that are not installed; settings that would take longer than PATIENCE are skipped."""
     runners, missing, patience = [], set(), PATIENCE / 4 if quick else PATIENCE
     if problem.expected is not None:
-        problem.exact  # before the clock runs: a reference may take longer than the patience
+        problem.exact  # computed before the clock starts, since a reference may take longer than PATIENCE
     for method in methods_of(problem):
-        seconds, before = 0.0, 1.0  # of the setting before
+        seconds, before = 0.0, 1.0  # time of the previous setting, and this setting
         for setting in settings_of(problem, method, quick):
             if seconds * (1.0 if method in SOLVERS else setting / before) > patience:
                 break
@@ -141,13 +143,13 @@ def runners_of(problem, quick):
                 break
             if first is not None:
                 runners.append(first)
-            # An FMU that refuses at a rough tolerance may go through at a finer one, in less time.
+            # An FMU that fails at a loose tolerance may succeed at a tighter one, in less time.
             seconds = 0.0 if first is None and method in SOLVERS else time.perf_counter() - begin
     return runners, missing
 
 
 def sample_problem(problem, quick):
-    """(samples, methods that are not installed): all take turns, so that what disturbs the machine disturbs all."""
+    """Return the samples and the methods that are not installed; all methods take turns, so that other load affects all of them."""
     with silence(), contextlib.redirect_stdout(io.StringIO()):
         runners, missing = runners_of(problem, quick)
         take_turns(runners, quick)
@@ -159,7 +161,7 @@ def chosen(quick):
 
 
 def collect(quick, progress):
-    """(samples, methods that are not installed, a sentence about each system that failed)."""
+    """Return the samples, the methods that are not installed, and a sentence about each system that failed, by its name."""
     samples, missing, failures = [], set(), {}
     for problem in chosen(quick):
         try:
@@ -179,7 +181,7 @@ def sample_rows(samples):
 
 
 def points_of(samples, system, method, measure, typical=min):
-    """(seconds, error) by the fastest round, or by the median one."""
+    """Return (seconds, error) for each sample; `typical` is min for the fastest round, or median."""
     return [(typical(s.times), s.measured(measure)) for s in samples if (s.system, s.method) == (system, method)]
 
 
@@ -194,7 +196,7 @@ def text_of(problem, measure):
 
 
 def row(samples, missing, problem, measure, level, whose):
-    """Times to an equal error, infinite where a method never gets there; not a number where it cannot express the mechanism."""
+    """Return a row of times to an equal error: infinite if a method does not reach it, NaN if it cannot express the mechanism."""
     tried = [m for m in methods_of(problem) if m not in missing]
     fastest, typical = ({m: time_to(points_of(samples, problem.system, m, measure, of), level) if m in tried else math.nan
                          for m in METHODS} for of in (min, median))  # fmt: skip
@@ -204,7 +206,7 @@ def row(samples, missing, problem, measure, level, whose):
 
 
 def rows(samples, missing):
-    """Without those of systems that failed."""
+    """Return the rows of all systems that did not fail."""
     sampled = {s.system for s in samples}
     return [row(samples, missing, problem, *level) for problem in PROBLEMS if problem.system in sampled for level in problem.levels]
 
@@ -214,7 +216,7 @@ def factor(value):
 
 
 def summary(table):
-    """A sentence for each accuracy that IFToMM's library asks for, with the faster method of each program."""
+    """Return a sentence for each accuracy that IFToMM's library asks for, with the faster method of each program."""
     sentences = []
     for line in table:
         if line[3] != "IFToMM":

@@ -1,4 +1,4 @@
-"""Planar mechanisms in exudyn and MuJoCo: each is built before the clock runs, and recorded apart from the timed run."""
+"""Simulate planar mechanisms in exudyn and MuJoCo; models are built before the clock starts, and recorded in a run that is not timed."""
 
 import sys
 
@@ -9,10 +9,10 @@ from numerics.mechanisms.problems import GROUND
 
 
 class Exudyn:
-    """Bodies by their positions and angles, hinges as constraints, an implicit solver with fixed steps; one thread."""
+    """exudyn with positions and angles as coordinates, hinges as constraints, and an implicit solver with fixed steps, in one thread."""
 
     def __init__(self, problem, steps, solver):
-        sys.exudynFast = True  # the module without checks of ranges
+        sys.exudynFast = True  # selects the module without range checks
         import exudyn
         import exudyn.itemInterface as items
 
@@ -51,7 +51,7 @@ class Exudyn:
         return settings
 
     def add_body(self, body):
-        """(object, node)"""
+        """Add a body; return the numbers of its object and its node."""
         items, system, weight = self.items, self.system, [0.0, -self.model.gravity, 0.0]
         if body.inertia == 0.0:
             node = system.AddNode(items.NodePoint2D(referenceCoordinates=body.centre, initialVelocities=body.velocity))
@@ -69,7 +69,7 @@ class Exudyn:
         return self.system.AddMarker(self.items.MarkerBodyPosition(bodyNumber=number, localPosition=[*(point - centre), 0.0]))
 
     def add_joint(self, joint):
-        """A mass point has no angle, and keeps its distance."""
+        """Add a hinge; for a mass point, which has no angle, a constant distance."""
         body = self.model.bodies[joint.body]
         if body.inertia == 0.0:
             markers = [self.marker(joint.other, joint.point), self.marker(joint.body, body.centre)]
@@ -104,39 +104,39 @@ class Exudyn:
         self.solve(self.problem.end)
 
     def recorded(self, points):
-        """Rows of (x, y, angle) and their rates for each body, at the last points of those that were written."""
+        """Return rows of (x, y, angle) of each body, and rows of their rates, at the last `points` recorded times."""
         coordinates = [[self.system.GetSensorStoredData(sensor)[-points:, 1:] for sensor in pair] for pair in self.sensors]
         positions, velocities = (np.hstack([self.padded(pair[i]) for pair in coordinates]) for i in (0, 1))
         return positions + np.concatenate([[*body.centre, 0.0] for body in self.model.bodies]), velocities
 
     def measured(self, points):
-        """(energies, motion of the bodies)"""
+        """Return the energies and the motion of the bodies."""
         positions, velocities = self.recorded(points)
         return self.model.energy(positions, velocities), positions
 
     def record(self):
-        """(energies, what is compared) at the communication points."""
+        """Return the energies and the compared quantities at the communication points."""
         self.solve(self.problem.end / POINTS)
         energies, motion = self.measured(POINTS)
         return energies, None if self.problem.from_bodies is None else self.problem.from_bodies(motion)
 
     @staticmethod
     def padded(columns):
-        """With an angle of 0 for mass points."""
+        """Append an angle of 0 for mass points."""
         return np.hstack([columns, np.zeros((len(columns), 3 - columns.shape[1]))])
 
 
 class MuJoCo:
-    """A tree of hinges, whose loops are closed by `connect`, as stiff as MuJoCo lets the time step have them."""
+    """MuJoCo with a tree of hinges, and loops closed by `connect`, as stiff as the time step allows."""
 
     def __init__(self, problem, steps, integrator):
         import mujoco
 
-        mujoco.set_mju_user_warning(lambda text: None)  # in place of a file in the current folder
+        mujoco.set_mju_user_warning(lambda text: None)  # otherwise MuJoCo writes warnings to a file in the current folder
         self.library, self.problem, self.model, self.steps = mujoco, problem, problem.model, steps
         self.mujoco = mujoco.MjModel.from_xml_string(self.text(problem.end / steps, integrator))
         self.data, self.copy = mujoco.MjData(self.mujoco), mujoco.MjData(self.mujoco)
-        # The bodies' numbers here, which MuJoCo orders by depth; 0 is the ground.
+        # MuJoCo's numbers of the bodies, which it orders by depth; 0 is the ground.
         self.numbers = [self.mujoco.body(f"b{i}").id for i in range(self.mujoco.nbody - 1)]
 
     def text(self, step, integrator):
@@ -160,7 +160,7 @@ class MuJoCo:
         return tuple(map(np.array, zip(*[self.advance(self.steps // POINTS) for _ in range(POINTS)])))
 
     def advance(self, steps):
-        """(energy, what is compared) after so many steps; in other data, to leave the simulation as it is."""
+        """Return energy and compared quantities after so many steps; they are computed in a copy of the data, to leave the simulation unchanged."""
         library, model, data = self.library, self.mujoco, self.copy
         library.mj_step(model, self.data, steps)
         data.qpos[:], data.qvel[:] = self.data.qpos, self.data.qvel
@@ -170,7 +170,7 @@ class MuJoCo:
         return energy, np.nan if self.problem.from_bodies is None else self.problem.from_bodies(motion)[0]
 
     def state_of(self, data):
-        """(energy, motion of the bodies)"""
+        """Return the energy and the motion of the bodies."""
         self.library.mj_energyPos(self.mujoco, data)
         self.library.mj_energyVel(self.mujoco, data)
         angles = {GROUND: 0.0}
@@ -181,7 +181,7 @@ class MuJoCo:
 
 
 def parents_of(planar):
-    """The joint that hangs each body in the tree: its first."""
+    """Return the joint that connects each body to the tree, its first one."""
     parents = {}
     for joint in planar.joints:
         parents.setdefault(joint.body, joint)
@@ -193,7 +193,7 @@ def vector(values):
 
 
 def mujoco_text(planar, step, integrator):
-    """All frames are parallel to the ground's at the start, where the angles of all hinges are 0."""
+    """Return the MJCF of a planar mechanism. At the start all frames are parallel to the ground's, and the angles of all hinges are 0."""
     parents, bodies = parents_of(planar), planar.bodies
 
     def nested(above, origin):
@@ -224,7 +224,7 @@ def mujoco_text(planar, step, integrator):
             f"{tendon}<equality>{loops}</equality></mujoco>")  # fmt: skip
 
 
-# Program and method.
+# Program and integration method of each peer.
 PEERS = {
     "exudyn generalized-alpha": ("exudyn", "GeneralizedAlpha"),
     "exudyn trapezoidal, index 2": ("exudyn", "TrapezoidalIndex2"),

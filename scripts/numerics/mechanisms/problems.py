@@ -1,4 +1,4 @@
-"""Mechanisms with known answers, each once as a planar mechanism of bodies and joints that other programs are built from."""
+"""Define mechanisms with known solutions, and planar models of bodies and joints from which other programs are built."""
 
 import functools
 from collections.abc import Callable
@@ -11,38 +11,40 @@ from fmu import start_values
 from numerics.driver import POINTS
 
 GRAVITY = 9.81  # m/s2, along -y
-GROUND = None
+GROUND = None  # in place of a body's index
 
 
 @dataclass
 class Body:
-    """At the start: centre of mass, and velocities; angles count from there. An inertia of 0 is a mass point."""
+    """A planar body at the start, where its angle is 0. An inertia of 0 means a mass point."""
 
-    mass: float
-    inertia: float
-    centre: np.ndarray
-    velocity: tuple = (0.0, 0.0)
-    rate: float = 0.0
+    mass: float  # kg
+    inertia: float  # kg m2, about the center of mass
+    centre: np.ndarray  # center of mass, in m
+    velocity: tuple = (0.0, 0.0)  # m/s
+    rate: float = 0.0  # rad/s
 
 
 @dataclass
 class Joint:
-    """A hinge; the first one of a body hangs it on what has been hung before, as a tree, and further ones close loops."""
+    """A hinge. The first hinge of a body connects it to the tree; further ones close loops."""
 
-    body: int
-    other: int | None  # or GROUND
-    point: np.ndarray  # at the start
+    body: int  # index
+    other: int | None  # index, or GROUND
+    point: np.ndarray  # position at the start
 
 
 @dataclass
 class Planar:
+    """A planar mechanism."""
+
     bodies: list
     joints: list
     gravity: float = GRAVITY
-    torque: tuple = (0, 0.0)  # (body, N m)
-    spring: tuple | None = None  # (body, its point at the start, point of the ground, stiffness, length at rest)
-    damping: float = 0.0  # of the spring [N s/m]
-    drag: float = 0.0  # of a single mass point [N s/m]
+    torque: tuple = (0, 0.0)  # (body, torque in N m)
+    spring: tuple | None = None  # (body, its point at the start, point of the ground, stiffness in N/m, natural length in m)
+    damping: float = 0.0  # of the spring, in N s/m
+    drag: float = 0.0  # of a single mass point, in N s/m
 
     def start_energy(self):
         rows = [[np.array([*body.centre, 0.0]), np.array([*body.velocity, body.rate])] for body in self.bodies]
@@ -50,7 +52,7 @@ class Planar:
         return float(self.energy(positions, velocities))
 
     def energy(self, positions, velocities):
-        """Of rows of (x, y, angle) and their rates for each body; without springs."""
+        """Return the energies for rows of (x, y, angle) of each body and of their rates, without the energy of springs."""
         masses = np.array([[body.mass, body.mass, body.inertia] for body in self.bodies]).ravel()
         weights = np.array([[0.0, self.gravity * body.mass, 0.0] for body in self.bodies]).ravel()
         return velocities**2 @ masses / 2 + positions @ weights
@@ -58,19 +60,21 @@ class Planar:
 
 @dataclass
 class Mechanism:
-    system: str  # in fmu/
+    """A mechanism of the comparison, with its reference."""
+
+    system: str  # name of the FMU
     title: str
     end: float  # s
-    reference: str  # what is right
-    expected: Callable | None  # rows of what is compared, at times; without it, energy is the measure
-    compared: list  # names of those states of the FMU
-    levels: list  # errors at which times are compared: (of "drift" in J or "error", level, whose it is)
-    model: object  # Planar, or Spatial of spatial_problems.py; None where the other programs cannot express it
+    reference: str  # description of the reference
+    expected: Callable | None  # function of times that returns rows of the compared quantities; None if only the energy is known
+    compared: list  # names of the compared variables of the FMU
+    levels: list  # errors at which times are compared: ("drift" in J or "error", level, origin of the level)
+    model: object  # Planar, or Spatial of space/problems.py; None if the other programs cannot express it
     steps: list  # numbers of fixed steps, multiples of POINTS
-    at_end: bool = False  # the reference is known at the end alone
-    from_bodies: Callable | None = None  # what is compared, of rows of (x, y, angle) of the bodies, or of their Motion in space
-    programs: tuple = ("exudyn", "MuJoCo")  # which can express it
-    quick: bool = True  # whether a quick report has it
+    at_end: bool = False  # True if the reference is known at the end only
+    from_bodies: Callable | None = None  # function of rows of (x, y, angle), or of a Motion in space, that returns the compared quantities
+    programs: tuple = ("exudyn", "MuJoCo")  # programs that can express it
+    quick: bool = True  # True if the quick report contains it
 
     @property
     def times(self):
@@ -81,7 +85,7 @@ class Mechanism:
         return self.expected(self.times)
 
     def error(self, rows):
-        """The largest over the communication points, relative where values are above 1; not a number without a reference."""
+        """Return the largest error at the communication points, relative for values above 1; NaN without a reference."""
         if self.expected is None:
             return np.nan
         rows, exact = rows[-len(self.exact) :], self.exact
@@ -93,7 +97,7 @@ def direction(angle):
 
 
 def pendulum():
-    """A mass of 1 kg on a rod of 1 m, let go where it is level."""
+    """Return a mass of 1 kg on a rod of 1 m, released from the horizontal."""
     return Planar([Body(1.0, 0.0, np.array([-1.0, 0.0]))], [Joint(0, GROUND, np.zeros(2))])
 
 
@@ -103,7 +107,7 @@ def pendulum_positions(times):
 
 
 def four_bars(count):
-    """Windows of uniform rods of 1 kg and 1 m, upright, whose upper joints move with 1 m/s to the right."""
+    """Return a row of four-bar linkages of uniform rods of 1 kg and 1 m, upright, whose upper joints move to the right with 1 m/s."""
     pillars = [Body(1.0, 1 / 12, np.array([i, 0.5]), (0.5, 0.0), -1.0) for i in range(count + 1)]
     beams = [Body(1.0, 1 / 12, np.array([i + 0.5, 1.0]), (1.0, 0.0)) for i in range(count)]
     feet = [Joint(i, GROUND, np.array([i, 0.0])) for i in range(count + 1)]
@@ -113,7 +117,7 @@ def four_bars(count):
 
 
 def squeezer():
-    """Andrews' mechanism, of the numbers and names that fmu/AndrewsSqueezer has from the test set for initial value problems."""
+    """Return Andrews' squeezer mechanism, with the numbers and names of the test set for initial value problems, as in fmu/AndrewsSqueezer."""
     value = start_values("AndrewsSqueezer")
     lengths = ["rr", "ra", "d", "da", "e", "ea", "sa", "sb", "sc", "sd", "ta", "tb", "u", "ua", "ub", "zf", "zt", "fa"]
     rr, ra, d, da, e, ea, sa, sb, sc, sd, ta, tb, u, ua, ub, zf, zt, fa = (value[name] for name in lengths)
@@ -121,7 +125,7 @@ def squeezer():
     crank, rod, lever = (direction(value["beta"]), direction(value["beta"] + value["theta"]), direction(value["gamma"]))
     left, upper = direction(value["phi"] + value["delta"]), direction(value["delta"])
     right, lower = direction(value["omega"] + value["epsilon"]), direction(value["epsilon"])
-    below = lambda way: np.array([way[1], -way[0]])  # turned by -90 degrees
+    below = lambda way: np.array([way[1], -way[0]])  # rotates by -90 degrees
     knee, left_joint, right_joint = rr * crank - d * rod, a + zt * upper, a + u * below(lower)
     centres = [ra * crank, rr * crank - da * rod, b + sa * below(lever) + sb * lever, left_joint + (e - ea) * below(left),
                a + ta * upper - tb * below(upper), right_joint + (zf - fa) * right, a + ua * below(lower) - ub * lower]  # fmt: skip
@@ -134,20 +138,20 @@ def squeezer():
 
 
 ANGLES = ["beta", "theta", "gamma", "phi", "delta", "omega", "epsilon"]
-# At 0.03 s, of the test set for initial value problems (Mazzia and Magherini).
+# Angles at 0.03 s from the test set for initial value problems (F. Mazzia, C. Magherini).
 SQUEEZED = [15.81077119629904, -15.75637105984298, 0.04082224013073101, -0.5347301163226948,
             0.5244099658805304, 0.5347301163226948, 1.048080741042263]  # fmt: skip
 
 
 def squeezer_angles(positions):
-    """The angles of the test set, of which some are relative ones, of those by which the seven bodies have turned."""
+    """Return the angles of the test set, some of which are relative, from the rotations of the seven bodies."""
     value = start_values("AndrewsSqueezer")
     one, two, three, four, five, six, seven = positions[:, 2::3].T
     return np.array([one, two - one, three, four - five, five, six - seven, seven]).T + [value[name] for name in ANGLES]
 
 
 def cycloid(times):
-    """Of the knife edge (Neimark and Fufaev)."""
+    """Return the positions of the knife edge, on a cycloid (J. Neimark, N. Fufaev: Dynamics of nonholonomic systems)."""
     scale = GRAVITY * np.sin(0.2) / 2
     return scale * np.array([np.sin(times) ** 2, times - np.sin(2 * times) / 2]).T
 

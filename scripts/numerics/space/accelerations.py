@@ -1,4 +1,4 @@
-"""One evaluation of the accelerations of a robot: the code of our FMU beside Pinocchio's articulated-body algorithm, both in C and C++."""
+"""Compare the time of one evaluation of a robot's accelerations: the C code of the FMU, and Pinocchio's articulated-body algorithm in C++."""
 
 import importlib.util
 import math
@@ -14,7 +14,7 @@ from numerics.space import hand
 
 FOLDER = ROOT / "build" / "accelerations"
 SOURCES = Path(__file__).parent
-# Name, what it is, its file among the example robots, its base.
+# Name, description, file among the example robots, and base of each robot.
 ROBOTS = [
     ("UR5", "6 axes", "ur_description/urdf/ur5_robot.urdf", "fixed"),
     ("Panda", "7 axes and 2 fingers", "panda_description/urdf/panda.urdf", "fixed"),
@@ -23,13 +23,13 @@ ROBOTS = [
     ("Humanoid", "29 axes on a base that flies", "simple_humanoid_description/urdf/simple_humanoid.urdf", "floating"),
     ("iCub", "32 axes on a base that flies", "icub_description/robots/icub_reduced.urdf", "floating"),
 ]
-CHAINS = [10, 20, 40, 80, 120, 200]  # axes, one after another
-ROUND = 0.05  # seconds of one program in one round
-# Of each package a header, and the folders where releases of Debian have it.
+CHAINS = [10, 20, 40, 80, 120, 200]  # axes in series
+ROUND = 0.05  # s of one program in one round
+# A header of each package, the folders in which releases of Debian have it, and the package.
 SYSTEM = Path("/usr/include")
 HEADERS = [("Eigen/Core", [SYSTEM / "eigen3"], "libeigen3-dev"),
            ("urdf_model/model.h", [SYSTEM / "urdfdom_headers", SYSTEM], "liburdfdom-headers-dev")]  # fmt: skip
-# Pinocchio's headers have lists longer than Boost's preprocessed ones. Without -march=native, with which the library is not built.
+# Pinocchio's headers have longer lists than Boost's preprocessed headers allow. No -march=native, since the library is built without it.
 FLAGS = ["-O3", "-DNDEBUG", "-std=c++17", "-DPINOCCHIO_WITH_URDFDOM", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
          "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]  # fmt: skip
 LIBRARIES = ["-lpinocchio_default", "-lpinocchio_parsers", "-lurdfdom_model"]
@@ -40,11 +40,11 @@ HEADER = ["robot", "joints", "FMU [ns]", "Pinocchio [ns]", "Pinocchio / FMU"]
 
 
 class Missing(Exception):
-    """What is not installed here, as a sentence."""
+    """A program or package is not installed; the text is a sentence for the report."""
 
 
 def prefix():
-    """The folder of Pinocchio's headers and libraries, and of the example robots."""
+    """Return the folder of Pinocchio's headers and libraries, and of the example robots; raise Missing if it is not installed."""
     spec = importlib.util.find_spec("pinocchio")
     if spec is None or spec.origin is None:
         raise Missing("Pinocchio (the Python package pin) is not installed here.")
@@ -52,7 +52,7 @@ def prefix():
 
 
 def written(path, text):
-    """The file, which is left as it is where it says the same already."""
+    """Write a file, unless it has this content already; return its path."""
     FOLDER.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_text() != text:
         path.write_text(text)
@@ -60,7 +60,7 @@ def written(path, text):
 
 
 def chain(count):
-    """The file of a robot of so many links, which turn about x, y and z by turns."""
+    """Write the URDF of a chain of links, with hinges about x, y and z in turn; return its path."""
     link = """<link name="link{0}"><inertial><origin xyz="0.01 0.02 -0.15"/><mass value="1.5"/>
       <inertia ixx="0.02" iyy="0.021" izz="0.004" ixy="0.001" iyz="0.0005" ixz="0.0007"/></inertial></link>"""
     hinge = """<joint name="joint{0}" type="continuous"><parent link="link{1}"/><child link="link{0}"/>
@@ -94,7 +94,7 @@ def our_program(name, path, base):
 
 
 def folder_of(header, folders, package):
-    """Where a header is installed."""
+    """Return the folder in which a header is installed; raise Missing if there is none."""
     found = next((folder for folder in folders if (folder / header).exists()), None)
     if found is None:
         raise Missing(f"Pinocchio's times are not here: its program needs {header} (Debian's {package}).")
@@ -102,7 +102,7 @@ def folder_of(header, folders, package):
 
 
 def pinocchio_program(quick):
-    """Compiled once, which takes minutes: too long for a quick report."""
+    """Compile the program with Pinocchio and return its path; this takes minutes once, and is skipped in a quick report."""
     program, source, folder = FOLDER / "aba", SOURCES / "aba.cpp", prefix()
     if is_current(program, source):
         return program
@@ -118,18 +118,18 @@ def pinocchio_program(quick):
 
 
 def seconds(words, count):
-    """Of one evaluation; where a program tells several times, the shortest."""
+    """Return the seconds of one evaluation, the shortest time that the program prints."""
     return min(map(float, run(*words, count).split()))
 
 
 def measured(programs, rounds):
-    """Seconds of one evaluation of each program in each round."""
+    """Return the seconds of one evaluation, rounds x programs."""
     counts = [max(1, round(ROUND / seconds(words, 100))) for words in programs]
     return [[seconds(words, count) for words, count in zip(programs, counts)] for _ in range(rounds)]
 
 
 def row(name, text, times):
-    """times: rounds of one or two programs."""
+    """Return the row of a robot; `times` has the seconds of one or two programs in each round."""
     ours, *others = zip(*times)
     theirs = median(others[0]) if others else math.nan
     ratio = median(their / our for our, their in times) if others else math.nan
@@ -137,7 +137,7 @@ def row(name, text, times):
 
 
 def rows(quick):
-    """(rows, sentences about what is missing)."""
+    """Return the rows, and sentences about missing programs and packages."""
     sentences, lines = [], []
     try:
         robots = prefix() / "share" / "example-robot-data" / "robots"

@@ -1,4 +1,4 @@
-"""Shadow's hand, which the Python package gymnasium-robotics has in MuJoCo's format: as one file, and as the URDF of its tree."""
+"""Convert the Shadow hand, which the Python package gymnasium-robotics has as MJCF, to one MJCF file and to a URDF of its tree."""
 
 import importlib.util
 import tempfile
@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 
 def source():
-    """The file; None where the package, or MuJoCo, is not installed."""
+    """Return the path of the MJCF; None if the package or MuJoCo is not installed."""
     spec = importlib.util.find_spec("gymnasium_robotics")
     if spec is None or importlib.util.find_spec("mujoco") is None:
         return None
@@ -23,7 +23,7 @@ def model():
 
 
 def text():
-    """One file without includes, shapes, and dry friction: all bodies have their inertia in numbers."""
+    """Return the MJCF as one text without includes, shapes and dry friction, with explicit inertias of all bodies."""
     import mujoco
 
     with tempfile.NamedTemporaryFile(suffix=".xml") as file:
@@ -42,7 +42,7 @@ def numbers(values):
 
 
 def placed(place, quaternion):
-    """Angles of URDF turn about fixed axes."""
+    """Return the <origin> of a position and a quaternion; rpy of URDF are rotations about fixed axes."""
     return f'<origin xyz="{numbers(place)}" rpy="{numbers(Rotation.from_quat(quaternion, scalar_first=True).as_euler("xyz"))}"/>'
 
 
@@ -53,7 +53,7 @@ def link(body):
 
 
 def joint(hand, body):
-    """A body has one hinge, through its origin, or none."""
+    """Return the joint of a body, which has one hinge through its origin, or none."""
     hinge = hand.joint(body.jntadr[0]) if body.jntnum[0] else None
     kind, axis = ("continuous", f'<axis xyz="{numbers(hinge.axis)}"/>') if hinge else ("fixed", "")
     assert hinge is None or not hinge.pos.any()
@@ -62,7 +62,7 @@ def joint(hand, body):
 
 
 def urdf():
-    """Without motors, tendons, and what the joints have in them."""
+    """Return the URDF of the hand, without motors, tendons, and damping, stiffness and armature of joints."""
     hand = model()
     bodies = [hand.body(i) for i in range(1, hand.nbody)]
     parts = [link(body) + joint(hand, body) for body in bodies]

@@ -1,4 +1,4 @@
-"""Bodies in space in exudyn and MuJoCo, as those of mechanisms/ are in the plane."""
+"""Simulate bodies in space in exudyn and MuJoCo, as mechanisms/peers.py does in the plane."""
 
 import numpy as np
 
@@ -7,19 +7,19 @@ from numerics.mechanisms.peers import vector
 from numerics.mechanisms.problems import GROUND
 from numerics.space.problems import Motion
 
-# Along and about three axes, of which the third is the joint's.
+# 1 for each constrained translation along, and rotation about, three axes, of which the third is the joint's axis.
 CONSTRAINED = {"hinge": (1, 1, 1, 1, 1, 0), "slide": (1, 1, 0, 1, 1, 1), "ball": (1, 1, 1, 0, 0, 0)}
 
 
 def axes_around(axis):
-    """Columns, the third of which is the axis."""
+    """Return a rotation matrix whose third column is the axis."""
     across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     across = across / np.linalg.norm(across)
     return np.array([across, np.cross(axis, across), axis]).T
 
 
 class Exudyn(mechanism_peers.Exudyn):
-    """Each body has a position and Euler parameters, joints are constraints."""
+    """exudyn with positions and Euler parameters as coordinates, and joints as constraints."""
 
     def build(self, exudyn):
         from exudyn.rigidBodyUtilities import RigidBodyInertia
@@ -64,7 +64,7 @@ class Exudyn(mechanism_peers.Exudyn):
 
 
 class MuJoCo(mechanism_peers.MuJoCo):
-    """A tree of joints, of which a ball has a quaternion."""
+    """MuJoCo with a tree of joints, in which a ball joint has a quaternion."""
 
     def text(self, step, integrator):
         return mujoco_text(self.model, step, integrator)
@@ -79,7 +79,7 @@ class MuJoCo(mechanism_peers.MuJoCo):
             self.data.qvel[first : first + len(rate)] = rate
 
     def state_of(self, data):
-        """(energy, motion)"""
+        """Return the energy and the Motion."""
         spins, rows = np.zeros(6), []
         for number in self.numbers:
             self.library.mj_objectVelocity(self.mujoco, data, self.library.mjtObj.mjOBJ_XBODY, number, spins, 1)
@@ -108,7 +108,7 @@ def mujoco_text(model, step, integrator):
                      f'<inertial pos="0 0 0" mass="{link.mass!r}" fullinertia="{inertia}"/>{sites(i)}{nested(i, link.centre)}</body>')  # fmt: skip
         return text
 
-    # Two points of its axis make a hinge.
+    # A hinge closes a loop by connecting two points of its axis.
     loops = "".join(f'<connect body1="b{closing.link}" {"" if closing.other is GROUND else f"body2=b{closing.other}"} '
                     f'anchor="{vector(closing.point + shift * closing.axes[:, 2] - links[closing.link].centre)}" '
                     f'solref="{2 * step!r} 1" solimp="0.9999 0.9999 0.001"/>' for closing in closings for shift in (0.0, 0.5))  # fmt: skip

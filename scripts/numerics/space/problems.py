@@ -1,4 +1,4 @@
-"""Mechanisms of bodies in space with known answers, each once as links and joints that other programs are built from."""
+"""Define mechanisms of bodies in space with known solutions, and models of links and joints from which other programs are built."""
 
 import functools
 from dataclasses import dataclass, field
@@ -15,60 +15,62 @@ from numerics.stiff.problems import Problem, right_states
 
 @dataclass
 class Link:
-    """A rigid body at the start, its axes parallel to the ground's, on the joint that leads to what it hangs on."""
+    """A rigid body at the start, where its axes are parallel to the ground's, and the joint to its parent."""
 
-    mass: float
-    inertia: np.ndarray  # about its centre of mass, 3 x 3
-    centre: np.ndarray
+    mass: float  # kg
+    inertia: np.ndarray  # about the center of mass, 3 x 3, in kg m2
+    centre: np.ndarray  # center of mass, in m
     joint: str  # "hinge", "slide", "ball" or "free"
-    above: int | None = GROUND  # the link that it hangs on
-    point: tuple = (0.0, 0.0, 0.0)  # of the joint
-    axis: tuple = (0.0, 0.0, 1.0)
-    velocity: tuple = (0.0, 0.0, 0.0)
-    turning: tuple = (0.0, 0.0, 0.0)  # angular velocity
-    motor: float = 0.0  # inertia of the joint's drive at the joint [kg m2]
-    friction: float = 0.0  # [N m s/rad]
+    above: int | None = GROUND  # index of the parent
+    point: tuple = (0.0, 0.0, 0.0)  # position of the joint
+    axis: tuple = (0.0, 0.0, 1.0)  # of the joint
+    velocity: tuple = (0.0, 0.0, 0.0)  # of the center of mass, in m/s
+    turning: tuple = (0.0, 0.0, 0.0)  # angular velocity, in rad/s
+    motor: float = 0.0  # inertia of the drive, reduced to the joint, in kg m2
+    friction: float = 0.0  # viscous, in N m s/rad
 
 
 @dataclass
 class Spring:
-    """With a damper, between points of two links."""
+    """A spring and a damper between points of two links."""
 
     ends: tuple  # ((link, point), (link, point))
-    stiffness: float
-    length: float  # at rest
-    damping: float
+    stiffness: float  # N/m
+    length: float  # natural length, in m
+    damping: float  # N s/m
 
 
 @dataclass
 class Closing:
-    """A hinge that closes a loop. constrained: along and about three axes, of which the third is that of the hinge; without what is redundant."""
+    """A hinge that closes a loop."""
 
     link: int
     other: int | None
     point: tuple
-    axes: np.ndarray  # columns
-    constrained: tuple
+    axes: np.ndarray  # columns; the third is the axis of the hinge
+    constrained: tuple  # 1 for each constrained translation and rotation, without redundant constraints; see CONSTRAINED of peers.py
 
 
 class Motion(NamedTuple):
-    """Of all links (second index) at several times (first index)."""
+    """The motion of all links (second index) at several times (first index)."""
 
-    centres: np.ndarray
-    axes: np.ndarray  # columns, along the ground's; those of the start are the unit matrix
-    velocities: np.ndarray
-    turnings: np.ndarray  # angular velocities along the link's axes
+    centres: np.ndarray  # centers of mass
+    axes: np.ndarray  # rotation matrices, the identity at the start
+    velocities: np.ndarray  # of the centers of mass
+    turnings: np.ndarray  # angular velocities, in the links' axes
 
 
 @dataclass
 class Spatial:
+    """A mechanism of links, springs and hinges that close loops."""
+
     links: list
     gravity: tuple = (0.0, 0.0, -GRAVITY)
     springs: list = field(default_factory=list)
     closings: list = field(default_factory=list)
 
     def energy(self, motion):
-        """Without springs and drives."""
+        """Return the energies of a Motion, without those of springs and drives."""
         energies = 0.0
         for i, link in enumerate(self.links):
             velocity, turning = motion.velocities[:, i], motion.turnings[:, i]
@@ -85,12 +87,12 @@ class Spatial:
 
 
 def prism(mass, length, width, direction):
-    """Inertia of a square prism along one of the axes."""
+    """Return the inertia tensor of a square prism along one of the axes."""
     return np.diag([mass * (width**2 / 6 if i == direction else (length**2 + width**2) / 12) for i in range(3)])
 
 
 def bricard():
-    """Rods along the edges of a cube; the hinge that closes the chain turns about x."""
+    """Return Bricard's mechanism: rods along the edges of a cube, with a closing hinge about x."""
     value, links = start_values("Bricard"), []
     m, l, w = (value[name] for name in "mlw")
     corner, way = np.zeros(3), np.array([[1, 0, 0], [0, -1, 0], [0, 0, 1], [-1, 0, 0], [0, 1, 0]]) * l
@@ -103,12 +105,12 @@ def bricard():
 
 
 def third_joint(motion):
-    """At the end of the third rod, whose length is along z at the start."""
+    """Return the positions of the end of the third rod, which is along z at the start."""
     return motion.centres[:, 2] + start_values("Bricard")["l"] / 2 * motion.axes[:, 2, :, 2]
 
 
 def governor():
-    """The shaft, the slider, and the arms, each with its ball as one body."""
+    """Return the flyball governor: the shaft, the slider, and two arms, each with its ball as one body."""
     value = start_values("FlyballGovernor")
     L, w, e, h, ball, s = (value[name] for name in ("L", "w", "e", "h", "mBall", "s"))
     arm, slider, rate = value["rho"] * L * w**2, value["rho"] * e**3, value["Omega"]
@@ -131,7 +133,7 @@ def governor():
 
 
 def top_axis(theta):
-    """Of the top at the start, whose nutation is about x."""
+    """Return the axis of the top at the start, with the nutation angle about x."""
     return np.array([0.0, -np.sin(theta), np.cos(theta)])
 
 
@@ -165,23 +167,27 @@ def free_velocities(times):
 
 
 def slider_heights(times):
-    """Collocation of the equations that SymPy derives (stiff_problems.py)."""
+    """Return the slider's heights, by collocation of SymPy's equations (stiff/problems.py)."""
     problem = Problem("FlyballGovernor", "FlyballGovernor", times[-1], len(times))
     return right_states(problem, "one step")[0][:, [problem.states.index("s")]]
 
 
 def robot_arm():
-    """The PUMA 560 by the modified Denavit-Hartenberg parameters of Armstrong, Khatib and Burdick, in which all angles are 0 at the start."""
+    """
+    Return the PUMA 560 by its modified Denavit-Hartenberg parameters, with all angles 0 at the start.
+
+    Source: B. Armstrong, O. Khatib, J. Burdick: The explicit dynamic model and inertial parameters of the PUMA 560 arm, 1986.
+    """
     value, links = start_values("RobotArm"), []
     a2, a3, d2, d3, d4 = (value[name] for name in ("a2", "a3", "d2", "d3", "d4"))
-    # Twist and length before the joint, offset after it, centre of mass, moments of inertia. Of the first one the axis alone matters.
+    # Twist and length before the joint, offset along its axis, center of mass, moments of inertia. The first link needs only its moment about the axis.
     table = [(0, 0, 0, (0, 0, 0), (0.35, 0.35, 0.35)),
              (-np.pi / 2, 0, d2, (0.068, 0.006, -0.016), (0.13, 0.524, 0.539)),
              (0, a2, d3, (0, -0.070, 0.014), (0.066, 0.0125, 0.066)),
              (np.pi / 2, a3, d4, (0, 0, -0.019), (1.8e-3, 1.8e-3, 1.3e-3)),
              (-np.pi / 2, 0, 0, (0, 0, 0), (0.3e-3, 0.3e-3, 0.4e-3)),
              (np.pi / 2, 0, 0, (0, 0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3))]  # fmt: skip
-    masses = [1e-9, *(value[f"m{i}"] for i in range(2, 7))]  # the first link's centre rests
+    masses = [1e-9, *(value[f"m{i}"] for i in range(2, 7))]  # the mass of the first link has no effect, since its center does not move
     place, turn = np.zeros(3), np.eye(3)
     for i, ((twist, length, offset, centre, moments), mass) in enumerate(zip(table, masses)):
         place = place + turn @ [length, 0, 0]
@@ -194,13 +200,13 @@ def robot_arm():
 
 
 def tip_of_tool(motion):
-    """The flange's z axis is the ground's at the start; the tool reaches d6 along it, of which 0.032 m are to the centre of mass."""
+    """Return the positions of the tool's tip, d6 along the flange's z axis from the wrist; the center of mass is at 0.032 m."""
     reach = start_values("RobotArm")["d6"] - 0.032
     return motion.centres[:, 5] + reach * motion.axes[:, 5] @ np.array(robot_arm().links[5].axis)
 
 
 def tips_of_tool(times):
-    """By Pinocchio's articulated-body algorithm and a method of order 8, of the same links."""
+    """Return the reference positions of the tool's tip, by Pinocchio's articulated-body algorithm and SciPy's method of order 8, for the same links."""
     import pinocchio as pin
     from scipy.integrate import solve_ivp
 
@@ -221,7 +227,7 @@ def tips_of_tool(times):
     return np.array(tips)
 
 
-# Steps, multiples of numerics.driver.POINTS.
+# Numbers of steps, multiples of numerics.driver.POINTS.
 STEPS = [100, 200, 500, 1000, 2000, 5000, 10000, 30000, 100000]
 PROBLEMS = [
     Mechanism("Bricard", "Bricard's mechanism (A04)", 10.0, "its energy", None, ["x", "y", "z"],

@@ -1,7 +1,9 @@
 """
-References of stiff problems: collocation at Radau's points in extended precision, of any order (E. Hairer, G. Wanner:
-Solving Ordinary Differential Equations II, section IV.5). Nothing is shared with the FMUs: all stages are solved for at
-once by Newton's method, Jacobians are differences, and the error is read off the Legendre coefficients of the polynomial.
+Compute references of stiff problems, by collocation at Radau points of any order, in extended precision.
+
+A step solves Z = h A F(x + Z) for all s stages at once by Newton's method, with Jacobians by differences (E. Hairer, G. Wanner: Solving Ordinary
+Differential Equations II, section IV.5). The last two Legendre coefficients of the collocation polynomial estimate its error and control the
+step. A step costs LU factorizations of size s n. No code is shared with the FMUs.
 """
 
 import functools
@@ -14,13 +16,13 @@ from scipy.linalg import lu_factor, lu_solve
 from references import solve
 
 Extended = np.longdouble
-TOLERANCE = 1e-13  # of the last Legendre coefficients, in units of max(1, |state|)
-ITERATION_LIMIT = 12
+TOLERANCE = 1e-13  # of the last two Legendre coefficients, in units of max(1, |state|)
+ITERATION_LIMIT = 12  # of Newton's method; a step that needs more is shortened
 
 
 @functools.cache
 def method(stages):
-    """Radau's points in (0, 1], the integrals of their Lagrange polynomials, and what makes the last two Legendre coefficients."""
+    """Return the Radau points in (0, 1], the matrix A, and the matrix from stages to the last two Legendre coefficients."""
     with mpmath.workdps(40):
         points = radau_points(stages)
         powers = mpmath.matrix(stages, stages)
@@ -36,7 +38,7 @@ def method(stages):
 
 
 def radau_points(stages):
-    """The roots of P_s(x) - P_(s-1)(x), one of which is x = 1, on [0, 1]."""
+    """Return the roots of P_s(x) - P_(s-1)(x), one of which is x = 1, mapped to [0, 1]."""
     guesses = legendre.legroots([*[0] * (stages - 1), -1, 1])
     difference = lambda x: mpmath.legendre(stages, x) - mpmath.legendre(stages - 1, x)
     inner = [mpmath.findroot(difference, mpmath.mpf(float(x.real))) for x in sorted(guesses)[:-1]]
@@ -45,8 +47,9 @@ def radau_points(stages):
 
 def extended_right_side(definition, values):
     """
-    f(x, changes) of a system of SymPy that does not depend on time, for states x of which each may be an array;
-    changes are values of inputs and parameters by name, in place of those given here.
+    Return the right-hand side f(x, changes) of an autonomous system of SymPy, in extended precision.
+
+    Each state in x may be an array. `changes` has values of inputs and parameters by name that replace `values`.
     """
     evaluate, n = definition.evaluator("numpy"), len(definition.q)
     names = [symbol.name for symbol in [*definition.inputs, *definition.parameters]]
@@ -60,7 +63,7 @@ def extended_right_side(definition, values):
 
 
 def jacobians(f, x):
-    """Those at the columns of x, by differences, which leave nine digits: as many iterations of Newton's method suffice."""
+    """Return the Jacobians at the columns of x, by differences with about nine correct digits, which suffice for Newton's method."""
     f0, count = f(x), len(x)
     result = np.empty((x.shape[1], count, count))
     for j in range(count):
@@ -72,7 +75,7 @@ def jacobians(f, x):
 
 
 def stages_of_step(f, x, h, points, A):
-    """Z = h F(x + Z) A^T, a column a stage; None where Newton's method does not converge."""
+    """Solve Z = h F(x + Z) A^T, with a column for each stage, by simplified Newton iterations; return None if they do not converge."""
     stages, count = len(points), len(x)
     scale = np.maximum(1, np.abs(x))[:, None]
     Z, factors, before = np.zeros((count, stages), Extended), None, np.inf
@@ -99,7 +102,7 @@ def stages_of_step(f, x, h, points, A):
 
 
 class Collocation:
-    """The motion x' = f(x, changes) in steps whose size goes on from one piece to the next."""
+    """The motion x' = f(x, changes); the step size is kept from one call of advance() to the next."""
 
     def __init__(self, f, x, stages):
         self.f, self.x, self.h = f, np.array(x, Extended), Extended(1e-6)
@@ -107,7 +110,7 @@ class Collocation:
         self.points, self.A, self.last_coefficients = method(stages)
 
     def advance(self, time, end, changes):
-        """Goes from time to end, with constant inputs and parameters."""
+        """Integrate from `time` to `end`, with constant inputs and parameters `changes`."""
         f, time, end = lambda x: self.f(x, changes), Extended(time), Extended(end)
         while time < end:
             is_last = time + self.h * Extended(1.001) >= end
@@ -129,7 +132,7 @@ class Collocation:
 
 
 def trajectory(f, start, times, steps, changes, stages):
-    """States at the times, which are ends of some of the evenly spaced steps; changes(k) are those in step k."""
+    """Return the states at `times`, which are ends of some of the equal steps; changes(k) has the inputs in step k."""
     motion, end, rows = Collocation(f, start, stages), times[-1], []
     wanted = {round(steps * t / end) for t in times}
     for k in range(steps):

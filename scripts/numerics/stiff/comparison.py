@@ -1,4 +1,4 @@
-"""Error against run time of stiff problems: the solver that chooses beside those it chooses from, SUNDIALS', SciPy's and exudyn's."""
+"""Compare the error against run time of stiff problems: auto, the methods that it chooses from, and those of SUNDIALS, SciPy and exudyn."""
 
 import math
 from dataclasses import dataclass
@@ -12,29 +12,31 @@ from numerics.stiff.peers import PEERS, can_express
 from numerics.stiff.problems import PROBLEMS, QUICK, relative, right_states
 from numerics.times import ratio, time_to
 
-METHODS = ["auto", "radau", "taylor", "bdf"]  # each has a build of all systems
+METHODS = ["auto", "radau", "taylor", "bdf"]  # each has a build folder of all systems
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 LEVELS = [1e-6, 1e-10]  # errors at which times are compared
-GOAL = 1.3  # the time of auto, in units of the better one of its two methods
-PATIENCE = 10.0  # seconds
-SLOW = 20.0  # methods that take this many times the time of auto are left out
-LONG = 0.3  # seconds, from which on one run is enough: what disturbs it is a small part
+GOAL = 1.3  # desired limit of the time of auto, in units of the time of the better of its two methods
+PATIENCE = 10.0  # s, after which a run is stopped
+SLOW = 20.0  # multiple of the time of auto after which another method is stopped
+LONG = 0.3  # s, from which on one run is enough, since disturbances are a small part
 
 
 @dataclass
 class Sample:
+    """Time and error of a run."""
+
     problem: str
     way: str  # of communication
     method: str
-    tolerance: float  # or the number of steps, of methods with fixed steps
+    tolerance: float  # or the number of fixed steps
     seconds: float
-    error: float  # the largest over the recorded communication points
+    error: float  # largest at the recorded communication points
     steps: int = 0
     evaluations: int = 0
 
 
 def sample(problem, way, method, tolerance, timeout):
-    """What a first run tells, whose time includes that of recording it."""
+    """Return the Sample of a first run, whose time includes recording; None if it fails."""
     steps, changing = problem.communication(way)
     stepped = step(method, problem.system, problem.values, problem.end, tolerance, steps, 0, timeout=timeout, changing=changing)
     if stepped is None:
@@ -46,7 +48,7 @@ def sample(problem, way, method, tolerance, timeout):
 
 
 def repeat(problem, way, sample):
-    """Runs again, without recording, as often as a fiftieth of a second has room for; the fastest counts."""
+    """Repeat a run without recording, as often as fits into 0.02 s; update the time by the fastest run."""
     steps, changing = problem.communication(way)
     repeats = int(min(max(0.02 / sample.seconds, 1), 500))
     stepped = step(sample.method, problem.system, problem.values, problem.end, sample.tolerance, steps, repeats, 0, changing=changing)
@@ -55,7 +57,7 @@ def repeat(problem, way, sample):
 
 
 def first_samples(problem, way, tolerances):
-    """One that gives up or is far slower than auto is not tried at smaller tolerances."""
+    """Return the Samples of first runs; a method that fails or is much slower than auto is not tried at tighter tolerances."""
     samples, given_up = [], set()
     for tolerance in sorted(tolerances, reverse=True):
         patience = PATIENCE
@@ -73,8 +75,8 @@ def first_samples(problem, way, tolerances):
 
 
 def sample_fmus(problem, way, tolerances, rounds):
-    """The methods take turns, so that what disturbs the machine disturbs all of them, and the fastest run counts."""
-    right_states(problem, way)  # before anything runs in vain
+    """Return the Samples of FMUs; the methods take turns, so that other load affects all of them, and the fastest run counts."""
+    right_states(problem, way)  # fails early if there is no reference
     samples = first_samples(problem, way, [t for t in tolerances if t >= problem.tightest])
     for _ in range(rounds - 1):
         for known in samples:
@@ -84,7 +86,7 @@ def sample_fmus(problem, way, tolerances, rounds):
 
 
 def sample_peers(problem, quick):
-    """A run each in one step, from rough to fine until one is too long; programs of others fail in ways of their own."""
+    """Return the Samples of other programs, one run for each setting, from coarse to fine until one takes too long; failures are skipped."""
     samples, exact = [], right_states(problem, "one step")[0][-1]
     for peer, (function, settings, _) in PEERS.items():
         for setting in settings[1::2] if quick else settings:
@@ -108,7 +110,7 @@ def problems(quick):
 
 
 def plan(quick):
-    """All (problem, way)."""
+    """Return all pairs (problem, way)."""
     return [(problem, way) for problem in problems(quick) for way in problem.ways]
 
 
@@ -123,7 +125,7 @@ def sample_problem(problem, quick, progress):
 
 
 def collect(quick, progress):
-    """(samples, a sentence about each problem that failed)."""
+    """Return the samples, and a sentence about each problem that failed, by its name."""
     samples, failures = [], {}
     for problem in problems(quick):
         try:
@@ -138,13 +140,13 @@ def seconds_to(samples, problem, way, method, level):
 
 
 def ratios(samples, problem, way, level):
-    """(auto to the better one of its methods, bdf to radau): times to the error level."""
+    """Return the ratios of times to the error level: of auto to the better of its methods, and of bdf to radau."""
     seconds = {method: seconds_to(samples, problem, way, method, level) for method in METHODS}
     return ratio(seconds["auto"], min(seconds["taylor"], seconds["radau"])), ratio(seconds["bdf"], seconds["radau"])
 
 
 def exudyn_ratio(samples, problem, way, level):
-    """The faster one of its methods to auto: infinite where it never gets there, not a number where it has no such problem."""
+    """Return the ratio of times of exudyn's faster method to auto: infinite if it does not reach the error, NaN if it cannot express the problem."""
     times = [seconds_to(samples, problem.name, way, peer, level) for peer in PEERS if peer.startswith("exudyn")]
     tried = not math.isnan(smallest_error(samples, problem.name, way, "exudyn"))
     return ratio(min(times), seconds_to(samples, problem.name, way, "auto", level)) if tried else math.nan
@@ -157,11 +159,11 @@ def smallest_error(samples, problem, way, program):
 HEADER = ["problem", "communication", "seconds", *(f"{pair}, error {level:g}" for level in LEVELS for pair in ("auto / better of taylor, radau", "bdf / radau")),
           *(f"exudyn / auto, error {level:g}" for level in LEVELS), "smallest error of SciPy", "smallest error of exudyn",
           "reference checked with", "largest difference"]  # fmt: skip
-EXUDYN = 3 + 2 * len(LEVELS)  # the first of its columns
+EXUDYN = 3 + 2 * len(LEVELS)  # index of exudyn's first column
 
 
 def rows(samples, quick):
-    """Without those of problems that failed."""
+    """Return the rows of all problems that did not fail."""
     table, sampled = [], {s.problem for s in samples}
     for problem, way in plan(quick):
         if problem.name not in sampled:
@@ -174,7 +176,7 @@ def rows(samples, quick):
 
 
 def worst(table, column):
-    """(the largest ratio, of which problem); infinite where one method alone gets to the error."""
+    """Return the largest ratio of a column and its problem; the ratio is infinite if only one method reaches the error."""
     known = [(row[column], f"{row[0]}, {row[1]}") for row in table if not math.isnan(row[column])]
     return max(known, default=(math.nan, "none"))
 
@@ -184,7 +186,7 @@ def factor(value):
 
 
 def summary(table):
-    """Two sentences for each error, the worst of each ratio."""
+    """Return sentences for each error level, with the worst of each ratio."""
     sentences = []
     for i, level in enumerate(LEVELS):
         known = [row[3 + 2 * i] for row in table if not math.isnan(row[3 + 2 * i])]

@@ -1,4 +1,4 @@
-"""The same stiff problems by other programs: SciPy, of the equations that SymPy derives, and exudyn, of bodies, springs and dampers."""
+"""Solve the stiff problems by other programs: SciPy, with SymPy's equations, and exudyn, with bodies, springs and dampers."""
 
 import contextlib
 import io
@@ -12,12 +12,12 @@ from numerics.mechanisms.peers import Exudyn
 from numerics.mechanisms.problems import GROUND, Body, Joint, Planar
 from numerics.programs import impatient, silence
 
-PATIENCE = 5.0  # seconds
-STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # of exudyn, which has no control of errors for implicit methods
+PATIENCE = 5.0  # s, after which a run is stopped
+STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # of exudyn, whose implicit methods have no error control
 
 
 def scipy_method(method):
-    """With the right side that SymPy writes for NumPy."""
+    """Return a function that solves a problem by a method of SciPy, with the right-hand side that SymPy writes for NumPy."""
 
     def run(problem, tolerance):
         definition, values = problem.definition, problem.all_values
@@ -31,7 +31,7 @@ def scipy_method(method):
 
 
 def bob(values, length, **what):
-    """A mass point, let go at the angle theta from the downward vertical."""
+    """Return a mass point that is released at the angle theta from the downward vertical."""
     centre = length * np.array([np.sin(values["theta"]), -np.cos(values["theta"])])
     return Planar([Body(values["m"], 0.0, centre)], gravity=values["g"], **what)
 
@@ -42,30 +42,32 @@ def on_a_spring(values):
 
 
 def on_a_rod(values):
-    """Damping of the hinge is a drag of the bob, which moves across the rod alone."""
+    """Return a mass point on a rod. The damping of the hinge is equivalent to drag, since the mass moves perpendicular to the rod."""
     return bob(values, values["l"], joints=[Joint(0, GROUND, np.zeros(2))], drag=values["b"] / values["l"] ** 2)
 
 
 PLANAR = {"ElasticPendulum": on_a_spring, "DampedPendulum": on_a_rod}
-# Of exudyn's Newton method, relative and absolute, where its own (1e-8 and 1e-10) take creeping for rest; springs do not let it get there.
+# Relative and absolute tolerance of exudyn's Newton method, where its own (1e-8, 1e-10) mistake creep for rest. Stiff springs do not allow these.
 NEWTON = {"DampedPendulum": (1e-12, 1e-14)}
 
 
 @dataclass
 class Mechanism:
+    """The attributes of a mechanism that Exudyn needs."""
+
     model: Planar
-    end: float
+    end: float  # s
 
 
 def polar(position, velocity):
-    """Length, angle from the downward vertical, within half a turn, and their rates."""
+    """Return length, angle from the downward vertical in [-pi, pi], and their rates."""
     (x, y, _), (vx, vy, _) = position, velocity
     length = np.hypot(x, y)
     return {"r": length, "theta": np.arctan2(x, -y), "vr": (x * vx + y * vy) / length, "omega": (x * vy - y * vx) / length**2}
 
 
 def exudyn_method(solver):
-    """An implicit method with as many fixed steps."""
+    """Return a function that solves a problem by an implicit method of exudyn, with a number of fixed steps."""
 
     def run(problem, steps):
         with silence(), contextlib.redirect_stdout(io.StringIO()):
@@ -84,7 +86,7 @@ def exudyn_method(solver):
 
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10]
 
-# Name: (function, tolerances or numbers of steps, the systems that it can express; None for all that SymPy derives).
+# Name: (function, tolerances or numbers of steps, systems that it can express; None: all systems with a derivation by SymPy).
 PEERS = {
     "SciPy Radau": (scipy_method("Radau"), TOLERANCES, None),
     "SciPy LSODA": (scipy_method("LSODA"), TOLERANCES, None),

@@ -1,4 +1,4 @@
-"""Stiff problems, and what is right: collocation of two orders, which must agree, for the equations that SymPy derives."""
+"""Define stiff problems and their references: collocation of two orders, which must agree, for SymPy's equations."""
 
 import functools
 import hashlib
@@ -15,8 +15,9 @@ from numerics.driver import POINTS, changing_input, description_of, step
 from numerics.stiff.collocation import extended_right_side, trajectory
 
 REFERENCES = ROOT / "build" / "report" / "references"
-STAGES = (12, 9)  # of the reference, and of the one that checks it
-# Of systems without a definition: the reference and what checks it, and seconds for each. bdf drowns in rounding errors below 1e-10.
+STAGES = (12, 9)  # of the reference, and of its check
+# Method and tolerance of the reference and of its check, for systems without a derivation by SymPy; limit of time in s for each.
+# Below 1e-10 rounding errors dominate bdf.
 BY_SOLVERS, LIMIT = (("radau", 1e-11), ("bdf", 1e-10)), 200
 
 
@@ -28,7 +29,7 @@ def van_der_pol():
 
 @functools.cache
 def flyball_governor():
-    """Masses as points in space: each rod's, by Simpson's rule, at its ends and its middle, which is exact for it."""
+    """Return the governor with mass points; each rod has masses at its ends and its middle by Simpson's rule, which is exact for a rod."""
     q, v = symbols("psi alpha s"), symbols("Omega nu vs")
     m, mArm, mSlider, J, L, a, k, c, g, tau = symbols("m mArm mSlider J L a k c g tau")
     psi, alpha, s = q
@@ -49,20 +50,22 @@ DEFINITIONS = {"VanDerPol": van_der_pol, "StiffGovernor": flyball_governor}
 
 @dataclass
 class Problem:
+    """A stiff problem."""
+
     name: str
-    system: str
-    end: float
-    steps: int  # of communication, where there are many: a multiple of POINTS
-    values: dict = field(default_factory=dict)
-    input: tuple = ()  # (name, amplitude) of one to change at every step
-    tightest: float = 1e-12  # tolerance to try: beyond, rounding errors are all that is left
+    system: str  # name of the FMU
+    end: float  # s
+    steps: int  # number of communication steps, where there are many: a multiple of POINTS
+    values: dict = field(default_factory=dict)  # start values and parameters other than the FMU's
+    input: tuple = ()  # (name, amplitude) of an input that can change at every step
+    tightest: float = 1e-12  # tightest tolerance; below it rounding errors dominate
 
     @property
     def ways(self):
         return ["one step", "many steps"] + (["an input that changes at every step"] if self.input else [])
 
     def communication(self, way):
-        """(steps, input that changes) of a way."""
+        """Return the number of communication steps and the changing input, or (), of a way of communication."""
         return (1 if way == "one step" else self.steps), (self.input if way.startswith("an input") else ())
 
     @property
@@ -71,7 +74,7 @@ class Problem:
 
     @functools.cached_property
     def definition(self):
-        """SymPy's derivation; None for a system that has none."""
+        """SymPy's derivation of the system; None if there is none."""
         if self.system in DEFINITIONS:
             return DEFINITIONS[self.system]()
         return systems_in_sympy.system(self.system) if self.system in systems_in_sympy.DEFINITIONS else None
@@ -96,12 +99,12 @@ def elastic(k, ratio):
 
 
 def damped(b):
-    """Over the time in which it creeps down."""
+    """Return the damped pendulum, over the time in which it creeps down."""
     return Problem(f"DampedPendulum, b = {b:g}", "DampedPendulum", round(b / 9.81), 200, dict(b=b), ("tau", 5.0))
 
 
 def relaxation(mu):
-    """Over two of its periods, (3 - 2 log 2) mu each."""
+    """Return van der Pol's oscillator, over two of its periods, (3 - 2 log 2) mu each."""
     return Problem(f"VanDerPol, mu = {mu:g}", "VanDerPol", 3.2 * mu, 200, dict(mu=mu), ("F", 0.1))
 
 
@@ -117,7 +120,11 @@ QUICK = [replace(elastic(1e6, 1.0), steps=200), damped(1e6), relaxation(1e2)]
 
 
 def right_states(problem, way):
-    """(the states at the times of the problem, a row each; how they were checked, the largest difference); kept in build/report."""
+    """
+    Return the reference: the states at the problem's times, a row each; a description of its check; and the largest difference.
+
+    The reference is cached in build/report/references.
+    """
     steps, changing = problem.communication(way)
     if not changing:
         steps = POINTS
@@ -144,7 +151,7 @@ def by_collocation(problem, steps, changing):
 
 
 def by_solvers(problem, steps, changing):
-    """For systems without a definition in SymPy: two methods, at tolerances below those that are compared."""
+    """Return the reference and its check by two methods at tight tolerances, for systems without a derivation by SymPy."""
     runs = []
     for solver, tolerance in BY_SOLVERS:
         runs.append(step(solver, problem.system, problem.values, problem.end, tolerance, steps, 0, timeout=LIMIT, changing=changing))
@@ -154,5 +161,5 @@ def by_solvers(problem, steps, changing):
 
 
 def relative(states, exact):
-    """The difference in units of max(1, |state|)."""
+    """Return the differences in units of max(1, |state|)."""
     return np.abs(states - exact) / np.maximum(1, np.abs(exact))

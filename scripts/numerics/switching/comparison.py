@@ -1,4 +1,4 @@
-"""Error against run time, and against the number of events, of systems that switch, beside importers of the same FMUs and other programs."""
+"""Compare the error against run time, and against the number of events, of systems with events, with importers of the FMUs and other programs."""
 
 import math
 import time
@@ -15,10 +15,10 @@ from numerics.times import ratio, take_turns, time_to
 
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 STEPS = [1000, 3000, 10000, 30000, 100000]  # of MuJoCo, multiples of POINTS
-COUNTS = [10, 30, 100, 300, 1000]  # of events
-TOLERANCE, LENGTH = 1e-8, 1e-3  # with which events are counted, and MuJoCo's step in seconds then
+COUNTS = [10, 30, 100, 300, 1000]  # numbers of events
+TOLERANCE, LENGTH = 1e-8, 1e-3  # tolerance, and step of MuJoCo in s, of the comparison against the number of events
 LEVELS = [1e-4, 1e-6, 1e-8]  # errors at which times are compared
-PATIENCE = 10.0  # seconds of a run; longer ones are not tried
+PATIENCE = 10.0  # s; after a longer run finer settings are not tried
 
 NOTES = [
     "An error is the largest of any position at 100 communication points, against closed forms evaluated with 30 digits: parabolas, Jacobi's elliptic "
@@ -37,22 +37,24 @@ NOTES = [
 
 @dataclass
 class Sample:
+    """The error and the times of a method with one setting."""
+
     problem: str
     method: str
     end: float  # s
-    setting: float  # tolerance, or the number of steps where these are fixed
+    setting: float  # tolerance, or the number of fixed steps
     error: float
-    events: int  # that the FMU has counted; 0 of others
+    events: int  # counted by the FMU; 0 for other programs
     times: list = field(default_factory=list)  # seconds of each round
 
 
 def methods_of(problem):
-    """Those that can express it."""
+    """Return the methods that can express the problem."""
     return [method for method, (program, _) in METHODS.items() if program in ("FMU", "importer", *problem.methods)]
 
 
 def first_run(problem, method, setting, patience):
-    """(what runs, its sample), or None where the method gives up: programs of others fail in ways of their own."""
+    """Return a runner and its Sample without times; None if the method fails, by whatever exception."""
     try:
         runner = METHODS[method][1](problem, setting, patience)
         with np.errstate(all="ignore"):
@@ -65,8 +67,8 @@ def first_run(problem, method, setting, patience):
 
 
 def runners_of(problem, settings_of, patience=PATIENCE):
-    """(what runs with its sample, methods that are not installed); the settings of a method go from rough to fine, until one is too slow."""
-    problem.exact  # before the clock runs
+    """Return pairs of runner and Sample, and the methods that are not installed; settings go from coarse to fine until one is too slow."""
+    problem.exact  # computed before the clock starts
     runners, missing = [], set()
     for method in methods_of(problem):
         for setting in settings_of(method):
@@ -90,7 +92,7 @@ def sample_problem(problem, settings_of, quick):
 
 
 def settings(quick):
-    """Of a method."""
+    """Return a function of a method that returns its settings."""
     return lambda method: (STEPS if method.startswith("MuJoCo") else TOLERANCES)[:: 2 if quick else 1]
 
 
@@ -100,7 +102,7 @@ def one_setting(problem):
 
 
 def grown(problem, quick, progress):
-    """((events, sample) for more and more of them, methods that are not installed)."""
+    """Return pairs (number of events, Sample) for growing numbers of events, and the methods that are not installed."""
     samples, missing = [], set()
     for count in COUNTS[:3] if quick else COUNTS:
         longer = problem.with_events(count)
@@ -111,7 +113,7 @@ def grown(problem, quick, progress):
 
 
 def collect(quick, progress):
-    """(samples, (events, sample) for more and more events, methods that are not installed, sentences about what failed)."""
+    """Return the samples, pairs (number of events, Sample), the methods that are not installed, and sentences about failures."""
     samples, counted, missing, failures = [], [], set(), []
     for problem in PROBLEMS:
         try:
@@ -130,7 +132,7 @@ def collect(quick, progress):
 
 
 def points_of(samples, problem, method, of=min):
-    """(seconds, error) of each setting."""
+    """Return (seconds, error) for each setting."""
     return [(of(s.times), s.error) for s in samples if (s.problem, s.method) == (problem.name, method) and s.times]
 
 
@@ -141,12 +143,12 @@ def sample_row(sample):
     return [sample.problem, sample.method, sample.end, sample.setting, sample.error, sample.events, min(sample.times), median(sample.times)]
 
 
-OTHERS = list(METHODS)[1:]  # beside the FMU
+OTHERS = list(METHODS)[1:]  # all methods but the FMU
 HEADER = ["problem", "error", "FMU [µs]", *(f"{method} / FMU" for method in OTHERS)]
 
 
 def row(samples, missing, problem, level):
-    """Times to an equal error, infinite where a method never gets there; not a number where it cannot express the problem."""
+    """Return a row of times to an equal error: infinite if a method does not reach it, NaN if it cannot express the problem."""
     tried = [method for method in methods_of(problem) if method not in missing]
     seconds = {method: time_to(points_of(samples, problem, method), level) if method in tried else math.nan for method in METHODS}
     return [problem.title, level, 1e6 * seconds["FMU"], *(ratio(seconds[method], seconds["FMU"]) for method in OTHERS)]
@@ -161,7 +163,7 @@ COUNTED = ["problem", "events", *(f"{method}, {what}" for what in ("error", "µs
 
 
 def counted_rows(counted):
-    """Empty where a method gave up, was too slow, or cannot express the problem."""
+    """Return the rows for growing numbers of events; a cell is empty if a method failed, was too slow, or cannot express the problem."""
     table = []
     for problem in GROWING:
         for count in dict.fromkeys(count for count, s in counted if s.problem == problem.name):
@@ -177,7 +179,7 @@ def factor(value):
 
 
 def summary(table, samples):
-    """A sentence for each error: how many times that of the FMU the others take."""
+    """Return a sentence for each error level, with the ratios of the other methods' times to that of the FMU."""
     sentences = []
     for level in LEVELS[1:]:
         others = []

@@ -1,4 +1,4 @@
-"""Systems that switch by other programs: each is built before the clock runs, and recorded apart from the timed run."""
+"""Simulate systems with events by other programs; models are built before the clock starts, and recorded in a run that is not timed."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -7,21 +7,21 @@ from scipy.optimize import brentq
 from numerics.driver import POINTS, step
 from numerics.programs import FmpyCvode, impatient, timed
 
-ROUND = 0.02  # seconds of one program in one round
+ROUND = 0.02  # s of one program in one round
 
 
 def repeats_for(seconds):
-    """How many runs of so many seconds a round has."""
+    """Return the number of runs of a round, for runs of this time in s."""
     return int(min(max(ROUND / seconds, 1), 500))
 
 
 class Timed:
-    """A call from Python."""
+    """A runner whose simulate() is timed from Python."""
 
     repeats = 1
 
     def run(self):
-        """The fastest of several repeats."""
+        """Return the seconds of the fastest of several repeats."""
         seconds = min(timed(self.simulate)[0] for _ in range(self.repeats))
         self.repeats = repeats_for(seconds)
         return seconds
@@ -31,14 +31,14 @@ class Timed:
 
 
 class Fmu:
-    """The FMU in a C program with so many communication steps; importer: by CVODE in model exchange, asked as often."""
+    """The FMU in a C program with `steps` communication steps; if `importer`, by CVODE in model exchange with as many output points."""
 
     def __init__(self, problem, tolerance, patience, steps=POINTS, importer=False):
         self.words = ("shipped", problem.system, problem.values, problem.end, tolerance, steps)
         self.names, self.importer, self.patience, self.repeats, self.events = problem.compared, importer, patience, 1, 0
 
     def run(self):
-        """The fastest of several repeats, whose loop alone is timed."""
+        """Return the seconds of the fastest of several repeats of the simulation loop."""
         stepped = step(*self.words, self.repeats, 0, importer=self.importer)
         self.repeats = repeats_for(stepped.seconds)
         return stepped.seconds
@@ -52,14 +52,14 @@ class Fmu:
 
 
 class Fmpy(Timed):
-    """FMPy's loop in Python around CVode, of the same FMU in model exchange."""
+    """The same FMU in model exchange, by FMPy's loop in Python around CVode."""
 
     def __init__(self, problem, tolerance, patience):
         self.simulate = FmpyCvode(problem.system, problem.values, problem.end, problem.compared, tolerance).simulate
 
 
 class Scipy(Timed):
-    """A call of solve_ivp for each phase, ended by its event."""
+    """SciPy, with a call of solve_ivp for each phase, which its event ends."""
 
     def __init__(self, problem, tolerance, patience):
         self.problem, self.tolerance, self.patience = problem, tolerance, patience
@@ -89,12 +89,12 @@ class Scipy(Timed):
         return event
 
 
-# Seconds in which an event is not seen again: heyoka's own choice passes over bounces that are close to one another, and none at all sees one twice.
+# s, in which heyoka does not detect an event again. Its default misses bounces that are close together; 0 detects an event twice.
 COOLDOWN = 1e-12
 
 
 class Heyoka(Timed):
-    """An integrator for each phase, compiled before the clock runs, ended by its terminal event."""
+    """heyoka, with an integrator for each phase, which is compiled before the clock starts; a terminal event ends the phase."""
 
     def __init__(self, problem, tolerance, patience):
         import heyoka
@@ -140,12 +140,20 @@ class Heyoka(Timed):
 
 
 def contact_rate(length):
-    """Radians a second of a contact's spring, for steps of so many seconds: in shorter steps it is stiffer, and has more steps as well, as both make errors."""
+    """
+    Return the angular frequency of a contact's spring in rad/s, for a step in s.
+
+    With shorter steps the spring is stiffer, but also resolved by more steps: softness and step size both contribute to the error.
+    """
     return 0.3 * (length / 0.01) ** 0.25 / length
 
 
 def damping_ratio(restitution):
-    """Of a spring and damper that push and do not pull: a body leaves them when their force is 0 (Schwager and Pöschel, 2007)."""
+    """
+    Return the damping ratio of a spring and damper that gives a restitution; they push only, and a body leaves when their force is 0.
+
+    Source: T. Schwager, T. Pöschel: Coefficient of restitution and linear-dashpot model revisited, 2007.
+    """
     def excess(damping):
         rate = np.sqrt(1 - damping**2)
         return -damping / rate * (np.pi - np.arctan2(2 * damping * rate, rate**2 - damping**2)) - np.log(restitution)
@@ -154,7 +162,7 @@ def damping_ratio(restitution):
 
 
 class MuJoCo(Timed):
-    """Contacts as MuJoCo has them, soft: as stiff as the steps allow, and damped so that they give the restitution."""
+    """MuJoCo with soft contacts, as stiff as the steps allow, and with the damping of the restitution."""
 
     def __init__(self, problem, steps, integrator, patience):
         import mujoco
@@ -187,7 +195,7 @@ class MuJoCo(Timed):
         return np.array(rows)
 
 
-# Method: (program, what builds it of (problem, tolerance or number of steps, patience)).
+# Method: (program, function of (problem, tolerance or number of steps, patience) that builds the runner).
 METHODS = {
     "FMU": ("FMU", Fmu),
     "FMU, one step": ("FMU", lambda problem, tolerance, patience: Fmu(problem, tolerance, patience, 1)),

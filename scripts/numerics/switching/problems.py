@@ -1,4 +1,4 @@
-"""Systems that switch at events, with their motions in closed form, and once more as phases that other programs are built from."""
+"""Define systems with events, with their motions in closed form, and as phases from which other programs are built."""
 
 import functools
 import math
@@ -12,31 +12,33 @@ from closed_forms import pendulum_angle, pendulum_half_period
 from fmu import start_values
 from numerics.driver import POINTS
 
-DIGITS = 30
+DIGITS = 30  # of the closed forms
 
 
 @dataclass
 class Phase:
-    """What holds between events, for one coordinate; functions take it, its velocity, and a module with sin."""
+    """The motion of one coordinate between events."""
 
-    acceleration: Callable
-    guard: Callable | None = None  # the phase ends where this falls through 0
-    leave: Callable | None = None  # (coordinate, velocity, tolerance) before to (coordinate, velocity, name of the next phase)
+    acceleration: Callable  # function of coordinate, velocity, and a module with sin
+    guard: Callable | None = None  # function of coordinate and velocity; the phase ends when it decreases through 0
+    leave: Callable | None = None  # maps (coordinate, velocity, tolerance) before the event to (coordinate, velocity, name of the next phase)
 
 
 @dataclass
 class Switching:
-    system: str  # in fmu/
+    """A system with events, and its motion in closed form."""
+
+    system: str  # name of the FMU
     title: str
-    values: dict  # start values other than the FMU's own
+    values: dict  # start values and parameters other than the FMU's
     end: float  # s
-    compared: list  # positions, which do not jump
-    positions: Callable  # (values, times): rows of what is compared
-    end_of: Callable | None  # (values, n): a time behind n events
-    phases: Callable | None = None  # values: phases by name, the first of which is the start; None where they are too many to write down
-    stiff: Callable | None = None  # values: the body of a MuJoCo model whose contact is a spring with a damper
+    compared: list  # names of positions, which do not jump
+    positions: Callable  # function of (values, times) that returns rows of the compared positions
+    end_of: Callable | None  # function of (values, n) that returns a time after n events
+    phases: Callable | None = None  # function of values that returns the phases by name, the first one first; None if there are too many
+    stiff: Callable | None = None  # function of (values, contact) that returns the body of a MuJoCo model with a spring and damper as contact
     methods: tuple = ()  # programs that can express it, beside importers of the FMU
-    label: str = ""  # what tells it from others with the same system
+    label: str = ""  # distinguishes problems with the same system
 
     @property
     def name(self):
@@ -57,17 +59,17 @@ class Switching:
 
     @property
     def start(self):
-        """Of the only coordinate and its velocity."""
+        """Start values of the coordinate and its velocity, for systems with one coordinate."""
         name = self.compared[0]
         velocity = {"h": "v", "theta": "omega", "x": "v"}[name]
         return np.array([self.all_values[name], self.all_values[velocity]], dtype=float)
 
     def error(self, rows):
-        """The largest of any position at the last communication points, of which there are so many rows."""
+        """Return the largest error of any position; `rows` belong to the last communication points."""
         return float(np.max(np.abs(rows - self.exact[-len(rows) :])))
 
     def with_events(self, count):
-        """Until so many have happened."""
+        """Return the problem with an end after `count` events."""
         return replace(self, end=float(self.end_of(self.all_values, count)))
 
 
@@ -75,7 +77,7 @@ def exactly(values, *names):
     return [mpmath.mpf(values[name]) for name in names]
 
 
-# A run ends a little before the middle between two events, so that its communication points see all phases of the motion.
+# A run ends slightly before the middle between two events, so that its communication points sample all phases of the motion.
 BEFORE = 0.6
 
 
@@ -83,10 +85,10 @@ BEFORE = 0.6
 
 
 def ball_heights(values, times):
-    """Parabolas, each e^2 as high as the one before; at rest from sqrt(2 h/g) (1 + e)/(1 - e) on."""
+    """Return the heights: parabolas, each e^2 as high as the previous one; rest from t = sqrt(2 h/g) (1 + e)/(1 - e) on."""
     height, g, e = exactly(values, "h", "g", "e")
     fall = mpmath.sqrt(2 * height / g)
-    start, speed = -fall, g * fall  # of the parabola on which the ball begins, at its foot
+    start, speed = -fall, g * fall  # time and speed at the begin of the first parabola, extended back to the ground
     rest = fall * (1 + e) / (1 - e) if e < 1 else mpmath.inf
     rows = []
     for time in map(mpmath.mpf, times):
@@ -114,13 +116,13 @@ def ball_body(values, contact):
 
 
 def quarter(values, k):
-    """Seconds between the turning point whose half angle has the sine k, and the stop on the other side."""
+    """Return the time in s from a turning point, at the angle 2 asin(k), to the stop on the other side, by elliptic integrals."""
     g, length, stop = exactly(values, "g", "l", "thetaStop")
     return (mpmath.ellipk(k * k) + mpmath.ellipf(mpmath.asin(-mpmath.sin(stop / 2) / k), k * k)) / mpmath.sqrt(g / length)
 
 
 def pendulum_angles(values, times):
-    """Between impacts the motion from a turning point, 2 asin(k cd(rate t, k)), whose energy an impact takes down."""
+    """Return the angles: between impacts theta = 2 asin(k cd(rate t, k)) from a turning point; an impact reduces the energy and k."""
     g, length, e, stop, theta = exactly(values, "g", "l", "e", "thetaStop", "theta")
     rate, low, k = mpmath.sqrt(g / length), mpmath.sin(stop / 2), mpmath.sin(theta / 2)
     turning, rows, half = mpmath.mpf(0), [], quarter(values, k)
@@ -151,12 +153,12 @@ def pendulum_body(values, contact):
 
 @dataclass
 class Slips:
-    """The block is at rest at first, slips until the belt has taken it along, and from then on sticks and slips by turns."""
+    """The motion of the block: at rest at first, it slips until it has the belt's velocity, and then sticks and slips alternately."""
 
-    rate: float
-    centre: float  # of slips
-    limit: float  # where the block slips
-    belt: float
+    rate: float  # angular frequency of the slips, in rad/s
+    centre: float  # center of the oscillation in a slip, in m
+    limit: float  # position at which the block begins to slip, in m
+    belt: float  # velocity of the belt, in m/s
 
     @classmethod
     def of(cls, values):
@@ -174,7 +176,7 @@ class Slips:
 
     @property
     def slip(self):
-        """Its seconds: half a turn, and twice the angle whose tangent is that of the start."""
+        """Duration of a slip in s: half a period, and twice the phase at the start."""
         return (mpmath.pi + 2 * mpmath.atan(self.belt / self.rate / (self.limit - self.centre))) / self.rate
 
     @property
@@ -214,7 +216,7 @@ def block_phases(values):
 
 
 def cradle_angles(values, times):
-    """One of the two outer balls swings at a time, the others hang."""
+    """Return the angles: one of the two outer balls swings at a time, and the others hang."""
     rate = math.sqrt(values["g"] / values["l"])
     angles = [pendulum_angle(values["theta[1]"], rate, time) for time in times]
     return [[min(angle, 0.0), 0.0, 0.0, 0.0, max(angle, 0.0)] for angle in angles]

@@ -1,4 +1,4 @@
-"""Error against run time of bodies that touch the ground, beside MuJoCo and Drake."""
+"""Compare the error against run time of bodies in contact with the ground, with MuJoCo and Drake."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,9 +10,9 @@ from numerics.times import take_turns, time_to
 from numerics.touching.peers import Drake, DrakeQuadruped, Fmu, FmuQuadruped, MuJoCo, MuJoCoQuadruped
 from numerics.touching.problems import PROBLEMS
 
-STEPS = [1e-2, 2e-3, 1e-3, 2e-4, 1e-4]  # s
-TOLERANCES = [1e-6, 1e-8, 1e-10]
-# Of compliant contacts: m that a body sinks, roughly, and in creep mm/s.
+STEPS = [1e-2, 2e-3, 1e-3, 2e-4, 1e-4]  # s, of MuJoCo and Drake
+TOLERANCES = [1e-6, 1e-8, 1e-10]  # of the FMU with rigid contacts
+# Settings of compliant contacts: the approximate penetration in m, and a thousandth of the creep velocity in m/s.
 SOFTNESS = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
 METHODS = ["FMU, rigid", "FMU, compliant", "MuJoCo", "Drake"]
 HEADER = ["problem", "error", "to", *(f"{method} [ms]" for method in METHODS)]
@@ -30,14 +30,18 @@ NOTES = [
 
 @dataclass
 class Sample:
+    """The error and the times of a method with one setting."""
+
     problem: str
     method: str
     setting: float  # tolerance, step in s, or softness
     error: float
-    times: list = field(default_factory=list)
+    times: list = field(default_factory=list)  # seconds of each round
 
 
 class Runner:
+    """A run for take_turns(): run() returns its seconds."""
+
     def __init__(self, run):
         self.result = run
 
@@ -46,7 +50,7 @@ class Runner:
 
 
 def ways():
-    """(name of the problem, method, setting, what builds the run)."""
+    """Yield (name of the problem, method, setting, function that builds the run)."""
     for problem in PROBLEMS:
         yield from ((problem.name, METHODS[0], tolerance, partial(Fmu, problem, tolerance, False)) for tolerance in TOLERANCES)
         if problem.soft:
@@ -60,7 +64,7 @@ def ways():
 
 
 def collect(quick, progress):
-    """(samples, methods that are not installed, sentences about what failed)."""
+    """Return the samples, the methods that are not installed, and sentences about failures."""
     runners, missing, failures = [], set(), []
     with silence():
         for name, method, setting, build in ways():
@@ -71,7 +75,7 @@ def collect(quick, progress):
                 error = run()[1]
             except ImportError:
                 missing.add(method)
-            except Exception as problem:  # programs of others fail in ways of their own
+            except Exception as problem:  # other programs may raise any exception
                 failures.append(failure(f"{name} by {method}", problem))
             else:
                 if math.isfinite(error):
@@ -86,7 +90,7 @@ def points_of(samples, problem, method):
 
 
 def cell(points, level):
-    """ms; "never" where no setting gets there, and empty where the program has no such thing."""
+    """Return the time in ms; "never" if no setting reaches the error, and "" if the program cannot express the problem."""
     seconds = time_to(points, level) if points else None
     return "" if seconds is None else "never" if math.isinf(seconds) else seconds * 1e3
 

@@ -1,4 +1,4 @@
-"""What touches, by each program: built before the clock runs; its processor time counts."""
+"""Simulate bodies in contact by each program; models are built before the clock starts, and processor time counts."""
 
 import logging
 import time
@@ -13,7 +13,7 @@ CPU = time.process_time
 
 
 class Fmu:
-    """In a C program, in one communication step; soft: by compliant contacts, stiffer and with less creep the finer the setting."""
+    """The FMU in a C program, in one communication step; if `soft`, with compliant contacts, whose stiffness and creep follow the setting."""
 
     def __init__(self, problem, setting, soft):
         self.problem, name, body = problem, problem.soft if soft else problem.rigid, problem.body
@@ -40,6 +40,8 @@ class Fmu:
 
 
 class FmuQuadruped:
+    """The quadruped as an FMU with compliant contacts."""
+
     def __init__(self, tolerance):
         self.words = ("touching", "Quadruped", {}, STANDS, tolerance, 1)
 
@@ -51,7 +53,7 @@ class FmuQuadruped:
 
 
 class MuJoCo:
-    """Soft contacts: as stiff as the steps allow, with elliptic cones; a restitution is that of a spring with a damper."""
+    """MuJoCo with soft contacts, as stiff as the steps allow, and elliptic friction cones; a spring and damper give the restitution."""
 
     def __init__(self, problem, length):
         import mujoco
@@ -78,6 +80,8 @@ class MuJoCo:
 
 
 class MuJoCoQuadruped:
+    """The quadruped in MuJoCo."""
+
     def __init__(self, length):
         import mujoco
 
@@ -110,7 +114,11 @@ class MuJoCoQuadruped:
 
 
 class DrakePlant:
-    """A discrete MultibodyPlant on a plane. Spheres touch at a point, stiffer in shorter steps; a box, of which that would be one corner, by a pressure field."""
+    """
+    A discrete MultibodyPlant of Drake on a plane.
+
+    Spheres have point contact, stiffer with shorter steps. A box has hydroelastic contact, since point contact would act at one corner only.
+    """
 
     def __init__(self, length, friction, gravity):
         from pydrake.math import RigidTransform
@@ -120,7 +128,7 @@ class DrakePlant:
 
         self.builder = DiagramBuilder()
         self.plant, _ = AddMultibodyPlantSceneGraph(self.builder, time_step=length)
-        logging.getLogger("drake").setLevel(logging.ERROR)  # it warns of half spaces, which deformable bodies do not touch
+        logging.getLogger("drake").setLevel(logging.ERROR)  # suppresses the warning that half spaces do not touch deformable bodies
         self.friction = CoulombFriction(friction, friction)
         properties = ProximityProperties()
         AddContactMaterial(friction=self.friction, properties=properties)
@@ -145,6 +153,8 @@ class DrakePlant:
 
 
 class Drake:
+    """A problem in Drake; each run builds the plant again."""
+
     def __init__(self, problem, length):
         self.problem, self.length = problem, length
         self.build()
@@ -184,6 +194,8 @@ class Drake:
 
 
 class DrakeQuadruped:
+    """The quadruped in Drake."""
+
     def __init__(self, length):
         self.length = length
 

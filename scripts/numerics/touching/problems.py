@@ -1,4 +1,4 @@
-"""Bodies that touch the ground, with where they are in the end in closed form."""
+"""Define bodies in contact with the ground, with their final positions in closed form."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,19 +14,21 @@ BALL, BOX = {"mass": 0.17, "radius": 0.0286}, {"mass": 2.0, "sizes": (0.2, 0.2, 
 
 @dataclass
 class Touching:
+    """A body that starts on or above the ground."""
+
     name: str
     title: str
-    body: dict  # a ball by its mass and radius, a box by its mass and sizes
-    friction: float
-    velocity: tuple  # m/s, along the world's axes
-    spin: tuple  # rad/s
+    body: dict  # a ball with "mass" in kg and "radius" in m, or a box with "mass" and "sizes"
+    friction: float  # coefficient of friction
+    velocity: tuple  # m/s
+    spin: tuple  # angular velocity, in rad/s
     end: float  # s
-    place: Callable  # of the time: x, y and height above where it touches
-    rigid: str  # the FMU with exact contacts
-    soft: str | None  # the FMU with compliant ones; NULL where their law has no such parameter
-    slope: float = 0.0  # rad, along x
+    place: Callable  # function of time that returns x, y and the height above contact, in m
+    rigid: str  # name of the FMU with rigid contacts
+    soft: str | None  # name of the FMU with compliant contacts; None if their law has no restitution
+    slope: float = 0.0  # of the ground, along x, in rad
     restitution: float = 0.0
-    height: float = 0.0  # m, above where it touches
+    height: float = 0.0  # start height above contact, in m
 
     @property
     def gravity(self):
@@ -37,7 +39,7 @@ class Touching:
         return self.body["radius"] if "radius" in self.body else self.body["sizes"][2] / 2
 
     def error(self, place):
-        """In m."""
+        """Return the largest error of a final position (x, y, height), in m."""
         return float(np.max(np.abs(np.array(place) - self.place(self.end))))
 
 
@@ -54,7 +56,7 @@ def sliding_to_rest(speed, friction):
 
 
 def cue_ball(velocity, spin, radius, friction):
-    """A parabola until it rolls, then a line: friction acts against the slip, whose direction stays."""
+    """Return the position as a function of time: a parabola while the ball slips, since the direction of slip is constant, and then a line."""
 
     def place(t):
         slip = np.array([velocity[0] - radius * spin[1], velocity[1] + radius * spin[0]])
@@ -89,7 +91,7 @@ PROBLEMS = [
     Touching("drop", "ball that is dropped, restitution 0.8", BALL, 0.2, (0, 0, 0), (0, 0, 0), 2.0, bouncing(1.0, 0.8), "RigidBall", None, restitution=0.8, height=1.0),
 ]  # fmt: skip
 
-# Stands for ten seconds; the weight that its feet bear in the end, and should.
+# The quadruped stands for STANDS s; the force on its feet at the end should be its WEIGHT in N. HEIGHT is the start height in m.
 QUADRUPED = SYSTEMS / "Quadruped" / "dog.urdf"
 STANDS, WEIGHT, HEIGHT = 10.0, 14 * GRAVITY, 0.385
 SERVOS = {f"{leg}_{joint}": angle for leg in ("lf", "rf", "lh", "rh") for joint, angle in (("hip", 0.5), ("knee", -1.0))}

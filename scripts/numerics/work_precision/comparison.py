@@ -1,4 +1,4 @@
-"""Error against run time: every system, solver, tolerance and communication step, and the same problems by others."""
+"""Compare the error against run time of all systems, solvers, tolerances and communication steps, and of other programs."""
 
 import math
 import re
@@ -12,17 +12,19 @@ from numerics.failures import failure
 from numerics.work_precision.peers import PEERS
 from numerics.work_precision.scenarios import QUICK, SCENARIOS, error_at_end, errors, reference, states_of
 
-LEVELS = [1e-6, 1e-10]  # errors at which the summary compares
+LEVELS = [1e-6, 1e-10]  # errors at which the summary compares times
 
 
 @dataclass
 class Sample:
+    """Time and error of a run."""
+
     system: str
     method: str  # shipped, taylor, erk, bdf or a peer
-    tolerance: float  # or the step size, of methods with fixed steps
-    step: float  # communication step; 0 for peers
+    tolerance: float  # or the step in s, of methods with fixed steps
+    step: float  # communication step in s; 0 for peers
     seconds: float
-    error: float  # the largest over the recorded communication points
+    error: float  # largest at the recorded communication points
     error_at_end: float
     steps: int = 0
     evaluations: int = 0
@@ -40,7 +42,7 @@ def sample_fmu(name, solver, tolerance, communication_step):
 
 
 def sample_peer(name, peer, tolerance):
-    """None where the peer is not installed or does not come to the end: programs of others fail in ways of their own."""
+    """Return the Sample of another program; None if it is not installed or fails, by whatever exception."""
     function, _, _ = PEERS[peer]
     try:
         result = function(name, tolerance)
@@ -53,7 +55,7 @@ def sample_peer(name, peer, tolerance):
 
 
 def own_solver(name):
-    """The method that the FMU is shipped with."""
+    """Return the method of the FMU as shipped."""
     code = (folder_of("shipped") / "systems" / name / "system.c").read_text()
     return re.search(r"\.solver = &solver_([a-z]+)", code).group(1)
 
@@ -63,7 +65,7 @@ def chosen(quick):
 
 
 def plan(quick):
-    """All (function, arguments) to sample."""
+    """Return all tasks as (function, arguments)."""
     tolerances = [10.0**-k for k in (range(4, 13, 2) if quick else range(3, 15))]
     tasks = []
     for name in chosen(quick):
@@ -78,7 +80,7 @@ def plan(quick):
 
 
 def collect(tasks, progress):
-    """(samples, how often each method failed, sentences about systems that have no reference)."""
+    """Return the samples, the number of failures of each method, and sentences about systems without a reference."""
     samples, failures, without = [], {}, {}
     for name in dict.fromkeys(arguments[0] for _, arguments in tasks):
         try:
@@ -101,21 +103,21 @@ def write_csv(samples, path, type_of_samples=Sample):
 
 
 def best_seconds(samples, name, methods, level, steps=None):
-    """The shortest time to an error at the end of at most level; infinite where none got there."""
+    """Return the shortest time to an error at the end of at most `level`; infinite if no method reaches it."""
     times = [s.seconds for s in samples if s.system == name and s.method in methods and s.error_at_end <= level
              and (steps is None or s.step in (0.0, steps))]  # fmt: skip
     return min(times, default=math.inf)
 
 
 def rivals(samples):
-    """Method groups beside the FMU as shipped."""
+    """Return the groups of methods that are compared with the FMU as shipped, by name."""
     groups = {"SUNDIALS in the same FMU (the better of erk and bdf)": ["erk", "bdf"], "the same FMU with taylor": ["taylor"]}
     groups |= {peer: [peer] for peer in PEERS if any(s.method == peer for s in samples)}
     return groups
 
 
 def ratios(samples, level):
-    """For each rival: (its name, the ratios of its time to ours by system, systems where it never got there)."""
+    """Return for each group (name, ratios of its time to the FMU's by system, systems on which it does not reach the error)."""
     systems = list(dict.fromkeys(s.system for s in samples))
     rows = []
     for rival, methods in rivals(samples).items():
@@ -140,7 +142,7 @@ def factor(value):
 
 
 def summary(samples):
-    """For the first screen, for each level: a sentence, and one for each rival."""
+    """Return for each level a sentence and a list with a sentence for each group, for the head of the page."""
     systems = list(dict.fromkeys(s.system for s in samples))
     levels = []
     for level in LEVELS:

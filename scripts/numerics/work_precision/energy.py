@@ -1,4 +1,4 @@
-"""Energy over long runs: what a method does to an invariant that no tolerance asks it to keep."""
+"""Measure the drift of the energy over long runs, an invariant that no tolerance controls directly."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ METHODS = [("taylor", 1e-15), ("taylor", 1e-10), ("erk", 1e-10), ("bdf", 1e-8)]
 
 
 def drifts(name, solver, tolerance, end):
-    """(times, relative change of the energy) at 1000 communication points."""
+    """Return times, and changes of the energy relative to the largest kinetic energy, at 1000 communication points; None if the FMU fails."""
     stepped = step(solver, name, RUNS[name], end, tolerance, 1000, 0, points=1000, timeout=300)
     if stepped is None:
         return None

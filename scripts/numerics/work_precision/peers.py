@@ -1,4 +1,4 @@
-"""The same problems by other programs; each function returns (seconds, states at times_of(name)), or None."""
+"""Solve the problems by other programs; each function returns (seconds, states at times_of(name)), or None after a failure."""
 
 import functools
 
@@ -37,7 +37,7 @@ def fmpy_cvode(name, tolerance):
 
 
 def heyoka_series(name, tolerance):
-    """The accelerations solved by SymPy, numbers for parameters; compilation is not in the time. At the end alone."""
+    """Solve a problem by heyoka, with accelerations that SymPy solves for and numeric parameters; return the states at the end only, without compilation time."""
     integrator, start = heyoka_integrator(name)
     integrator = type(integrator)(integrator.sys, start, tol=tolerance)
     end = SCENARIOS[name][1]
@@ -81,7 +81,7 @@ def chain_model(values, h, integrator, count=10):
 
 
 def mujoco_steps(integrator):
-    """MuJoCo with fixed steps; "tolerance" is the step size. The chain's joints are relative angles."""
+    """Return a function that solves a problem by MuJoCo with fixed steps h in s; the joints of the chain are relative angles."""
 
     def run(name, h):
         import mujoco
@@ -113,13 +113,13 @@ def mujoco_steps(integrator):
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
 STEP_SIZES = [1e-2, 1e-3, 1e-4]
 
-# Name: (function, tolerances, the systems that it can express; None for all).
+# Name: (function, tolerances or steps, systems that it can express; None for all).
 PEERS = {
     "SciPy DOP853": (scipy_method("DOP853"), TOLERANCES, None),
     "SciPy LSODA": (scipy_method("LSODA"), TOLERANCES, None),
     "SciPy Radau": (scipy_method("Radau"), TOLERANCES[:4], None),
     "FMPy CVode (model exchange)": (fmpy_cvode, TOLERANCES, None),
-    # It needs the accelerations solved for in symbols, which does not end for ten rods.
+    # heyoka needs symbolic accelerations, which SymPy does not find in reasonable time for ten rods.
     "heyoka": (heyoka_series, [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 2.2e-16], [name for name in SCENARIOS if name != "ChainPendulum"]),
     "MuJoCo RK4": (mujoco_steps("RK4"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),
     "MuJoCo Euler": (mujoco_steps("Euler"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),

@@ -1,4 +1,4 @@
-"""What is simulated, and what is right: 20 digits of SymPy's equations, checked with closed forms where they exist."""
+"""Define the simulated scenarios and their references: SymPy's equations with 20 digits, checked by closed forms where these exist."""
 
 import functools
 import hashlib
@@ -12,7 +12,7 @@ from numerics.driver import POINTS
 from references import Motion
 from systems_in_sympy import system
 
-# Start values other than the FMU's own, and the time to simulate. Chaotic systems get a short one.
+# Start values other than the FMU's, and the end in s, which is early for chaotic systems.
 SCENARIOS = {
     "SimplePendulum": (dict(theta=2.0), 10.0),
     "InvertedPendulumCart": ({}, 10.0),
@@ -34,7 +34,7 @@ QUICK = ["SimplePendulum", "InvertedPendulumCart", "ParticlePolar", "DoublePendu
 
 
 def values_of(name):
-    """All start values and parameters by name."""
+    """Return all start values and parameters of a scenario by name."""
     return start_values(name) | SCENARIOS[name][0]
 
 
@@ -49,7 +49,7 @@ def times_of(name, points=POINTS):
 
 @functools.cache
 def reference(name):
-    """States at times_of(name), a row each; kept in build/report/references, since a chain takes a while."""
+    """Return the states at times_of(name), a row each; they are cached in build/report/references."""
     values, times = values_of(name), times_of(name)
     key = hashlib.sha256(json.dumps([name, values, list(times), repr(system(name).terms)]).encode()).hexdigest()[:16]
     path = ROOT / "build" / "report" / "references" / f"{name}-{key}.npy"
@@ -65,7 +65,7 @@ def pendulum(name, values, times):
 
 
 def orbit(name, values, times):
-    """r, from the position on the ellipse."""
+    """Return r, from the position on the ellipse."""
     return ["r"], np.array([[np.hypot(*kepler(values["mu"], values["r"], values["omega"], t))] for t in times])
 
 
@@ -79,7 +79,7 @@ def oscillators(name, values, times):
 
 
 def cylinder(name, values, times):
-    """x and y swing harmonically, so that rho is their hypotenuse; z falls."""
+    """Return rho, from harmonic motions in x and y, and z in free fall."""
     w = np.sqrt(values["k"] / values["m"])
     x = values["rho"] * np.cos(w * times) + values["vrho"] / w * np.sin(w * times)
     y = values["rho"] * values["omega"] / w * np.sin(w * times)
@@ -88,7 +88,7 @@ def cylinder(name, values, times):
 
 
 def throw(name, values, times):
-    """r and phi of a parabola."""
+    """Return r and phi on a parabola."""
     r, phi = values["r"], values["phi"]
     radial = np.array([np.sin(phi), 0.0, np.cos(phi)])
     velocity = values["vr"] * radial + r * values["omegaPhi"] * np.array([np.cos(phi), 0.0, -np.sin(phi)])
@@ -116,7 +116,7 @@ CLOSED_FORMS = {
 
 
 def check_of_reference(name):
-    """(how the reference was checked, the largest difference): a closed form, or the same series with 10 digits more."""
+    """Return a description of the reference's check, a closed form or the same series with 6 more digits, and the largest difference."""
     if name in CLOSED_FORMS:
         text, exact = CLOSED_FORMS[name]
         columns, values = exact(name, values_of(name), times_of(name))
@@ -127,7 +127,7 @@ def check_of_reference(name):
 
 
 def errors(name, states):
-    """The error of each row of states, which are the last of as many evenly spaced times, in units of max(1, |state|)."""
+    """Return the error of each row of states, at equally spaced times up to the end, in units of max(1, |state|)."""
     stride = POINTS // len(states)
     exact = reference(name)[stride - 1 :: stride]
     return np.max(np.abs(states - exact) / np.maximum(1, np.abs(exact)), axis=1)
