@@ -58,7 +58,7 @@ def test_surfaces(tmp_path):
     assert numbers[1] == pytest.approx([2, 0, 0, 0, 0, -1], abs=1e-4) and stop.get("of") == "bob" and stop.get("stop") == "true"
 
 
-def test_stops_of_what_shapes_draw(tmp_path):
+def test_stops_of_bodies_with_shapes(tmp_path):
     """The contact position of shapes is unknown: a drawn block would intersect them."""
     (tmp_path / "system.xml").write_text(f"""{HEAD}<coordinate name="phi" velocity="omega"/><frame name="arm"><rotate axis="y" angle="phi"/></frame>
   <body name="rod" in="arm" x="l" mass="1" Iyy="1"/><shape name="rodShape" in="arm" type="capsule" radius="0.1" length="l"/>

@@ -47,7 +47,7 @@ def model(name):
 
 
 @pytest.mark.parametrize("name", ["Mixed", *HELD])
-def test_they_are_transposed_directional_ones(name):
+def test_adjoint_derivatives_are_transposed_directional_ones(name):
     """
     Adjoint derivatives of a sum of all unknowns agree by each known, for small blocks of M, a block factored at run time, a closed loop,
     and a tree of joints.
@@ -60,7 +60,7 @@ def test_they_are_transposed_directional_ones(name):
     instance.free()
 
 
-def test_they_are_refused_like_directional_ones():
+def test_errors_are_those_of_directional_derivatives():
     instance, unknowns, knowns = model("Mixed")
     for unknown, known, why in (("m", "x", "'m' is not an unknown"), ("push", "push", "'push' is not a known")):
         with pytest.raises(fmpy.fmi1.FMICallException):
@@ -89,6 +89,6 @@ def test_the_sweep_costs_the_same_for_all_knowns():
     instance.free()
 
 
-def test_other_fmus_do_not_hold_it():
+def test_only_fmus_with_adjoint_contain_it():
     assert not any("reverse_sweep" in member for member in linked_members("DampedPendulum", "link3.map"))
     assert any("reverse_sweep" in member for member in linked_members("Mixed"))

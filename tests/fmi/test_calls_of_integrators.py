@@ -45,7 +45,7 @@ def test_a_time_before_the_start(open_fmu):
         ball.fmu.setTime(1.5)
 
 
-def test_an_event_is_not_passed_over(open_fmu):
+def test_a_due_event_cannot_be_skipped(open_fmu):
     """Event mode cannot end while a bounce is due for which the discrete states were not updated (FMI 2.0.4, section 3.2.2)."""
     ball = falling_ball(open_fmu)
     ball.fmu.enterEventMode()
@@ -117,7 +117,7 @@ def integrate(name, end, tolerance):
 
 
 @pytest.mark.parametrize("name, others", [("PendulumCartesian", "SimplePendulum"), ("FreeBody", None), ("FourBar", None), ("RollingDisk", None), ("KnifeEdge", None)])
-def test_few_events_bring_back_to_the_constraints(name, others):
+def test_few_events_project_onto_the_constraints(name, others):
     """
     Projection causes at most 10 events a second. A pendulum in Cartesian coordinates takes at most three times the steps of one by its
     angle.
@@ -131,7 +131,7 @@ def test_few_events_bring_back_to_the_constraints(name, others):
     assert abs(np.hypot(*state[:2]) - 1.0) < np.sqrt(tolerance)
 
 
-def test_the_drift_costs_no_more_than_the_steps():
+def test_drift_is_within_the_tolerance_of_the_steps():
     """
     The drift of a pendulum released from the level of its pivot stays within the tolerance times the steps, against the period by the
     elliptic integral.

@@ -82,7 +82,7 @@ def test_directional_derivatives_by_differences(name, open_fmu):
         np.testing.assert_allclose(exact, quotient, rtol=1e-4, atol=1e-5 * (1 + np.max(np.abs(quotient))))
 
 
-def test_directional_derivative_refuses(open_fmu):
+def test_errors_of_directional_derivatives(open_fmu):
     instance = open_fmu("DampedPendulum").initialize()
     for unknown, known, seed, message in (
         ("theta", "der(omega)", 1.0, "'der\\(omega\\)' is not a known"),
@@ -128,7 +128,7 @@ def test_inputs_are_polynomials(name, force, position, values, inertia, accuracy
     assert instance.get(force) == pytest.approx(1 / factorial(order), abs=1e-13)
 
 
-def test_input_derivatives_hold_for_one_step(open_fmu):
+def test_input_derivatives_apply_to_one_step(open_fmu):
     instance = open_fmu("ParticleCartesian").initialize(dict(m=1, kx=0, x=0))
     instance.fmu.setRealInputDerivatives(instance.vr("Fx"), [1], [1.0])
     instance.step(1.0)
@@ -184,7 +184,7 @@ def test_output_derivative_orders(order, open_fmu):
         instance.fmu.getRealOutputDerivatives(instance.vr("theta"), [order])
 
 
-def test_features_are_declared_where_they_mean_something(name):
+def test_features_are_declared_if_they_apply(name):
     section = fmu.description(name).coSimulation
     assert section.providesDirectionalDerivative and section.canSerializeFMUstate and section.canGetAndSetFMUstate
     assert section.canInterpolateInputs == bool(fmu.names_of(name, "input"))

@@ -155,7 +155,7 @@ def test_model_exchange_agrees(name, own_systems):
 
 
 @pytest.mark.parametrize("name", ["BouncingBall", "StickSlip", "NewtonsCradle"])
-def test_model_exchange_of_what_switches_has_the_bits_of_fmi2(name):
+def test_model_exchange_with_events_has_the_bits_of_fmi2(name):
     """Importers use the variables that modelDescription.xml lists as event indicators."""
     words = dict(stop_time=2.0, output_interval=0.05, fmi_type="ModelExchange")
     names = fmu.names_of(name, "output")

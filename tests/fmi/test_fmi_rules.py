@@ -105,7 +105,7 @@ def test_bad_experiments(words, message, open_fmu):
         instance.fmu.setupExperiment(**words)
 
 
-def test_what_is_not_defined_is_not_looked_at(open_fmu):
+def test_undefined_values_are_not_looked_at(open_fmu):
     instance = open_fmu("SimplePendulum")
     instance.fmu.fmi2SetupExperiment(instance.fmu.component, 0, math.nan, 2.0, 0, math.nan)
     instance.fmu.enterInitializationMode()
@@ -154,7 +154,7 @@ def test_states_are_those_of_the_end(name, open_fmu):
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear"])
-def test_every_end_is_on_the_closed_form(name, open_fmu):
+def test_every_step_end_is_on_the_closed_form(name, open_fmu):
     instance = open_fmu(name).initialize(dict(theta=1.0, omega=0.0), tolerance=1e-10, start_time=0.25)
     rate = math.sqrt(9.81)
     for i in range(40):
@@ -196,7 +196,7 @@ def test_a_sum_of_steps_ends_at_the_stop_time(count, size, name, open_fmu):
             instance.fmu.doStep(before, stop - before + excess * size)
 
 
-def test_the_last_step_is_as_long_as_it_says(open_fmu):
+def test_the_last_step_ends_at_the_stop_time(open_fmu):
     """The state is that at the stop time even if the sum of the steps leads past it."""
     size, count = 0.01, 10**6
     before = float(np.add.accumulate(np.full(count - 1, size))[-1])
@@ -211,7 +211,7 @@ def test_the_last_step_is_as_long_as_it_says(open_fmu):
     assert instance.get("theta") == pytest.approx(theta * math.cos(phase) + omega / w * math.sin(phase), abs=1e-12)
 
 
-def test_steps_past_the_end(name, open_fmu):
+def test_steps_past_the_stop_time(name, open_fmu):
     """A step past the stop time is an error; without a stop time there is no limit."""
     instance = open_fmu(name).initialize(stop_time=0.3)
     for i in range(3):
@@ -338,7 +338,7 @@ def provoke(instance):
     instance.reset()
 
 
-def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
+def test_errors_are_logged_without_debug_logging(open_fmu):
     """Without loggingOn only the debug messages about events are omitted."""
     everything = open_fmu("ParticlePolar")
     provoke(everything)
@@ -358,7 +358,7 @@ def test_what_goes_wrong_is_told_without_debug_logging(open_fmu):
     assert len(instance.messages) == before
 
 
-def test_a_simulation_that_cannot_start_tells_why():
+def test_a_simulation_that_cannot_start_logs_the_cause():
     """FMPy's short form leaves debug logging off and prints the log."""
     call = f"import fmpy; fmpy.simulate_fmu({str(fmu.archive('SimplePendulum'))!r}, start_values={{'l': 0}})"
     result = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True)

@@ -107,7 +107,7 @@ def warnings_of(instance):
 
 
 @pytest.mark.parametrize("name", fmu.all_names())
-def test_read_before_as_behind(name):
+def test_values_before_equal_those_after(name):
     """Values agree bit by bit before and after the end of initialization mode, and reading does not affect later settings."""
     for version, kind, instance in instances(name):
         before = read_all(version, kind, instance)
@@ -122,7 +122,7 @@ def test_read_before_as_behind(name):
 
 
 @pytest.mark.parametrize("name", fmu.all_names())
-def test_start_beside_the_constraints(name):
+def test_start_off_the_constraints(name):
     for version, kind, instance in instances(name):
         set_beside(instance, 2e-3)
         read = read_all(version, kind, instance)

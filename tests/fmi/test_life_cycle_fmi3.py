@@ -167,7 +167,7 @@ def test_life_cycle(function, interface, kind, states):
 
 
 @pytest.mark.parametrize("function", sorted(TABLE))
-def test_calls_while_inputs_are_asked_for(function):
+def test_calls_while_inputs_are_requested(function):
     status, messages = status_in(function, "request", FMU3Slave)
     assert status == (0 if function in REQUEST else ERROR), messages
     assert status == 0 or f"{function} is not allowed in the state" in messages[0][2]

@@ -52,7 +52,7 @@ def words_for_refusals(name, build, library):
 
 
 @pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.small_names()))
-def test_every_allocation_is_refused(name):
+def test_every_allocation_fails_once(name):
     """Each allocation fails in turn: the FMU logs a message, leaks nothing, and works after a reset."""
     library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"
     result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
@@ -82,7 +82,7 @@ def rows_of_springs():
 
 
 @pytest.mark.parametrize("solver", WITH_SUNDIALS)
-def test_every_allocation_of_sundials_is_refused(solver, rows_of_springs):
+def test_every_allocation_of_sundials_fails_once(solver, rows_of_springs):
     name = f"Row_{solver}"
     folder = SANITIZED / "rows-of-springs" / "systems" / name
     assert f"&{WITH_SUNDIALS[solver][1]}," in (folder / "system.c").read_text()

@@ -165,7 +165,7 @@ def test_every_quantity_has_a_unit(name):
 
 
 @pytest.mark.parametrize("name", ALL_NAMES)
-def test_rules_that_checkers_miss(name):
+def test_rules_that_validators_miss(name):
     """Names, value references, ranges of start values, the experiment, identifiers and log categories are consistent."""
     root = document(name)
     references = [v.get("valueReference") for v in variables(name)]

@@ -67,7 +67,7 @@ def test_points_that_move_apart_are_not_linked():
     assert len(shapes("InvertedPendulumCart", "polyline", "link")) == 1
 
 
-def test_a_rod_that_a_constraint_holds():
+def test_a_rod_given_as_a_constraint():
     [[pivot]], [[bob]] = shapes("PendulumCartesian", "circle", "hole"), shapes("PendulumCartesian", "circle", "particle")
     [rod] = shapes("PendulumCartesian", "polyline", "link")
     assert sorted(map(tuple, rod)) == sorted([tuple(pivot), tuple(bob)])

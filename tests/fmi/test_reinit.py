@@ -69,7 +69,7 @@ PIECES = ["BristleFriction", "DigitalServo", "HalfCar", "PidController", "Spinni
 
 
 @pytest.mark.parametrize("name", [name for name in fmu.moving_names() if name != "Rope"])
-def test_what_jumps_has_reinit(name, monkeypatch):
+def test_states_that_jump_have_reinit(name, monkeypatch):
     marked = reinitialized(fmu, name)
     assert jumps_of(name, monkeypatch) <= marked <= set(fmu.states_of(name))
     assert reinitialized(fmi3, name) == marked
@@ -77,7 +77,7 @@ def test_what_jumps_has_reinit(name, monkeypatch):
     assert (len(marked) > 0) == (fmu.is_constrained(name) or switches)
 
 
-def test_what_nothing_changes_has_none(pushed):
+def test_states_that_never_jump_have_none(pushed):
     assert reinitialized(fmu, pushed) == reinitialized(fmi3, pushed) == {"u", "h", "w"}
 
 

@@ -43,7 +43,7 @@ def drive(instance, name, steps):
 
 
 @pytest.mark.parametrize("name", ONE_STEP)
-def test_going_back_gives_the_same_bits(name, open_fmu):
+def test_restored_states_give_the_same_bits(name, open_fmu):
     instance = open_fmu(name).initialize(tolerance=1e-6)
     drive(instance, name, 7)
     state, time = instance.fmu.getFMUstate(), instance.time
@@ -55,7 +55,7 @@ def test_going_back_gives_the_same_bits(name, open_fmu):
     instance.free_state(state)
 
 
-def test_bdf_goes_on_within_tolerance(open_fmu):
+def test_bdf_continues_within_tolerance(open_fmu):
     name, tolerance = "FurutaPendulum", 1e-7
     instance = open_fmu(name).initialize(tolerance=tolerance)
     drive(instance, name, 7)
@@ -87,7 +87,7 @@ print(json.dumps([go_on(*saved) for saved in json.loads(sys.stdin.read())]))
 """
 
 
-def test_going_on_in_another_process(open_fmu):
+def test_another_process_continues(open_fmu):
     """The bytes contain parameters, inputs and their derivatives, tolerance and step size."""
     saved, here = [], []
     for name in ("SimplePendulum", "ParticleCartesian", "InvertedPendulumCart", "StateFeedback", "TwoCarts"):
@@ -103,7 +103,7 @@ def test_going_on_in_another_process(open_fmu):
     assert json.loads(there.stdout) == here
 
 
-def test_state_has_everything(open_fmu):
+def test_state_is_complete(open_fmu):
     """A restored state includes parameters, inputs and the status, even after an error, and continues with the same bits."""
     values = dict(b=0.3, tau=0.1)
     stayed, instance = (open_fmu("DampedPendulum").initialize(values) for _ in range(2))
@@ -192,7 +192,7 @@ def serialized(instance):
     return data
 
 
-def test_every_flipped_bit_is_refused(open_fmu):
+def test_every_flipped_bit_is_an_error(open_fmu):
     instance = open_fmu("SimplePendulum").initialize()
     data = serialized(instance)
     for i in range(len(data)):
@@ -203,7 +203,7 @@ def test_every_flipped_bit_is_refused(open_fmu):
         instance.reset()
 
 
-def test_truncated_and_foreign_bytes_are_refused(open_fmu):
+def test_truncated_and_foreign_bytes_are_errors(open_fmu):
     instance = open_fmu("SimplePendulum").initialize()
     data = serialized(instance)
     noise = random.Random(4)
@@ -273,7 +273,7 @@ def refuses(instance, data, *forgery):
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop", "StateFeedback"])
-def test_forged_states_are_refused(name, open_fmu):
+def test_forged_states_are_errors(name, open_fmu):
     """Forged values are errors for every solver and every value of a state."""
     instance = open_fmu(name).initialize()
     instance.step(0.1)
@@ -284,14 +284,14 @@ def test_forged_states_are_refused(name, open_fmu):
         refuses(instance, data, *forgery)
 
 
-def test_forged_modes_of_the_other_kind_are_refused(open_fmu):
+def test_forged_modes_of_the_other_kind_are_errors(open_fmu):
     instance = open_fmu("SimplePendulum", kind=FMU2Model).initialize()
     data = serialized(instance)
     for mode in (4, 5):
         refuses(instance, data, "=i", MODE, mode)
 
 
-def test_forged_series_are_refused(open_fmu):
+def test_forged_series_are_errors(open_fmu):
     """The order counts coefficients; a forged one would index outside the series."""
     name = "SimplePendulum"
     instance = open_fmu(name).initialize()
@@ -308,7 +308,7 @@ def test_forged_series_are_refused(open_fmu):
         refuses(instance, data, *forgery)
 
 
-def test_forged_choices_are_refused(open_fmu):
+def test_forged_choices_are_errors(open_fmu):
     """The counters of the solver `auto`, at the end of the state: nine integers and eight numbers."""
     instance = open_fmu("ElasticPendulum").initialize()
     instance.step(0.1)
@@ -332,7 +332,7 @@ def test_forged_choices_are_refused(open_fmu):
     instance.step(10.0)
 
 
-def test_forged_modes_are_refused(open_fmu):
+def test_forged_modes_are_errors(open_fmu):
     """A mode must be a sign, or 0 or 1 for a contact."""
     for name in ("StickSlip", "BouncingBall"):
         instance = open_fmu(name).initialize()
@@ -345,7 +345,7 @@ def test_forged_modes_are_refused(open_fmu):
             refuses(instance, data, "=d", first_mode, value)
 
 
-def test_forged_rounding_is_refused(open_fmu):
+def test_forged_rounding_errors_are_errors(open_fmu):
     """The rounding errors of the state that the exact method carries along must be finite."""
     name = "SimplePendulumLinear"
     instance = open_fmu(name).initialize()
@@ -386,7 +386,7 @@ def test_serialize_with_a_wrong_size(open_fmu):
     instance.free_state(state)
 
 
-def test_serialized_form_says_what_it_is(open_fmu):
+def test_serialized_form_has_a_header(open_fmu):
     """The header has a magic word, a version, and the GUID of the model."""
     instance = open_fmu("SimplePendulum").initialize()
     data = serialized(instance)

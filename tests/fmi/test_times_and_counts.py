@@ -81,13 +81,13 @@ def test_counts_change_in_event_mode_alone(early):
         before = after
 
 
-def test_counts_without_event_mode_are_those_of_now():
+def test_counts_without_event_mode_are_present_ones():
     ball = fmi3.Instance("BouncingBall").initialize()
     ball.step(1.0)
     assert counts(ball, "events")[0] > 0 and counts(ball, "solverSteps")[0] > 0
 
 
-def test_what_may_not_be_discarded(open_fmu):
+def test_calls_that_may_not_be_discarded(open_fmu):
     """
     fmi2GetReal and fmi2GetDerivatives may return Discard in model exchange, directional derivatives never (FMI 2.0.4, section 2.1.3); an
     error ends the simulation.

@@ -240,7 +240,7 @@ def test_states_of_another_version(open_fmu):
         instance.fmu.deSerializeFMUstate(bytes(data))
 
 
-def test_a_discarded_step_tells_where_the_state_is(open_fmu):
+def test_a_discarded_step_reports_where_the_state_is(open_fmu):
     """A fall from 1 into the centre takes pi/sqrt(8); the state of the discarded step belongs to the reported time."""
     instance = open_fmu("FallByErk").initialize()
     with instance.fails(DISCARD, "stopped at time"):

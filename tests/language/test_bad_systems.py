@@ -301,7 +301,7 @@ def compile_text(text, folder, *words):
     return lagc("system.xml", "-o", "out", *words, cwd=folder)
 
 
-def test_the_right_system_is_right(tmp_path):
+def test_the_valid_system_compiles(tmp_path):
     result = compile_text(RIGHT, tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
 
@@ -401,7 +401,7 @@ def test_no_warning(what, line, text, tmp_path):
     (RIGHT.replace("system", "System").encode(), "1: the file begins with <System>; expected <system name="),
     ((RIGHT + RIGHT).encode(), "14: the file goes on after the end of its first element"),
 ])  # fmt: skip
-def test_files_that_hold_no_system(text, message, tmp_path):
+def test_files_without_a_system(text, message, tmp_path):
     (tmp_path / "system.xml").write_bytes(text)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 1
@@ -415,7 +415,7 @@ def test_another_version_of_xml(version, tmp_path):
     assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
 
 
-def test_a_missing_file_is_told_of_once(tmp_path):
+def test_a_missing_file_is_reported_once(tmp_path):
     result = lagc("missing.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (1, "missing.xml: cannot be read; expected an XML file\n")
 
@@ -426,7 +426,7 @@ def test_other_encodings_that_a_file_names(tmp_path):
     assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_files_without_units_are_free_of_them(tmp_path):
+def test_unit_checks_need_units(tmp_path):
     result = compile_text(re.sub(' unit="[^"]*"', "", RIGHT), tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
 
@@ -471,13 +471,13 @@ COHERENT = "coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' 
     ("cm21", COHERENT),
     ("%/s", "1/s, and the value times 1e-2"),
 ])  # fmt: skip
-def test_what_is_written_for_other_units(unit, remedy, tmp_path):
+def test_values_in_other_units(unit, remedy, tmp_path):
     """The message names the factor to SI units; the expected factors are computed by hand."""
     result = compile_text(broken(2, f'<parameter name="m" start="1" unit="{unit}"/>'), tmp_path)
     assert result.stderr == f"system.xml:2: the unit '{unit}' is not known: expected {remedy}\n"
 
 
-def test_loops_in_loops_that_are_too_many(tmp_path):
+def test_too_many_nested_loops(tmp_path):
     """lagc reports the loop once, and nothing about the unread rest of the file."""
     inner = '<for index="k" from="1" to="10000"></for>'
     loops = f'<for index="i" from="1" to="10000">\n<for index="j" from="1" to="10000">\n{inner}</for></for>\n'
@@ -603,7 +603,7 @@ def test_external_entities_are_not_read(tmp_path):
     assert result.returncode == 1 and "m*g*l" not in result.stderr
 
 
-def test_every_system_compiles_without_a_word(name, tmp_path):
+def test_every_system_compiles_without_messages(name, tmp_path):
     """lagc prints nothing but the notes about the nodes of integrals."""
     result = lagc(ROOT / "fmu" / name / "system.xml", "-o", tmp_path / "out")
     words = re.sub(r"^\S+: note: integral\(.* is exact to 1e-13 by \d+ nodes? near the start values\n", "", result.stderr, flags=re.M)
@@ -634,7 +634,7 @@ def test_stopped_while_it_writes(limit, tmp_path):
     assert names_of(tmp_path / "out") == FILES and b"level" in (tmp_path / "out" / "system.c").read_bytes()
 
 
-def test_a_disk_that_is_full(tmp_path):
+def test_a_full_disk(tmp_path):
     """A failing write without a signal leaves no partial output either."""
     compile_text(RIGHT, tmp_path)
 
@@ -673,7 +673,7 @@ def test_version():
     assert result.returncode == 0 and re.fullmatch(r"lagc \d+\.\d+\.\d+\n", result.stdout)
 
 
-def test_the_point_may_hold_functions_with_commas(tmp_path):
+def test_the_point_may_contain_functions_with_commas(tmp_path):
     (tmp_path / "system.xml").write_text(RIGHT)
     results = [
         lagc("--linearize", "system.xml", "--at", point, cwd=tmp_path)

@@ -94,13 +94,13 @@ def test_motion_after_tuning(open_fmu):
 
 
 @pytest.mark.parametrize("name, sources", [("J", "m, l"), ("w", "l, g"), ("mark[1]", "l")])
-def test_setting_is_refused(name, sources, open_fmu):
+def test_setting_is_an_error(name, sources, open_fmu):
     instance = open_fmu("CalculatedRod")
     with instance.fails(ERROR, rf"'{re.escape(name)}' is calculated from other parameters \({sources}\)"):
         instance.set({name: 1.0})
 
 
-def test_setting_one_without_others_is_refused(open_fmu):
+def test_setting_one_without_others_is_an_error(open_fmu):
     instance = open_fmu("CalculatedRod")
     with instance.fails(ERROR, r"'mark\[0\]' is calculated and cannot be set"):
         instance.set({"mark[0]": 1.0})
@@ -163,7 +163,7 @@ def test_documentation_has_the_formulas():
     ("simulate.py", ["J=1"], "'J' of CalculatedRod cannot be set, as it follows from other parameters; these can be: theta, omega, m, l, g"),
     ("sweep.py", ["--vary", "J=1,2"], "'J' has no start value in CalculatedRod, as it follows from other parameters; these have one: theta, omega, m, l, g"),
 ])  # fmt: skip
-def test_scripts_refuse_to_set_it(script, words, message, tmp_path):
+def test_scripts_cannot_set_it(script, words, message, tmp_path):
     command = [sys.executable, ROOT / "scripts" / script, fmu.archive("CalculatedRod"), *words]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert result.returncode == 1 and message in result.stderr, result.stderr
@@ -187,7 +187,7 @@ def test_scripts_refuse_to_set_it(script, words, message, tmp_path):
     ('<parameter name="a" value=""/>', 'value="" of <parameter> is empty'),
     ('<parameter name="a" start="J"/>', "unknown name 'J'"),
 ])  # fmt: skip
-def test_refused(line, message, tmp_path):
+def test_errors(line, message, tmp_path):
     path = tmp_path / "system.xml"
     path.write_text(ROD.format(name="CalculatedRod").replace("</system>", f"  {line}\n</system>"))
     result = lagc(path, "-o", tmp_path / "out")

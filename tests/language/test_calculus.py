@@ -100,7 +100,7 @@ def test_parameters_that_are_0_hide_nothing(tmp_path):
     ("if(s > 0.9, 50, 0)", 0, 1), ("mod(4*s, 1)", 0, 1), ("mod(2*s, 1)", 0, 1), ("if(abs(s) < 0.7, 0, 1)", -1, 1), ("max(0, s - 0.999)", 0, 1),
     ("exp(-((s - 0.37)/0.001)^2)", 0, 1), ("1/(s - 0.5)", 0, 1),
 ])  # fmt: skip
-def test_what_few_nodes_do_not_see_is_not_called_exact(tmp_path, integrand, low, high):
+def test_features_between_few_nodes_are_not_called_exact(tmp_path, integrand, low, high):
     """One central node gives 0 or a symmetric value of these integrands, which is wrong. lagc then does not call the integral exact."""
     text = integrand.replace("<", "&lt;")
     said = said_of(tmp_path, f'<output name="o">integral(s, {low}, {high}, {text})</output>').stderr

@@ -173,7 +173,7 @@ def test_the_outer_include_wins_attribute_by_attribute(tmp_path):
     assert "32.0" in system and "56.0" in system  # k = 8 N of the cells with N = 4 and N = 7
 
 
-def test_a_range_of_what_an_inner_include_calculates(tmp_path):
+def test_a_range_of_a_parameter_calculated_by_an_inner_include(tmp_path):
     middle = '<system name="M"><parameter name="p" start="1"/><include file="part.xml" as="part"><parameter name="a" value="p"/></include></system>'
     texts = {
         "system.xml": '<system name="Around">\n<include file="middle.xml" as="middle">\n<parameter name="part.a" max="2"/></include></system>',
@@ -184,7 +184,7 @@ def test_a_range_of_what_an_inner_include_calculates(tmp_path):
     assert result.returncode == 1 and "system.xml:3: a <parameter> with a value and a max; expected value" in result.stderr, result.stderr
 
 
-def test_a_part_that_changes_is_built_anew(tmp_path):
+def test_a_changed_part_is_rebuilt(tmp_path):
     texts = {name: TEXTS[name] for name in ("IncludePart", "IncludeMiddle", "IncludeNest")}
     built = lambda folder: {name: (folder / f"{name}.fmu").read_bytes() for name in texts}
     before = built(build_by_cmake(tmp_path, texts))
@@ -233,7 +233,7 @@ def test_mistakes_in_a_part(inside, message, tmp_path):
     ('<input name="F" value="part.mass"/>', "system.xml:3: unit mismatch: the value of the input has the unit kg, expected kg.m/s2"),
     ('<coordinate name="x" start="part.mass"/>', "system.xml:3: unit mismatch: the start value has the unit kg, expected m"),
 ])  # fmt: skip
-def test_mistakes_in_what_is_given(inside, message, tmp_path):
+def test_mistakes_in_given_values(inside, message, tmp_path):
     part = """<system name="P"><parameter name="mass" start="1" unit="kg" min="0"/><input name="F" unit="N"/>
 <coordinate name="x" velocity="v" unit="m"/><particle mass="mass" x="x"/><force coordinate="x">F</force></system>"""
     result = compile_all(tmp_path, {"system.xml": AROUND.format(inside), "parts/part.xml": part})

@@ -289,7 +289,7 @@ def test_examples_are_plain_c11():
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_example_moves_as_it_says(name, open_fmu):
+def test_example_moves_by_its_closed_form(name, open_fmu):
     motion, allowed = MOTIONS[name]
     instance = open_fmu(name).initialize()
     stop = float(re.search(r'stopTime="([\d.]+)"', EXAMPLES[name]).group(1)) if "stopTime" in EXAMPLES[name] else 1.0
@@ -346,12 +346,12 @@ def compile_with(line, folder):
 
 
 @pytest.mark.parametrize("line, message", rows("## What is refused"))
-def test_refused_as_it_says(line, message, tmp_path):
+def test_errors_are_those_of_the_reference(line, message, tmp_path):
     result = compile_with(line, tmp_path)
     assert result.returncode == 1 and message in result.stderr, result.stderr
 
 
 @pytest.mark.parametrize("line, message", rows("These are likely mistakes"))
-def test_warned_as_it_says(line, message, tmp_path):
+def test_warnings_are_those_of_the_reference(line, message, tmp_path):
     result = compile_with(line, tmp_path)
     assert result.returncode == 0 and "warning" in result.stderr and message in result.stderr, result.stderr

@@ -67,7 +67,7 @@ def seconds_of_children():
 
 
 @pytest.mark.parametrize("text, message", REFUSED.values(), ids=REFUSED)
-def test_refused(text, message, tmp_path):
+def test_limits(text, message, tmp_path):
     before = seconds_of_children()
     result = compile_with(text, tmp_path)
     assert result.returncode == 1 and len(result.stderr.splitlines()) == 1
@@ -120,7 +120,7 @@ def test_files_that_include_each_other_in_a_row(tmp_path):
     assert "more than 100 files include each other in a row" in result.stderr
 
 
-def test_errors_without_end(tmp_path):
+def test_endless_errors(tmp_path):
     """Of 38,000 wrong elements lagc reports a hundred, in less than quadratic time; it shortens long texts."""
     before = seconds_of_children()
     result = compile_with('<contact name="c" restitution="1">x</contact>\n' * 38000, tmp_path)

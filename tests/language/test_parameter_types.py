@@ -84,7 +84,7 @@ def test_values(kind, open_fmu):
     assert whole(instance, "n") == 3
 
 
-def test_wrong_values_are_refused(open_fmu):
+def test_wrong_values_are_errors(open_fmu):
     cases = [
         ("setInteger", "n", 10, "10 for 'n' is above its maximum, 9"),
         ("setInteger", "on", 1, "'on' is a Boolean variable"),
@@ -165,7 +165,7 @@ def test_given_in_an_include(tmp_path):
     ('<parameter name="a" values="1 2"/><potential>a*x</potential>', "unknown name 'a'; expected a[1], ..., a[2]"),
     ('<parameter name="a" values="1 2"/><potential>a[3]*x</potential>', "unknown name 'a[3]'; did you mean 'a["),
 ])  # fmt: skip
-def test_refused(line, message, tmp_path):
+def test_errors(line, message, tmp_path):
     text = f'<system name="Refused"><coordinate name="x" velocity="v"/><particle mass="2" x="x"/>{line}</system>'
     (tmp_path / "system.xml").write_text(text)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)

@@ -174,7 +174,7 @@ def test_a_follower_runs_over_a_cam(open_fmu):
 
 
 @pytest.mark.parametrize("kink, method", by_turns(KINKS))
-def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
+def test_a_kink_in_a_constraint_is_an_error(open_fmu, kink, method):
     """A kink in a constraint would make velocities jump, by no law that the system states."""
     instance = open_fmu(f"{kink}{method.title()}").initialize()
     with instance.fails(DISCARD, KINKS[kink][2] + r" \d+ of system.xml, turns or jumps there in the constraint 'curve'"):
@@ -184,7 +184,7 @@ def test_a_kink_in_a_constraint_is_refused(open_fmu, kink, method):
 
 
 @pytest.mark.parametrize("kink, method", by_turns(KINKS)[::2])
-def test_a_kink_in_a_constraint_is_refused_in_model_exchange(kink, method):
+def test_a_kink_in_a_constraint_is_an_error_in_model_exchange(kink, method):
     messages = []
     logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])
     with pytest.raises(FMICallException) as raised:
@@ -206,7 +206,7 @@ def test_a_force_by_way_of_an_output(open_fmu, push, method):
         assert instance.get("push") == pytest.approx(-np.sign(expected), abs=1e-12)
 
 
-def test_pieces_of_what_is_displaced(open_fmu):
+def test_pieces_of_displaced_positions(open_fmu):
     instance = open_fmu("Stretched")
     for x, v in [(2.5, 0.3), (0.4, -1.1), (-0.7, 2.0), (7.5, 1.0), (1.2, 0.2)]:
         instance.reset().initialize({"x": x, "v": v})
@@ -305,7 +305,7 @@ THIRDS = [0, pytest.param(1, marks=pytest.mark.release), pytest.param(2, marks=p
 
 @pytest.mark.parametrize("third", THIRDS)
 @pytest.mark.parametrize("place", PLACES)
-def test_what_is_taken_compiles(tmp_path, place, third):
+def test_accepted_systems_compile(tmp_path, place, third):
     """
     lagc reports an error or writes C that compiles, for all combinations. Each run takes a third of them, a different third for each
     position.

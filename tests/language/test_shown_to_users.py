@@ -69,7 +69,7 @@ def test_elements_that_are_shown_alike_are_an_array(archives):
     ('unit="Hz" displayUnit="rpm"', "displayUnit 'rpm' is for values in rad/s; expected this as the unit"),
     ('displayUnit="mm"', "displayUnit 'mm' is for values in m; expected this as the unit"),
 ])  # fmt: skip
-def test_what_cannot_be_shown(unit, message, tmp_path):
+def test_attributes_that_cannot_be_shown(unit, message, tmp_path):
     (tmp_path / "system.xml").write_text(f'<system name="Wrong"><input name="u" {unit}/><output name="y">u</output></system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 1 and f"system.xml:1: {message}" in result.stderr

@@ -115,7 +115,7 @@ def test_what_is_set_stays(own, kind, open_fmu):
 
 
 @BOTH_KINDS
-def test_saved_states_know_what_was_set(kind, open_fmu):
+def test_saved_states_contain_set_values(kind, open_fmu):
     instance = open_fmu("StartThrow", **kind)
     in_initialization(instance, {"vx": 7.0, "v": 4.0})
     saved = instance.fmu.getFMUState()
@@ -203,7 +203,7 @@ def test_linearization(open_fmu):
     ("m", "unit mismatch: the start value has the unit kg, expected m"),
     ("d*log(n)", "the start value of 'x' is -inf at the start values of the parameters; expected a finite number"),
 ])  # fmt: skip
-def test_refused(start, message, tmp_path):
+def test_errors(start, message, tmp_path):
     (tmp_path / "system.xml").write_text(f"""<system name="Refused">
   <parameter name="m" start="2" unit="kg"/><parameter name="d" start="1" unit="m"/><parameter name="n" start="0" unit="1"/><input name="F" unit="N"/>
   <coordinate name="x" velocity="v" unit="m" start="{start}"/><particle mass="2" x="x"/>

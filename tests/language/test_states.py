@@ -241,7 +241,7 @@ def test_many_runs_at_once(systems, name, ranges):
 
 
 @pytest.mark.parametrize("name", ["Filter_auto", "Filter_radau", "Rod", "Ball", "Block", "Pid"])
-def test_a_saved_state_goes_on_with_the_same_bits(systems, open_fmu, name):
+def test_a_saved_state_continues_with_the_same_bits(systems, open_fmu, name):
     instance, names = open_fmu(name).initialize(), states(name)
     instance.run(0.7, 0.1)
     saved = instance.fmu.getFMUstate()

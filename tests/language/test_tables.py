@@ -143,7 +143,7 @@ def test_in_a_part(open_fmu):
     assert instance.get("here") == pytest.approx(SPLINE(0.7), rel=1e-14)
 
 
-def test_a_file_that_changes_is_built_anew(tmp_path):
+def test_a_changed_file_is_rebuilt(tmp_path):
     texts = {"TableCurves": CURVES.format(name="TableCurves", points=POINTS, lines=LINES)}
     path = tmp_path / "systems" / "TableCurves" / "curve.csv"
     path.parent.mkdir(parents=True)
@@ -171,7 +171,7 @@ def test_a_file_that_changes_is_built_anew(tmp_path):
     ("<table name='f' file='long.csv'/>", "long.csv:501: the table has more than 500 points"),
     ("<table name='f' file='huge.csv'/>", "huge.csv:2: the point (1, inf) is not finite"),
 ])  # fmt: skip
-def test_refused(table, message, tmp_path):
+def test_errors(table, message, tmp_path):
     files = {"ok.csv": "0 1\n1 2\n", "bad.csv": "x,y\n0 1\nthree 4\n", "back.csv": "1 1\n1 2\n",
              "long.csv": "".join(f"{i} 0\n" for i in range(600)), "huge.csv": "0 1\n1 1e999\n"}  # fmt: skip
     for name, text in files.items():

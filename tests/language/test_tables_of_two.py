@@ -163,7 +163,7 @@ def test_energy_in_a_potential(name, open_fmu):
      "unit mismatch: the second argument of 'f' has the unit m, expected s"),
     ("<table name='f' arguments='2' file='ok.csv' argumentUnit='s' unit='J'/><potential>f(x, 1)</potential>", "unit mismatch: the first argument of 'f' has the unit m, expected s"),
 ])  # fmt: skip
-def test_refused(table, message, tmp_path):
+def test_errors(table, message, tmp_path):
     files = {"ok.csv": "0 1\n0 1 2\n1 3 4\n", "short.csv": "0 1\n0 1 2\n1 2\n", "word.csv": "0 1\n0 1 two\n",
              "back.csv": "0 1\n1 1 2\n0 3 4\n", "head.csv": "1 1\n0 1 2\n", "huge.csv": "0 1\n0 1 1e999\n",
              "large.csv": " ".join(map(str, range(33))) + "\n" + "".join(f"{i}" + " 0" * 33 + "\n" for i in range(33))}  # fmt: skip

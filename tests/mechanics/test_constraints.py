@@ -354,7 +354,7 @@ def test_fixed_start_values_that_leave_no_solution(open_fmu):
         instance.initialize({"theta": np.pi, "d": 1.2})
 
 
-def test_redundant_constraints_are_told_from_contrary_ones(open_fmu):
+def test_redundant_constraints_differ_from_contradictory_ones(open_fmu):
     instance = open_fmu("Twice").initialize()
     assert any("'other' follows from the others" in text for _, _, text in instance.messages)
     energy = instance.get("totalEnergy")
@@ -546,7 +546,7 @@ def test_nothing_of_it_is_in_other_fmus():
 
 
 @pytest.mark.parametrize("name", ["Parting0", "Parting1"])
-def test_an_importer_hears_which_constraint_cannot_be_kept(name):
+def test_messages_name_the_violated_constraint(name):
     messages = []
     log = lambda *words: messages.append(words[-1].decode())
     with pytest.raises(FMICallException):

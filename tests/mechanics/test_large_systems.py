@@ -14,7 +14,7 @@ MASS, LENGTH, ACROSS, ALONG, GRAVITY = 2, 0.3, 0.02, 0.004, 9.81
 
 
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in SYSTEMS.glob("*/system.xml")))
-def test_derived_without_a_word(name, tmp_path):
+def test_derived_without_messages(name, tmp_path):
     result = lagc(SYSTEMS / name / "system.xml", "-o", tmp_path / "out")
     assert (result.returncode, result.stderr) == (0, "")
 

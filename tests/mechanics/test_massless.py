@@ -117,7 +117,7 @@ def test_slider_crank(method, open_fmu):
         assert abs(x - 0.3 * np.cos(p) - 0.7 * np.cos(q)) < 1e-13 and abs(0.3 * np.sin(p) + 0.7 * np.sin(q)) < 1e-13
 
 
-def test_what_has_no_mass_moves_at_the_start(open_fmu):
+def test_massless_coordinates_move_at_the_start(open_fmu):
     """Initialization moves only the angle of the massless rod, which costs nothing in the mass norm; the other coordinates already fit."""
     x = 0.3 * np.cos(0.5) + np.sqrt(0.49 - (0.3 * np.sin(0.5)) ** 2)
     instance = open_fmu("Cranktaylor").initialize({"x": x, "q": 0.2})
@@ -146,7 +146,7 @@ def test_dumbbell_of_any_masses(m1, m2, open_fmu):
 
 
 @pytest.mark.parametrize("R, m", [(0.1, 2), (1e-4, 2), (10, 1e-5), (0.1, 1e5)])
-def test_a_chain_of_them(R, m, open_fmu):
+def test_a_chain_of_massless_wheels(R, m, open_fmu):
     """The effective stiffness of the spring at the rack is k/(2 R)^2."""
     instance = open_fmu("Gears").initialize({"R": R, "m": m, "x": 0.2, "a": 0.2 / R, "b": 0.1 / R}, tolerance=1e-10)
     rate = np.sqrt(3 / m) / (2 * R)
@@ -233,7 +233,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize("lines, message", REFUSED)
-def test_refused(lines, message, tmp_path):
+def test_errors(lines, message, tmp_path):
     import re
 
     (tmp_path / "system.xml").write_text(

@@ -127,7 +127,7 @@ def test_start_follows_the_input(open_fmu):
     assert any("x from 0.1 to 0.25" in text for _, _, text in instance.messages)
 
 
-def test_jumps_are_refused(open_fmu):
+def test_jumps_are_errors(open_fmu):
     instance = open_fmu("Hand").initialize()
     instance.step(0.1)
     instance.set({"u": 0.15})
@@ -138,7 +138,7 @@ def test_jumps_are_refused(open_fmu):
         instance.step(0.1)
 
 
-def test_one_that_moves_a_velocity(open_fmu):
+def test_an_input_that_prescribes_a_velocity(open_fmu):
     """vx sin(phi) - vy cos(phi) = s = 0.3 t, with phi = 1.5 t: forces and motion agree with SciPy on Newton's law."""
     instance = open_fmu("PushedSkate").initialize({"der(s)": 0.3})
 

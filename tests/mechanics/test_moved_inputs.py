@@ -18,18 +18,18 @@ def moved():
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_work_of_what_moves_the_floor(method, moved, open_fmu):
+def test_work_of_the_moved_floor(method, moved, open_fmu):
     instance = open_fmu(f"Seat{method}").initialize({"F": 5.0, "der(zb)": 0.2, "der(der(zb))": -1.0}, 1e-10)
     check_balance(instance, {"zb": np.polynomial.Polynomial([0, 0.2, -0.5, 0.3])}, 1.0, 3, 1.0)
 
 
-def test_work_of_what_draws_a_chain(moved, open_fmu):
+def test_work_of_a_changed_length(moved, open_fmu):
     motions = {"xp": np.polynomial.Polynomial([0, 1.0, -0.4, 0.1]), "L": np.polynomial.Polynomial([0.8, -0.3, 0, 0.1])}
     instance = open_fmu("WorkingHoist").initialize({"der(xp)": 1.0, "der(L)": -0.3}, 1e-11)
     check_balance(instance, motions, 1.0, 4, 1.0)
 
 
-def test_work_of_what_turns_a_table(moved, open_fmu):
+def test_work_of_the_rotated_table(moved, open_fmu):
     """The work includes a gyroscopic potential and a <kinetic> of the table's rate."""
     motions = {"phi": np.polynomial.Polynomial([0.1, 2.0, 0.5, -0.2])}
     instance = open_fmu("TurnedTable").initialize({"phi": 0.1, "der(phi)": 2.0, "der(der(phi))": 1.0}, 1e-12)

@@ -68,6 +68,6 @@ def test_a_body_in_space(seed):
     assert found == pytest.approx(np.cross(lever, force)[0] / 0.4, rel=1e-12)
 
 
-def test_what_does_not_move():
+def test_fixed_bodies():
     names = {variable.name for variable in fmu.description("PulledRod").modelVariables}
     assert "pull.of.rod" in names and "pull.of.still" not in names

@@ -64,7 +64,7 @@ def operations(text, folder):
 
 
 @pytest.mark.parametrize("name", DISPLACED)
-def test_motion_does_not_know_of_displacements(name, tmp_path):
+def test_motion_is_independent_of_displacements(name, tmp_path):
     counts = operations(TEXTS[name], tmp_path)
     assert len(counts) >= 3 and counts == operations(without_displacements(TEXTS[name]), tmp_path)
 

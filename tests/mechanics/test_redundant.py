@@ -151,7 +151,7 @@ def test_the_same_constraint_twice(open_fmu):
 
 
 @pytest.mark.parametrize("form", ["", "T"])
-def test_drive_of_what_is_held_twice(form, open_fmu):
+def test_drive_of_a_doubly_constrained_wheel(form, open_fmu):
     """Two constraints share the gear's load 0.6 (1 + 0.2 cos(p)) p'' - 0.06 sin(p) p'^2 as 1 to 3; the drive supplies twice the load."""
     instance = open_fmu("DrivenTwice" + form).initialize()
     for _ in range(5):

@@ -90,7 +90,7 @@ def assert_near(forces, jacobian, load, tolerance, share=1e-15):
     assert np.max(np.abs(forces - expected)) < tolerance * np.max(np.abs(expected)), (forces, expected)
 
 
-def test_hold_passes_from_one_to_another(open_fmu):
+def test_the_dependent_constraint_changes(open_fmu):
     """Forces are right however near p is to the angle at which the first two constraints are identical."""
     near = 10.0 ** np.linspace(-17, 0, 400)
     instance, names = open_fmu("Turning", kind=FMU2Model), ("p", "x", "y", "w", "vx", "vy")
@@ -105,7 +105,7 @@ def test_hold_passes_from_one_to_another(open_fmu):
 
 
 @pytest.mark.parametrize("name", HOLDS)
-def test_what_hardly_holds(name, open_fmu):
+def test_nearly_dependent_constraints(name, open_fmu):
     instance = open_fmu(name).initialize({"z": 0.3, "x": np.sin(0.3), "y": 0.045, "vz": 0.8, "vx": 0.8 * np.cos(0.3), "vy": 0.24})
     for _ in range(50):
         z, vz = instance.get("z", "vz")

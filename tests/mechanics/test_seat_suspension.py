@@ -58,7 +58,7 @@ def test_transmissibility(w, open_fmu):
         np.testing.assert_allclose(values[late], expected[late], atol=3e-6 * 0.01 * abs(amplitude))
 
 
-def test_held_inputs_are_of_the_first_order(open_fmu):
+def test_constant_inputs_are_of_first_order(open_fmu):
     """With constant inputs, half the step gives half the error, as the language reference states."""
     errors = []
     for step in (0.01, 0.005, 0.0025):

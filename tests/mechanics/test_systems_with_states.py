@@ -228,7 +228,7 @@ def test_servo_is_its_recursion(ref, q, uMax, open_fmu):
         np.testing.assert_allclose(instance.get("theta", "omega", "i"), x, rtol=1e-7, atol=1e-9)
 
 
-def test_servo_of_the_z_transform(open_fmu):
+def test_servo_by_the_z_transform(open_fmu):
     """
     Without quantization by the encoder the loop is linear. Its step response is that of the transfer function from ref to theta, z^-1 P(z)
     kp/(1 + z^-1 P(z) (kp + kd (1 - z^-1)/Ts)), here as a sum over its poles.
@@ -277,7 +277,7 @@ def test_worm_lifts_and_lowers(tau, c, omega, open_fmu):
 
 
 @pytest.mark.parametrize("tau", [-0.9, 0.0, 2.0, 4.9])
-def test_worm_holds(tau, open_fmu):
+def test_worm_sticks(tau, open_fmu):
     """Nothing moves for torques from (1 - c) load/n = -1 N.m to (1 + c) load/n = 5 N.m."""
     instance = open_fmu("WormGear").initialize({"tau": tau}, 1e-9)
     instance.step(1.0)
@@ -361,7 +361,7 @@ def test_half_car_on_waves(w, open_fmu):
             np.testing.assert_allclose(instance.get(*CAR[:4]), expected[:4], atol=2e-3 * abs(amplitude[:4]).max())
 
 
-def test_half_car_goes_back_bit_by_bit(open_fmu):
+def test_half_car_is_restored_bit_by_bit(open_fmu):
     """From a saved state the same road and the same motion return, to the last bit."""
     instance = open_fmu("HalfCar").initialize({"rough": 0.3, "seed": 7})
     instance.step(0.5)

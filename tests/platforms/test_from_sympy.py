@@ -197,7 +197,7 @@ def rod():
     return method, {m: 1, l: 0.5, g: 9.81}, further | {"start": {x: 0.5, F: 2}}
 
 
-def test_what_is_beside_the_equations(tmp_path):
+def test_units_names_and_outputs(tmp_path):
     """Units, names of constraints, points for the animation, and outputs as expressions; names of the language are avoided."""
     method, parameters, further = rod()
     lagrange_fmu = wheel.package()
@@ -255,7 +255,7 @@ UNEXPRESSED = {
 
 
 @pytest.mark.parametrize("message", UNEXPRESSED)
-def test_what_cannot_be_expressed(message, tmp_path):
+def test_expressions_without_an_equivalent(message, tmp_path):
     method, parameters = UNEXPRESSED[message]
     with pytest.raises(wheel.package().Problem) as raised:
         wheel.package().from_sympy(method, tmp_path / "Bad.xml", parameters)

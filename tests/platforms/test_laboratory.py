@@ -119,7 +119,7 @@ def test_pulled(tmp_path):
         assert ("pull.of.upper" in names) == is_pulled
 
 
-def test_files_that_others_name(tmp_path):
+def test_files_that_others_refer_to(tmp_path):
     """The files that a system refers to are included, by paths relative to each other."""
     found = files_of(ROOT / "fmu" / "MotorPendulum" / "system.xml")
     assert sorted(found["files"]) == ["Motor/system.xml", "MotorPendulum/system.xml"] and found["file"] == "MotorPendulum/system.xml"

@@ -30,7 +30,7 @@ def test_every_fmu_has_ours(unpacked):
     ("taylor", 2, set()), ("erk", 2, {"sundials.txt"}), ("bdf", 2, {"sundials.txt"}),
     ("bdf", 200, {"sundials.txt", "suitesparse.txt", "LGPL-2.1.txt"}),
 ])  # fmt: skip
-def test_what_is_linked_is_named(method, N, names, tmp_path):
+def test_linked_libraries_are_named(method, N, names, tmp_path):
     (tmp_path / "system.xml").write_text(CHAIN.format(method=method, N=N))
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
     words = (tmp_path / "out" / "documentation" / "licenses" / "license.txt").read_text().removesuffix(OURS).split()

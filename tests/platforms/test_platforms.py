@@ -265,7 +265,7 @@ def test_large_systems_take_seconds(tmp_path):
     subprocess.run(words, check=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (50, 50)))
 
 
-def test_what_cannot_be_compiled(tmp_path):
+def test_platforms_that_cannot_be_compiled(tmp_path):
     system = tmp_path / "system.c"
     system.write_text("int f(void) { return unknown; }\n")
     with pytest.raises(Failure, match="use of undeclared identifier 'unknown'"):

@@ -80,7 +80,7 @@ KINDS = [
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=" ".join)
-def test_one_piece_has_all_that_it_calls(kind, tmp_path):
+def test_one_file_is_complete(kind, tmp_path):
     """The runtime files that lagc includes, as for other platforms and packages, are complete, and no names clash."""
     system, *words = kind
     assert fmu.lagc(ROOT / "fmu" / system / "system.xml", "-o", tmp_path, *words).returncode == 0
@@ -145,12 +145,12 @@ def refuses_to_be_fast(source, compiler, option):
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("option", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
-def test_fast_math_is_refused(compiler, option):
+def test_fast_math_is_an_error(compiler, option):
     """Fast-math removes checks for nonfinite values and compensated summation."""
     assert refuses_to_be_fast(source_of("SimplePendulum"), compiler, option)
 
 
-def test_every_source_refuses_fast_math():
+def test_fast_math_is_an_error_in_every_source():
     sources = [path for path in (ROOT / "src" / "runtime").rglob("*.c") if not re.search("sundials|erk|bdf", path.name)]
     assert len(sources) > 20
     assert [source.name for source in sources if not refuses_to_be_fast(source, "gcc", "-ffast-math")] == []

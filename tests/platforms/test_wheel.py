@@ -210,7 +210,7 @@ def test_mistakes(words, message, tmp_path):
     assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr
 
 
-def test_no_words_show_the_help(tmp_path):
+def test_no_arguments_show_the_help(tmp_path):
     """As with pip, the command without arguments shows the help."""
     shown = succeed(cwd=tmp_path)
     assert shown == succeed("--help", cwd=tmp_path) and "linearize" in shown

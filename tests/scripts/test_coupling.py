@@ -154,7 +154,7 @@ def test_limits_of_stability(ratio):
     assert limit("newton", 0, ratio=ratio) == 100.0
 
 
-def test_fixed_point_says_where_it_ends():
+def test_fixed_point_reports_its_failure():
     master = Master(1.0, 1.0, 1e4, 1.0)
     with pytest.raises(Diverged):
         master.run("fixed_point", 1, [1.0, 0.0, 0.0, 0.0], 1.0, 10)

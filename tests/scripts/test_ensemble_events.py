@@ -106,7 +106,7 @@ def test_events_that_set_modes(of_tests):
     np.testing.assert_allclose(values[:, 0], np.array([1 + speed / 2 * (3 - time), speed / 2]).T, rtol=1e-9)
 
 
-def test_what_the_fmu_refuses_is_left_to_it(of_tests):
+def test_runs_that_fail_are_left_to_the_fmu(of_tests):
     """A ball below the ground, and an <event> with Zeno behaviour, are left to the FMU; other runs are unaffected."""
     assert list(ensemble("BouncingBall", ["h"], ["h"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
     values, is_left = ensemble("Chatter", ["x", "v"], ["x"], [5.0]).run([[1.0, 0.0], [20.0, 1.0], [0.0, 0.5]])

@@ -94,7 +94,7 @@ def test_a_narrow_hill_is_not_passed_over(of_tests):
         assert value == pytest.approx([speed * (2.0 - float(delay)), speed], abs=1e-7)
 
 
-def test_what_follows_from_accelerations(of_tests):
+def test_values_of_accelerations(of_tests):
     """The force of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start only."""
     rows = [[0.95], [1.02], [0.0]]
     values, is_left = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
@@ -119,7 +119,7 @@ def test_where_auto_may_hand_over_is_left_to_it():
     assert list(is_left) == [True, False, True] and np.all(np.isfinite(values[1]))
 
 
-def test_what_the_fmu_refuses_is_left_to_it():
+def test_runs_that_the_fmu_refuses_are_left_to_it():
     """
     A length below its minimum, for which the equations do have a motion; and masses so different that the matrix is singular to 14 digits.
     """
@@ -158,7 +158,7 @@ def test_runs_that_end_in_a_singularity_are_left_alone():
     assert list(is_left) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
 
 
-def test_what_lanes_do_not_serve():
+def test_unsupported_systems_and_values():
     """Exact methods, systems without states, and values that are neither Real nor states are unsupported."""
     for name in ("ParticleCartesian", "StateFeedback"):
         assert source_of(archive(name)) is None, name

@@ -30,6 +30,6 @@ def test_faults_can_be_planted():
 @pytest.mark.parametrize("text, function, message", [("no such words", None, "stands 0 times, in no file"),
                                                      ("return true;", None, "stands [0-9]+ times, in modelDescription"),
                                                      ("evaluate_prepare(instance);", "log_error", "stands 0 times")])  # fmt: skip
-def test_places_that_are_not_clear_are_refused(text, function, message):
+def test_ambiguous_places_are_errors(text, function, message):
     with pytest.raises(LookupError, match=message):
         find(Fault(text, "", ("ctest", "test_graph"), function))

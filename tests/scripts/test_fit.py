@@ -68,7 +68,7 @@ def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
         assert {name: found.derivatives["nonConservativeWork", name][0] for name in at} == pytest.approx(expected, **TOLERATED)
 
 
-def test_derivatives_of_what_is_stiff(lagrange_fmu, monkeypatch):
+def test_derivatives_of_a_stiff_motion(lagrange_fmu, monkeypatch):
     """The motion is integrated by Radau's method; an explicit one would take 400,000 steps."""
     from lagrange_fmu.sensitivity import Motion
 
@@ -121,7 +121,7 @@ def test_events_at_once(lagrange_fmu):
     assert apart.derivatives["h[2]", "h[1]"][1] == pytest.approx(0, abs=1e-9)
 
 
-def test_at_the_edge_of_what_happens(lagrange_fmu):
+def test_derivatives_at_events(lagrange_fmu):
     """
     A ball that starts on the ground, below which no start is valid; a time equal to that of an impact; and a time at which changed values
     behave differently.
@@ -148,7 +148,7 @@ def test_at_the_edge_of_what_happens(lagrange_fmu):
         lagrange_fmu.simulate(ball, {"h": -1.0})
 
 
-def test_a_mode_that_holds_a_number(lagrange_fmu):
+def test_a_mode_with_a_number(lagrange_fmu):
     with pytest.raises(lagrange_fmu.Problem, match="gives 'fastest' another number for neighbours"):
         lagrange_fmu.sensitivities(fmu.archive("Noted"), ["x"], ["w"], [3.0])
 
@@ -278,7 +278,7 @@ def test_inputs_with_kinks(lagrange_fmu):
     assert [found.values[name] for name in ("k", "d", "m")] == pytest.approx([61, 0.8, 2], rel=1e-4)
 
 
-def test_what_data_do_not_tell(lagrange_fmu):
+def test_undetermined_values(lagrange_fmu):
     """Without a force, mass, stiffness and damping are determined up to a common factor only."""
     truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), measured(np.random.default_rng(1), truth), ["m", "k", "d", "x"])
@@ -368,7 +368,7 @@ def test_friction_without_derivatives(lagrange_fmu, start):
     assert found.is_finished and [found.values[name] for name in ("F", "d")] == pytest.approx([1.2, 0.3], rel=2e-3)
 
 
-def test_what_was_found_is_kept(lagrange_fmu, monkeypatch):
+def test_best_values_are_kept(lagrange_fmu, monkeypatch):
     """A failing trial is a rejected step; Ctrl-C ends the search with the best values so far."""
     from lagrange_fmu.sensitivity import Motion
     from lagrange_fmu.variational import SteppedMotion

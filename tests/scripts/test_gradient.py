@@ -49,7 +49,7 @@ def test_of_a_state_that_is_no_output(lagrange_fmu, integral):  # noqa: F811
     assert found.derivatives == pytest.approx(expected, rel=1e-7)
 
 
-def test_of_what_is_stiff(lagrange_fmu, monkeypatch):  # noqa: F811
+def test_of_a_stiff_motion(lagrange_fmu, monkeypatch):  # noqa: F811
     """Forward and backward integration take steps that an explicit method could not."""
     from lagrange_fmu.adjoint import Motion, WayBack
 
@@ -151,7 +151,7 @@ def test_cost(lagrange_fmu, monkeypatch):  # noqa: F811
         assert other["adjoint"] + other["getReal"] < 1.3 * (spent[0]["adjoint"] + spent[0]["getReal"])
 
 
-def test_refusals(lagrange_fmu):  # noqa: F811
+def test_errors(lagrange_fmu):  # noqa: F811
     for words, why in (({}, "expected the name"), ({"of": "x"}, "stop time is None"), ({"of": "x", "stop_time": math.inf}, "stop time is inf"), ({"of": "x", "stop_time": 1, "by": ["kk"]}, "'kk' is not a parameter"),
                        ({"of": "x", "stop_time": 1, "by": ["k"], "tolerance": math.nan}, "the tolerance is nan")):  # fmt: skip
         with pytest.raises(lagrange_fmu.Problem, match=why):

@@ -71,7 +71,7 @@ def test_a_jump_is_two_rows(version):
 
 
 @pytest.mark.parametrize("version", [0, 1])
-def test_held_from_row_to_row(version):
+def test_constant_between_rows(version):
     result = simulate(archives("Pushed")[version], {}, input={"time": [0, 0.3, 0.5], "F": [1, 2, 5]}, hold=True, **EVEN).outputs
     np.testing.assert_allclose(result["v"][-1], 0.3 + 0.2 * 2 + 0.5 * 5, rtol=1e-13)
     held = simulate(archives("Pushed")[version], {}, input=lambda t: t, hold=True, record_events=False, **EVEN).outputs
@@ -138,7 +138,7 @@ def test_in_model_exchange():
 
 
 @pytest.mark.parametrize("name, place, of", [("Carried", "z", lambda t: (np.cos(4 * t) - np.cos(2 * t)) * 4 / 12), ("Handed", "x", lambda t: 1 - np.cos(2 * t))])
-def test_what_moves_something(name, place, of):
+def test_prescribed_motions(name, place, of):
     """
     For u = 1 - cos(2 t), u'' = 4 cos(2 t). The derivatives, which are inputs too, come from a spline through the rows, or from the
     function. z'' + 16 z = -4 cos(2 t) from rest: z = (cos(4 t) - cos(2 t))/3.
@@ -153,7 +153,7 @@ def test_what_moves_something(name, place, of):
         np.testing.assert_allclose(result[place], of(result["time"]), atol=error)
 
 
-def test_what_fmi3_holds_is_told():
+def test_inputs_that_fmi3_keeps_constant_are_reported():
     with pytest.warns(UserWarning, match="FMI 3.0 holds 'zb' over each step"):
         simulate(fmi3.archive("Carried"), {}, input=lambda t: 0.0, stop_time=0.1)
 

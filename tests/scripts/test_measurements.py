@@ -50,7 +50,7 @@ def test_spellings(lagrange_fmu, tmp_path, text):  # noqa: F811
     ("", "the first line is ''"),
     ("time,angle in °\n".encode("latin1"), "not a text of UTF-8.*'CSV UTF-8'"),
 ])  # fmt: skip
-def test_what_is_no_table(lagrange_fmu, tmp_path, text, why):  # noqa: F811
+def test_files_without_a_table(lagrange_fmu, tmp_path, text, why):  # noqa: F811
     with pytest.raises(lagrange_fmu.Problem, match=why):
         read(tmp_path, text)
 
@@ -76,7 +76,7 @@ def table(**columns):
     (table(time=[0, 1], x=[0, 1]), {"bounds": {"m": (1, 2)}}, "'m' has bounds and does not vary"),
     (table(time=[0, 1], x=[0, 1]), {"vary": ["k", "k"]}, "'k' stands there twice"),
 ])  # fmt: skip
-def test_what_cannot_be_fitted(lagrange_fmu, data, words, why):  # noqa: F811
+def test_unusable_data(lagrange_fmu, data, words, why):  # noqa: F811
     with pytest.raises(lagrange_fmu.Problem, match=why):
         lagrange_fmu.fit(archive_of(BUILD / "measured", "Oscillator"), data, **({"vary": ["k"]} | words))
 

@@ -44,7 +44,7 @@ def check(task, unpacked):
 
 
 @pytest.mark.parametrize("task, rates", [(CART, cart), (DOUBLE_PENDULUM, double_pendulum)], ids=["cart", "double pendulum"])
-def test_it_stands_in_the_end(task, rates):
+def test_it_is_at_rest_at_the_end(task, rates):
     """SciPy's motion ends at rest too. The input is at a bound most of the time, as in any minimum-time solution."""
     if task is DOUBLE_PENDULUM:
         build_systems("optimization", {task.fmu: (ROOT / "scripts" / "optimization" / task.fmu / "system.xml").read_text()})

@@ -114,7 +114,7 @@ def test_a_bicycle_keeps_its_energy(bicycle, open_fmu):
     assert np.max(np.abs(leanings)) > 0.01 and abs(leanings[-1]) < 0.05 * np.max(np.abs(leanings))
 
 
-def test_what_is_no_equilibrium(command, tmp_path):
+def test_points_that_are_no_equilibrium(command, tmp_path):
     assert "the operating point is not an equilibrium: der(omega) = " in command("linearize", fmu.archive("SimplePendulum"), "--at", "theta=1", cwd=tmp_path).stderr
 
 
@@ -183,7 +183,7 @@ def test_near_a_contact_the_steps_are_small(resting, command, tmp_path):
     assert "stay closed" not in text
 
 
-def test_signals_and_what_is_recorded(command, tmp_path):
+def test_inputs_and_recorded_variables(command, tmp_path):
     """A force F = t on a cart without a pendulum gives x = t^3/6, in either version of FMI."""
     (tmp_path / "F.csv").write_text("time,F\n0,0\n1,1\n")
     for archive in (fmu.archive("InvertedPendulumCart"), fmi3.archive("InvertedPendulumCart")):
@@ -196,7 +196,7 @@ def test_signals_and_what_is_recorded(command, tmp_path):
         (tmp_path / "InvertedPendulumCart.csv").unlink()
 
 
-def test_what_initialization_moved_is_told(command, tmp_path):
+def test_start_values_moved_by_initialization_are_reported(command, tmp_path):
     result = command("run", fmu.archive("FourBar"), "--stop-time", "0.1", cwd=tmp_path)
     assert succeed(result) and "moved to fulfil the constraints: phi from 0.4 to 0.449082" in result.stderr
 
@@ -349,7 +349,7 @@ def test_pieces_and_kane_of_sympy(tmp_path):
         assert eval(potential, {"pick": lambda condition, value, other: value if condition else other}, {"x": x, "k": 9, "d": 2}) == energy
 
 
-def test_what_a_result_can_show(tmp_path):
+def test_plots_pages_and_tables_of_a_result(tmp_path):
     """Figure, page and table of a motion in Python, after the FMU has been deleted; a picture and a page in Jupyter."""
     folder = package.assemble(tmp_path / "package")
     (tmp_path / "Swing.fmu").write_bytes(fmu.archive("SimplePendulum").read_bytes())

@@ -18,7 +18,7 @@ def panels(name):
     return [names for _, names in panels_of(motion.description, motion.outputs)]
 
 
-def test_what_is_drawn_together():
+def test_variables_that_share_a_panel():
     """
     Angles of a pendulum share a panel; a motor's angle behind a gear of ratio 20 does not. Rounding errors of resting balls are not
     magnified.
@@ -63,7 +63,7 @@ def test_many_of_a_kind_have_a_panel_of_their_own():
     assert ["y[1]", "and 198 between", "y[200]"] in legends
 
 
-def test_what_hardly_changes_is_level():
+def test_nearly_constant_curves_are_level():
     """
     The spin of a gyrocompass, 2000 rad/s to some 1e-9 of it, has readable ticks. The couplers of equal rods do not rotate: their rounding
     errors are not magnified.

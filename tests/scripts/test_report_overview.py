@@ -51,7 +51,7 @@ def test_the_picture_and_the_table():
     assert overview([]) == ""
 
 
-def test_plots_tell_their_points():
+def test_plots_label_their_points():
     figure, axes = plt.subplots()
     [line] = axes.plot([1, 2], [3, 4], marker="o")
     with_tips(line, ["first: \"1\" < 2", "second"])

@@ -117,7 +117,7 @@ def test_section(monkeypatch, tmp_path):
     assert all((tmp_path / name).exists() for name in ("switching.csv", "switching_events.csv", "switching_ratios.csv"))
 
 
-def test_what_fails(monkeypatch, tmp_path):
+def test_failing_problems(monkeypatch, tmp_path):
     """A failing problem gives a sentence, and the others continue; a program that is not installed is named."""
     def absent(problem, setting, patience):
         raise ImportError

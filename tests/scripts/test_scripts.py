@@ -21,7 +21,7 @@ SIMULATE = [sys.executable, str(ROOT / "scripts" / "simulate.py")]
     ("totalEnergy=3", "'totalEnergy' of SimplePendulum cannot be set"),
     ("q=3", "'q' is not a variable of SimplePendulum; these can be: theta"),
 ])  # fmt: skip
-def test_what_cannot_be_set(word, message, tmp_path):
+def test_settings_that_are_wrong(word, message, tmp_path):
     result = subprocess.run([*SIMULATE, fmu.archive("SimplePendulum"), word], capture_output=True, text=True, cwd=tmp_path)
     assert result.returncode == 1 and message in result.stderr and "Traceback" not in result.stderr
     assert list(tmp_path.iterdir()) == []
@@ -286,6 +286,6 @@ def test_who_waits_for_sundials(solver, is_built, source, ready):
 
 
 @pytest.mark.parametrize("words, status", [(["--help"], 0), (["-h"], 0), ([], 1), (["-DFMI_VERSIONS=2"], 1)])
-def test_build_says_how_it_is_called(words, status):
+def test_build_shows_its_usage(words, status):
     result = subprocess.run([ROOT / "scripts" / "build", *words], capture_output=True, text=True)
     assert result.returncode == status and result.stdout.startswith("usage: scripts/build FOLDER")

@@ -138,13 +138,13 @@ def test_values_at_times_in_lanes(sweep):
     ("h@3", "'h@3' of record has no time from 0 to 2 s; expected NAME@end or NAME@TIME"),
     ("groud.events", "'groud' of 'groud.events' is neither a contact nor a friction of BouncingBall; did you mean 'ground'?"),
 ])  # fmt: skip
-def test_what_cannot_be_recorded(command, tmp_path, record, message):
+def test_values_that_cannot_be_recorded(command, tmp_path, record, message):
     words = [*command[0], archive("BouncingBall"), "--vary", "h=1,2", "--stop", "2", "--record", record, "--output", tmp_path / "runs.parquet"]
     result = subprocess.run(list(map(str, words)), env=command[1], capture_output=True, text=True)
     assert result.returncode == 1 and message in result.stderr and not (tmp_path / "runs.parquet").exists(), result.stderr
 
 
-def test_events_of_several_contacts_are_not_told_apart(command, tmp_path):
+def test_events_of_several_contacts_cannot_be_distinguished(command, tmp_path):
     words = [*command[0], archive("NewtonsCradle"), "--vary", "g=9,10", "--record", "touch[2].events", "--output", tmp_path / "runs.parquet"]
     result = subprocess.run(list(map(str, words)), env=command[1], capture_output=True, text=True)
     assert result.returncode == 1 and "the events of 'touch[2]' are not known apart from others of NewtonsCradle; expected events, of them all" in result.stderr

@@ -158,7 +158,7 @@ def test_work(lagrange_fmu):  # noqa: F811
         assert dict(zip(AT, derivatives[i, 0])) == pytest.approx(slopes(lambda *at: work(t, *at), AT), rel=1e-8, abs=1e-11)
 
 
-def test_an_output_that_stays(lagrange_fmu):  # noqa: F811
+def test_a_constant_output(lagrange_fmu):  # noqa: F811
     """The energy of a double pendulum is constant, though its states depend on the start hundreds of times more strongly."""
     _, derivatives = motion("Double", ["energy", "a"], list(DOUBLE_AT), [0.0, 1.5, 3.0])
     expected = slopes(energy_of_double, DOUBLE_AT)
@@ -225,7 +225,7 @@ def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
             assert variational.SeriesMotion(point, [], HELD_BY, 1e-8).begins_right() == is_right
 
 
-def test_what_lies_flat(lagrange_fmu):  # noqa: F811
+def test_flat_positions(lagrange_fmu):  # noqa: F811
     """The motion through a flat position is an error: SciPy's steps became tiny there, and its states wrong afterwards."""
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.problem import Problem
@@ -253,7 +253,7 @@ def test_a_fit_by_them(lagrange_fmu, monkeypatch):  # noqa: F811
     assert found.rms["x"] < 1e-6
 
 
-def test_what_is_not_derived_so(lagrange_fmu, tmp_path):  # noqa: F811
+def test_systems_without_variational_equations(lagrange_fmu, tmp_path):  # noqa: F811
     """lagc reports an error, so that the package uses another method."""
     from lagrange_fmu.variational import _indicators_of
 

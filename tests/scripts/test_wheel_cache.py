@@ -47,7 +47,7 @@ def test_where_it_is(tmp_path, monkeypatch):
     assert caching.folder() == tmp_path / f"lagrange-fmu-{os.getuid()}"
 
 
-def test_what_was_built_is_taken_again(tmp_path, caching, monkeypatch):
+def test_builds_are_reused(tmp_path, caching, monkeypatch):
     """The key depends on all inputs of the build; the most recently used entries stay."""
     (tmp_path / "new" / "linux64").mkdir(parents=True)
     (tmp_path / "new" / "linux64" / "A.so").write_text("a library")

@@ -70,7 +70,7 @@ def test_decades_of_damping(b, step, open_fmu):
         assert count(instance, "solverSteps") < 400 and count(instance, "solverHandovers") <= 3
 
 
-def test_only_what_may_be_stiff():
+def test_only_systems_that_may_be_stiff():
     """Systems without dissipation, and without forces that depend on velocities or inputs, use the series alone."""
     methods = {}
     for name in TEXTS:
@@ -116,7 +116,7 @@ def test_a_start_without_a_series(open_fmu):
 
 
 @pytest.mark.parametrize("mu", [10.0, 1e2, 1e3])
-def test_no_chattering(mu, open_fmu):
+def test_few_changes_of_method(mu, open_fmu):
     """The method changes two or three times per jump of van der Pol's oscillator, not at each step."""
     instance = open_fmu("AutoVanDerPol").initialize({"mu": mu}, tolerance=1e-6)
     periods = 3
@@ -155,7 +155,7 @@ def test_stiff_for_a_while(open_fmu):
     assert 2 <= count(instance, "solverHandovers") <= 10
 
 
-def test_handovers_are_told_once(open_fmu):
+def test_handovers_are_logged_once(open_fmu):
     instance = open_fmu("AutoDamper").initialize({"b": 1.0}, tolerance=1e-6)
     for b in (1e6, 0.1, 1e6, 0.1):
         instance.set({"b": b})

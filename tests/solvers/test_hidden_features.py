@@ -148,7 +148,7 @@ def outcomes(instance, end, values=()):
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_nothing_is_walked_through(name, open_fmu):
+def test_no_wall_is_passed(name, open_fmu):
     """The particle turns at the wall, and returns to the start after twice the travel time, with the velocity -1."""
     _, potential, start, top, width = WALLS[name]
     turn = turning_point(potential, start, top)
@@ -245,7 +245,7 @@ def test_a_weak_pole_is_not_crossed(open_fmu):
             assert abs(instance.get("x")) < 1e-5
 
 
-def test_friction_that_sticks_is_refused_by_name(open_fmu):
+def test_sticking_regularized_friction_is_an_error(open_fmu):
     instance = open_fmu("Stick")
     for tolerance in (1e-5, 1e-8, 1e-12):
         instance.reset().initialize(tolerance=tolerance)

@@ -73,7 +73,7 @@ def motion_and_messages(form, folder):
     return rows, steps, along, told
 
 
-def test_tables_do_what_statements_do(tmp_path):
+def test_tables_equal_statements(tmp_path):
     statements, tables = (motion_and_messages(form, tmp_path / form) for form in ("statements", "tables"))
     assert tables == statements
     assert "'phi'" in statements[3][0] and "'x'" in statements[3][1] and statements[1][2] > 2, statements

@@ -87,7 +87,7 @@ def test_the_optimised_sundials():
     assert ("sundials/lib/libsundials_cvode.a" in text) == is_there
 
 
-def test_generated_code_is_what_the_system_needs(name):
+def test_generated_code_has_only_the_functions_needed(name):
     """The code has no input code without inputs, no time unless it is used, and no Jacobian unless the solver needs one."""
     code = (BUILD / "systems" / name / "system.c").read_text()
     assert ("point->input" in code) == bool(fmu.names_of(name, "input"))
@@ -164,7 +164,7 @@ def test_instances_are_small():
         assert 0 < memory < limit, (name, memory)
 
 
-def test_what_is_absent():
+def test_absent_functions():
     from numerics.footprint import absent_features, form
 
     for name in fmu.all_names():

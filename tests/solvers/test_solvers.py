@@ -87,7 +87,7 @@ def test_a_method_that_stops_advises_others(method, open_fmu):
     assert set(re.findall("taylor|erk|radau|bdf|auto", advice)) == {"auto"} - {method}
 
 
-def test_much_work_is_told_of_on_the_way(open_fmu):
+def test_many_steps_give_a_warning(open_fmu):
     """A communication step of 50000 steps logs one warning and succeeds."""
     instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
     instance.step(40.0)

@@ -111,7 +111,7 @@ def check(folder, text, line, message):
     assert not (folder / "out").exists()
 
 
-def test_the_right_robot_is_right(tmp_path):
+def test_the_valid_robot_compiles(tmp_path):
     (tmp_path / "arm.xml").write_text(RIGHT)
     result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0 and result.stderr == (
@@ -166,7 +166,7 @@ def test_no_world(tmp_path):
     check(tmp_path, "<mujoco>\n<worldbody/></mujoco>", 1, "no joint of the robot moves")
 
 
-def test_entities_that_multiply_are_refused(tmp_path):
+def test_entities_that_multiply_are_errors(tmp_path):
     entities = "".join(f'<!ENTITY a{i} "{"".join(f"&a{i - 1};" for _ in range(10))}">' for i in range(1, 12))
     text = f'<!DOCTYPE mujoco [<!ENTITY a0 "lol">{entities}]>\n<mujoco model="&a11;"><worldbody/></mujoco>'
     (tmp_path / "arm.xml").write_text(text)

@@ -201,7 +201,7 @@ def test_bad_include(attributes, message, tmp_path):
     assert result.returncode == 1 and result.stderr == message + "\n", result.stderr
 
 
-def test_base_of_what_is_no_robot(tmp_path):
+def test_base_of_an_included_system(tmp_path):
     (tmp_path / "robot.urdf").write_text('<system name="Ball"/>')
     (tmp_path / "cell.xml").write_text(INCLUDE.format('base="floating" effort="limited"'))
     result = lagc("cell.xml", "-o", "out", cwd=tmp_path)

@@ -88,7 +88,7 @@ DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; expected 
         ("", 'contype="0"', 'contype="0" conaffinity="2"', {(2, STANDS), (3, STATIC.replace("2 other such pairs", "1 other such pair"))}),
     ],
 )
-def test_what_touches_in_mujoco_alone(ground, replaced, new, lines, tmp_path):
+def test_contacts_that_exist_in_mujoco_alone(ground, replaced, new, lines, tmp_path):
     (tmp_path / "world.xml").write_text(WORLD.replace(replaced, new) if replaced else WORLD)
     (tmp_path / "system.xml").write_text(f'<system name="S"><include file="world.xml" as="r" {ground}/></system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
@@ -111,7 +111,7 @@ def test_bad_contacts(geom, message, tmp_path):
     assert result.returncode == 1 and f"world.xml:5: {message}" in result.stderr, result.stderr
 
 
-def test_a_link_that_is_to_stand_and_does_not_meet_the_plane(tmp_path):
+def test_a_grounded_link_that_cannot_touch_the_plane(tmp_path):
     (tmp_path / "world.xml").write_text(WORLD)
     (tmp_path / "system.xml").write_text('<system name="S"><include file="world.xml" as="r" ground="d"/></system>')
     (tmp_path / "world.xml").write_text(WORLD.replace('name="c"', 'name="d"').replace('contype="0"', 'contype="2" conaffinity="2"'))

@@ -357,7 +357,7 @@ def test_message(text, message, tmp_path):
 
 @pytest.mark.parametrize("moments, told", [('Ixx="1" Iyy="1" Izz="2.3"', True), ('Ixx="1" Iyy="1" Izz="2"', False), ('Izz="1"', False),
                                            ('Ixx="1" Iyy="1" Izz="1" Ixy="0.7"', True), ("", False)])  # fmt: skip
-def test_moments_of_no_body_are_told(moments, told, tmp_path):
+def test_moments_of_no_body_give_a_warning(moments, told, tmp_path):
     """A principal moment is at most the sum of the other two; 1 + 0.7 exceeds 1 - 0.7 + 1."""
     (tmp_path / "system.xml").write_text(f'''{HEAD}<frame name="f"><rotate axis="z" angle="q"/></frame>
       <particle mass="1" x="p*sin(q)" y="p*cos(q)"/><body name="b" in="f" mass="0" {moments}/></system>''')
@@ -365,7 +365,7 @@ def test_moments_of_no_body_are_told(moments, told, tmp_path):
     assert result.returncode == 0 and ("no body can have the moments of inertia of 'b'" in result.stderr) == told, result.stderr
 
 
-def test_pole_of_euler_angles_is_refused(open_fmu):
+def test_gimbal_lock_of_euler_angles_is_an_error(open_fmu):
     """At gimbal lock two axes of rotation coincide."""
     instance = open_fmu("EulerPole")
     with instance.fails(ERROR, "mass matrix is singular .*'(phi|psi)'"):

@@ -187,7 +187,7 @@ IDLE = """<system name="Idle">
 </system>"""
 
 
-def test_what_nothing_moves_is_held_by_no_force(joints):
+def test_forces_across_a_planar_motion_are_zero(joints):
     """
     In a plane inclined by numbers and by a parameter, all types that leave the rotation free are equivalent; forces across the plane are 0.
     """
@@ -414,7 +414,7 @@ BAD = [
 
 
 @pytest.mark.parametrize("line, message", BAD)
-def test_refused(tmp_path, line, message):
+def test_errors(tmp_path, line, message):
     file = tmp_path / "system.xml"
     file.write_text(f"""<system name="Bad"><parameter name="k" start="1"/><coordinate name="x" velocity="v"/><coordinate name="y" velocity="w"/>
 <particle name="bob" mass="1" x="x" y="y"/>
@@ -424,7 +424,7 @@ def test_refused(tmp_path, line, message):
     assert result.returncode == 1 and f"{file}:3: " in result.stderr and message in result.stderr, result.stderr
 
 
-def test_a_mistake_in_a_spring_is_told_once(tmp_path):
+def test_a_mistake_in_a_spring_is_reported_once(tmp_path):
     """The stiffness is used for energy, length and force, and reported once; a negative one gives a warning."""
     (tmp_path / "system.xml").write_text("""<system name="Bad"><parameter name="c" start="2" unit="N"/>
 <coordinate name="x" velocity="v" unit="m"/><particle name="bob" mass="1" x="x"/>

@@ -217,7 +217,7 @@ def test_files_that_are_wrong(name, content, message, tmp_path):
     assert result.returncode == 1 and message in result.stderr and result.stderr.count("\n") == 1, result.stderr
 
 
-def test_what_other_programs_write(tmp_path):
+def test_files_of_other_programs(tmp_path):
     """
     lagc reads comments, colours, textures and normals, continued lines, capital letters, Windows line ends, points after the polygons, and
     relative indices.

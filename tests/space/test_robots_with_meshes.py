@@ -115,7 +115,7 @@ def test_visuals_that_are_wrong(tmp_path, mesh, problem):
     assert [thing.get("radius") for thing in things] == ["0.2"]
 
 
-def test_what_cannot_touch(tmp_path):
+def test_meshes_without_contact(tmp_path):
     """A flat mesh is drawn without contact; a round one has contact at some of its vertices, with a message."""
     (tmp_path / "cube.obj").write_text(obj_text(CUBE * [1, 1, 0], SQUARES))
     things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'))

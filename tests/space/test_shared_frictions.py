@@ -71,7 +71,7 @@ def lying_capsule(mu):
     return at_rest("LyingCapsule", turn, RADIUS, mu)
 
 
-def test_halves_would_not_do():
+def test_equal_shares_would_exceed_the_limit():
     """At the least sufficient friction, half of the load at the upper point exceeds its limit."""
     assert np.hypot(ALONG / 2, ROLLING / 2) > 1.02 * LEAST * PRESSING[1]
 

@@ -39,7 +39,7 @@ def turns(mode, time):
 
 
 @pytest.mark.parametrize("flags", list(itertools.product([False, True], repeat=5)))
-def test_how_often_conditions_come_to_hold(flags):
+def test_how_often_conditions_become_true(flags):
     """The Boolean is set between steps of 0.1; Python evaluates the conditions before and after each change."""
     instance = fmu.Instance("Conditions").initialize()
     reference = instance.references["flag"]

@@ -45,7 +45,7 @@ def test_a_corner_asks_for_two_contacts(open_fmu, corner, method):
     assert reached is None or float(text.split()[1][:-1]) == pytest.approx(reached, abs=1e-5)
 
 
-def test_two_contacts_hold_in_a_corner(open_fmu):
+def test_two_contacts_close_in_a_corner(open_fmu):
     instance = open_fmu("CornerBoth").initialize()
     instance.step(3.0)
     assert instance.get("x", "y", "v", "w", "wall.force", "floor.force") == pytest.approx([0, 0, 0, 0, 0.1, 2], abs=1e-12)

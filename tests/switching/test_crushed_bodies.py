@@ -59,7 +59,7 @@ def built():
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("name", CRUSHED)
-def test_crushed_bodies_are_refused(name, kind, version):
+def test_crushed_bodies_are_errors(name, kind, version):
     _, time, message = CRUSHED[name]
     messages, reached = [], []
     logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])

@@ -206,7 +206,7 @@ def test_a_state_at_an_event_is_kept(opened):
     assert "no instance can have saved" in plain.messages[-1][2]
 
 
-def test_events_without_end_come_to_an_end(opened):
+def test_zeno_behaviour_ends_the_step(opened):
     instance = start(opened, "Zeno")
     end = 3 * np.sqrt(2 / 9.81)
     with pytest.raises(FMICallException):

@@ -180,7 +180,7 @@ def test_a_puck_stops_on_a_line(open_fmu, method, turned):
 
 @pytest.mark.parametrize("turned", [0, 0.4])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_force_below_the_stiction_holds_and_one_above_moves(open_fmu, method, turned):
+def test_a_force_below_the_stiction_sticks_and_one_above_moves(open_fmu, method, turned):
     """Each component of the force is far below the stiction; the magnitude decides."""
     stiction = 0.3 * 2 * G
     instance = open_fmu(f"Puck_{method}").initialize({"turned": turned}, tolerance=1e-9)
@@ -465,7 +465,7 @@ def test_impacts_of_any_bodies_keep_the_cone(open_fmu, seed):
             assert push == pytest.approx(-mu[0] * impulse[0] * slip / np.linalg.norm(slip), abs=1e-8)
 
 
-def test_other_outcomes_of_an_impact_are_told(open_fmu):
+def test_other_outcomes_of_an_impact_are_reported(open_fmu):
     """The frictions move along lines only, so that trying all modes finds all outcomes of the impact."""
     instance = open_fmu("RandomCones")
     random = np.random.default_rng(0)
@@ -506,7 +506,7 @@ def test_a_rod_in_a_plane_moves_as_one_on_a_line(open_fmu, values, turned):
 
 
 @pytest.mark.parametrize("turned", [0, 0.8])
-def test_painleves_paradox_is_told(open_fmu, turned):
+def test_painleves_paradox_is_reported(open_fmu, turned):
     instance = open_fmu("RodInPlane")
     with instance.fails(ERROR, "contact 'ground' has no solution there, as the friction 'tip"):
         instance.initialize({"vx": -1, "mu": 2, "turned": turned}, tolerance=1e-9)
@@ -548,7 +548,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("line", REFUSED)
-def test_what_is_refused(line, tmp_path):
+def test_errors(line, tmp_path):
     text = f"""<system name="Refused" description="Friction in a plane">
   <parameter name="W" start="1" unit="m/s"/><parameter name="w" start="1" unit="rad"/><parameter name="N" start="1" unit="N"/><parameter name="l" start="1" unit="m"/>
   <coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/>
@@ -563,7 +563,7 @@ def test_what_is_refused(line, tmp_path):
         assert result.returncode != 0 and REFUSED[line] in result.stderr
 
 
-def test_a_negative_force_is_refused(open_fmu):
+def test_a_negative_force_is_an_error(open_fmu):
     instance = open_fmu("Puck_auto").initialize({"vx": 1}, tolerance=1e-8)
     instance.set({"mu": -0.1})
     with instance.fails(DISCARD, "force of the friction 'sole' is -"):

@@ -69,7 +69,7 @@ def test_a_bead_on_a_hoop(open_fmu, method, phi, speed):
     assert rows[-1][1:3] == pytest.approx([RADIUS * np.sin(expected), -RADIUS * np.cos(expected)], abs=2e-6)
 
 
-def test_a_force_with_the_wrong_sign_is_refused(open_fmu):
+def test_a_force_with_the_wrong_sign_is_an_error(open_fmu):
     instance, phi = open_fmu("HoopSigned"), 1.1
     start = {"x": RADIUS * np.sin(phi), "y": -RADIUS * np.cos(phi), "vx": 3 * np.cos(phi), "vy": 3 * np.sin(phi)}
     with instance.fails(DISCARD, r"the force of the friction 'rub' is -.*; expected 0 or more, such as abs\(...\)"):

@@ -114,7 +114,7 @@ def test_in_model_exchange(body):
         check(body, time, forces, False)
 
 
-def test_one_that_is_driven_holds_another(open_fmu):
+def test_a_driven_body_carries_the_friction_of_another(open_fmu):
     """From 1 s on the drive of the second body carries the friction of the first, 5 N; from 2 s on also its own inertia force of 1 N."""
     instance = open_fmu(name_of("Between", "taylor")).initialize()
     others = {time: other for time, other in instance.run(3, 0.125, "other")}

@@ -266,7 +266,7 @@ def motions(free, s):
     return found
 
 
-def test_forces_of_sliding_contacts_are_the_only_ones_or_refused(open_fmu):
+def test_forces_of_sliding_contacts_are_unique_or_an_error(open_fmu):
     instance, other = open_fmu("RandomContacts"), open_fmu("RandomContactsTurned", logging=False)
     rng = np.random.default_rng(3)
     counts = {0: 0, 1: 0, 2: 0}
@@ -305,7 +305,7 @@ def rod_pressure(theta, mu):
 
 
 @pytest.mark.parametrize("w, words", [(0.0, "no solution"), (-4.0, "more than one solution")])
-def test_a_rod_that_locks_is_refused(open_fmu, w, words):
+def test_a_locking_rod_is_an_error(open_fmu, w, words):
     assert rod_pressure(1.2, 2) < 0
     instance = open_fmu("PainleveRod")
     with instance.fails(ERROR, rf"contact 'tip' has {words} .* friction 'rub'.*Painleve"):
@@ -336,7 +336,7 @@ def test_a_rod_parts_before_it_locks(open_fmu):
 
 
 @pytest.mark.parametrize("mu, theta, rise, tolerance", [(1.3, 0.9, 100.0, 1e-11), (1.35, 0.85, 3.0, 1e-6), (1.4, 0.9, 3.0, 1e-8)])
-def test_a_rod_that_jams_is_told(open_fmu, mu, theta, rise, tolerance):
+def test_a_jamming_rod_is_reported(open_fmu, mu, theta, rise, tolerance):
     """With growing friction p falls to 0 while the rod still presses: the force diverges, and its pole may look like a zero."""
     rate = lambda t, state: [state[1], 3 * (G - np.sin(state[0]) * state[1] ** 2) / rod_pressure(state[0], mu + rise * t) * ((mu + rise * t) * np.sin(state[0]) - np.cos(state[0]))]
     locks = lambda t, state: rod_pressure(state[0], mu + rise * t) - 1e-9

@@ -45,14 +45,14 @@ def test_rounded_starts_are_moved(opened, open_fmu, version, kind):
     assert any("the start is moved so that the contact 'floor' is not penetrated, whose gap was -9e-07" in text for text in texts), texts
 
 
-def test_constraints_hold_where_a_start_is_moved(open_fmu):
+def test_constraints_are_satisfied_after_a_start_is_moved(open_fmu):
     instance = open_fmu("Tied").initialize()
     assert instance.get("h", "s", "v", "w") == pytest.approx([0, 0, 0, 0], abs=1e-15)
     instance.step(0.5)
     assert instance.get("h", "floor.force") == pytest.approx([0, 2 * 9.81], abs=1e-9)
 
 
-def test_more_than_rounding_is_refused(open_fmu):
+def test_more_than_rounding_is_an_error(open_fmu):
     instance = open_fmu("Places")
     with instance.fails(ERROR, "the contact 'floor' is penetrated at the start: its gap is -0.001"):
         instance.initialize({"h": -0.001})

@@ -295,7 +295,7 @@ def test_periods_that_are_none(period):
     ('<sample every="0.1"><set mode="m">der(v)</set></sample>', r"a <sample> cannot depend on accelerations, but this one does on 'der\(v\)'"),
     ('<sample><set mode="m">1</set></sample>', "<sample> needs the attribute 'every'"),
 ])  # fmt: skip
-def test_what_is_refused(text, message, tmp_path):
+def test_errors(text, message, tmp_path):
     import re
 
     system = tmp_path / "system.xml"

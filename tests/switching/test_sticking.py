@@ -140,7 +140,7 @@ def test_in_ensembles():
         assert (velocity, sign) == pytest.approx((-expected / (1 + 1.5 / 9), -1), abs=1e-9)
 
 
-def test_what_sticks_has_no_derivatives(open_fmu):
+def test_sticking_velocities_have_no_derivatives(open_fmu):
     instance = open_fmu(gear_name("3", "Sign")).initialize()
     instance.run(1.4, 0.1, "w1")
     assert instance.fmu.getDirectionalDerivative(instance.vr("size2", "seen"), instance.vr("w1"), [1.0]) == [0, 0]
@@ -204,7 +204,7 @@ def test_limits_by_direction_that_follow_from_a_constraint(open_fmu, speed):
     ('coordinate="x" force="mu*ground.force" forceBack="2*mu*ground.force"', "a <friction> with forceBack that follows from the force of a contact"),
     ('velocity="v" across="w" force="mu*m*g" stictionBack="m*g"', "a <friction> with across and stictionBack"),
 ])  # fmt: skip
-def test_refusals(tmp_path, words, message):
+def test_errors(tmp_path, words, message):
     path = tmp_path / "system.xml"
     path.write_text(f"""<system name="S">
   <parameter name="m" start="1" unit="kg"/><parameter name="g" start="9.81" unit="m/s2"/><parameter name="mu" start="0.5" unit="1"/>

@@ -141,7 +141,7 @@ def test_contacts_open_at_edges_and_events_see_contacts(open_fmu, opened, kind, 
         assert instance.get("rubs") == instance.get("rub.force") == 1.0
 
 
-def test_what_falls_lands_below(open_fmu):
+def test_falling_bodies_land_below(open_fmu):
     instance = open_fmu("Yard_taylor").initialize()
     instance.step(1.5)
     assert instance.get("x", "y", "vy", "hits", "lands", "starts") == pytest.approx([1.5, -0.8, 0, instance.get("hits"), 1, 1], abs=1e-12)
@@ -149,7 +149,7 @@ def test_what_falls_lands_below(open_fmu):
 
 
 @pytest.mark.parametrize("state", [{"v": -1e-6}, {"v": 1e-6}, {"h": 1e-7, "v": -1e-5}, {"h": -1e-7}])
-def test_what_an_integrator_leaves_of_a_closed_contact_is_no_impact(open_fmu, state):
+def test_integration_errors_of_a_closed_contact_are_no_impact(open_fmu, state):
     """A ball at rest, with restitution 0.8, stays at rest in event mode despite the error of an integrator."""
     instance = open_fmu("BouncingBall", kind=FMU2Model).initialize({"h": 0})
     instance.fmu.newDiscreteStates()
@@ -192,7 +192,7 @@ TOLD = ["pace", "der(cv)", "der(dv)", "brake.force", "floor.force", "over", "cv"
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_what_is_set_is_told_at_once_and_leaves_no_trace(open_fmu, opened, version):
+def test_set_values_show_at_once_and_reading_changes_nothing(open_fmu, opened, version):
     """
     Friction of up to 4 keeps the block sticking at first; later a force of 6 moves it against 4 or 1. The body on the floor lifts off from
     u = 0.5 on. Reading values does not change the saved state.
@@ -226,7 +226,7 @@ def test_what_is_set_is_told_at_once_and_leaves_no_trace(open_fmu, opened, versi
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_work_is_what_forces_do_between_events(kind):
+def test_work_is_that_of_forces_between_events(kind):
     names = ["nonConservativeWork", "totalEnergy", "n"]
     result = fmpy.simulate_fmu(str(fmu.archive("Worked")), fmi_type=kind, stop_time=3, output_interval=0.1, output=names)
     assert result["totalEnergy"] - result["nonConservativeWork"] == pytest.approx(np.full(len(result), 9.81 + 4.5), abs=1e-8 if kind == "CoSimulation" else 1e-4)
@@ -234,7 +234,7 @@ def test_work_is_what_forces_do_between_events(kind):
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_mistakes_are_told(open_fmu, name):
+def test_mistakes(open_fmu, name):
     instance = open_fmu(name).initialize()
     time, message = STEPPED[name]
     with instance.fails(DISCARD, message):
@@ -243,7 +243,7 @@ def test_mistakes_are_told(open_fmu, name):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_a_negative_gap_at_the_start_is_told_in_exchange(open_fmu, opened, version):
+def test_a_negative_gap_at_the_start_is_an_error_in_model_exchange(open_fmu, opened, version):
     instance = open_fmu("Yard_taylor", kind=FMU2Model) if version == 2 else opened("Yard_taylor", kind=FMU3Model)
     with pytest.raises(FMICallException):
         instance.initialize({"d": -0.25})
@@ -259,7 +259,7 @@ def test_a_negative_gap_at_the_start_is_told_in_exchange(open_fmu, opened, versi
         ('<friction name="f" coordinate="x" force="1"/><contact name="c" gap="x + f.sliding"/>', "gap of <contact> cannot depend on whether contacts are closed"),
     ],
 )
-def test_what_events_alone_may_know(tmp_path, element, message):
+def test_names_for_events_alone(tmp_path, element, message):
     start = '<mode name="m"/><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><contact name="wall" gap="x"/>'
     (tmp_path / "system.xml").write_text(f'<system name="A">{start}{element}</system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)

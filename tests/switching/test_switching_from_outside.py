@@ -61,7 +61,7 @@ def built():
 
 
 @pytest.mark.parametrize("name", SET)
-def test_what_is_set_to_a_threshold_is_there(open_fmu, name):
+def test_a_value_that_is_set_to_a_threshold_has_reached_it(open_fmu, name):
     """Comparisons and signs at a threshold depend on the value, not on the side it came from."""
     text, velocity, steps = SET[name]
     instance = open_fmu(name).initialize()
@@ -72,14 +72,14 @@ def test_what_is_set_to_a_threshold_is_there(open_fmu, name):
         assert instance.get(velocity) - before == pytest.approx(change, abs=1e-9), value
 
 
-def test_what_an_event_sets_to_a_threshold_is_there(open_fmu):
+def test_a_value_that_an_event_sets_to_a_threshold_has_reached_it(open_fmu):
     instance = open_fmu("SetTo").initialize()
     instance.step(1.0)
     assert instance.get("m", "w") == pytest.approx([1, 0.5])
 
 
 @pytest.mark.parametrize("name, down", [("Floor", 0.01), ("Floor", 0.5), ("Lift", 0.01), ("Lift", 0.5)])
-def test_a_floor_that_goes_lets_go(open_fmu, name, down):
+def test_a_floor_that_recedes_opens_the_contact(open_fmu, name, down):
     instance = open_fmu(name).initialize()
     instance.step(0.1)
     instance.set(u=-down)
@@ -97,7 +97,7 @@ def test_a_floor_does_not_come_through_a_body(open_fmu):
         instance.step(0.1)
 
 
-def test_what_was_searched_ahead_does_not_outlast_a_change(open_fmu):
+def test_the_look_ahead_is_discarded_after_a_change(open_fmu):
     """The first impact would be at 0.4515 s; with tenfold gravity from 0.2 s on it is at 0.3096 s, by the parabola."""
     instance = open_fmu("BouncingBall").initialize()
     for _ in range(20):
@@ -165,7 +165,7 @@ def test_an_indicator_is_not_zero_behind_an_event(open_fmu):
     assert list(state) == pytest.approx([0, 0.4], abs=1e-15) and indicator[0] > 5e-12
 
 
-def test_an_importer_sees_what_leaves_zero():
+def test_an_importer_detects_a_departure_from_zero():
     """The indicator is zero at the start itself."""
     assert exchanged("Tie", 1, 0.25, "x")["x"][-1] == pytest.approx((1 - np.cos(10)) / 100, abs=1e-5)
     assert exchanged("Left", 1, 0.25, "x")["x"][-1] == pytest.approx(-0.5, abs=1e-5)

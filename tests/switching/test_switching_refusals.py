@@ -72,7 +72,7 @@ def built():
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("name", REFUSED)
-def test_refusals(name, kind):
+def test_errors(name, kind):
     if (name, kind) == ("ToAndFro", "ModelExchange"):
         pytest.skip("an importer has its own number of steps")
     messages = []
@@ -84,7 +84,7 @@ def test_refusals(name, kind):
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("name", FINE)
-def test_what_an_event_sets(name, kind):
+def test_values_that_an_event_sets(name, kind):
     result = fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=3, output_interval=0.1, fmi_type=kind, output=["x", "y"])
     assert (result["x"][-1], result["y"][-1]) == pytest.approx(FINE[name][1], abs=1e-9 if kind == "CoSimulation" else 1e-6)
     if name == "PutUp":
