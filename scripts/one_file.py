@@ -54,7 +54,7 @@ def included_once(text, root, included):
 def one_file(root, global_names, version, system, name):
     """Return the text of the file; `version` is the version of FMI, `system` the path of system.c, `name` the FMU's name."""
     fmi, runtime = f"FMI{version}", root / "src" / "runtime"
-    # The functions of the version of FMI, which come beside the runtime that all versions share.
+    # The functions of this version of FMI; the rest of the runtime is common to all versions.
     layer = "".join(f'#include "{path.relative_to(runtime).as_posix()}"\n' for path in sorted((runtime / f"fmi{version}").glob("*.c")))
     text = system.read_text(encoding="utf-8").replace("#ifdef FMU_IN_ONE_FILE\n", f"#ifdef FMU_IN_ONE_FILE\n{layer}")
     text = included_once(text, root, set())

@@ -28,7 +28,7 @@ BEGIN = ("unpacking.js", "begin.js")
 COMMON_WORKER = ("fmu.js", "sides.js", "worker.js")
 MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a recording, to bound the size of its page
 SHORTEST, LONGEST = 2.0, 60.0  # recordings of a length between these, in s, are played in real time
-PLAYED = 10.0  # s that others take to play
+PLAYED = 10.0  # s, playing time of shorter and longer recordings
 PIECE = 8192  # bytes of interleaved pieces, well below the window of gzip, 32 kB
 
 

@@ -90,7 +90,7 @@ class WayBack:
     """
 
     def __init__(self, trail, running, inputs):
-        """`running` lists the references of the integrated variables."""
+        """Begin at the end of the trail; `running` lists the references of the integrated variables."""
         self.trail, self.model, self.running, self.inputs = trail, trail.model, list(running), inputs
         self.state_count = len(trail.state_references)
         self.knowns = [*trail.state_references, *trail.known_acting]

@@ -174,7 +174,7 @@ def write_descriptions(folder, name, fmi, content):
     files[licenses / "license.txt"] = licenses / "license.txt"
     copy_licenses(folder / licenses / "license.txt", content / licenses)
     build_description = folder / "fmi3" / "buildDescription.xml"
-    if build_description.exists():  # then it is complete in C
+    if build_description.exists():  # lagc writes it for FMUs without external libraries, which contain their sources
         runtime, sources = HERE / "runtime", content / "sources"
         sources.mkdir(parents=True)
         (sources / f"{name}.c").write_bytes(one_file(runtime, runtime / "global_names", fmi, folder / "system.c", name).encode())

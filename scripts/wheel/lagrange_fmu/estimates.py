@@ -21,7 +21,7 @@ PROBABILITY = 0.95  # of the confidence intervals
 FAR, SIGNIFICANT = 2.0, 1e-3  # a misfit: root mean square above FAR times the stated noise, with a probability below SIGNIFICANT
 CORRELATED, ENOUGH = 0.5, 20  # autocorrelation of residuals that is worth a remark; pairs of rows that are enough to estimate it
 AT_LIMIT = 1e-2  # distance to a limit, in standard deviations, within which a value is at the limit
-NEAR = 1e-6  # distance likewise, relative to the limit; it decides where the deviation is infinite
+NEAR = 1e-6  # additional distance, relative to the limit, which decides if the deviation is infinite
 SHARE = 10.0  # components of a null-space vector below this multiple of their error count as 0
 
 

@@ -36,7 +36,7 @@ class Point:
     """
 
     def __init__(self, model, description, values, by=(), messages=()):
-        """`values` by name are set at each start; `messages` is the list to which the model logs."""
+        """Wrap a model; `values` by name are set at each start, and `messages` is the list to which the model logs."""
         self.model, self.values, self.messages = model, values, messages
         self.in_series = None  # the Point of the same system in co-simulation with sensitivities as states, which stops at events
         self.references = {v.name: v.valueReference for v in description.modelVariables}

@@ -37,7 +37,7 @@ class Result(np.ndarray):
     """
 
     description: Any  # ModelDescription of FMPy; None if the array is not made of a motion
-    motion: Any  # the simulation.Motion; likewise None
+    motion: Any  # the simulation.Motion, or None
 
     @classmethod
     def of(cls, motion: Any) -> Result:

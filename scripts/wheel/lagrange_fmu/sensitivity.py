@@ -188,7 +188,7 @@ class Motion:
 
     def obstacle(self, time, both, inputs):
         """
-        Return the cause of stagnation as a text: a singular configuration of the constraints, behind which states would be wrong.
+        Return the cause of stagnation as a text: a singular configuration of the constraints, after which states would be wrong.
 
         Return None for a system without constraints, or with event indicators.
         """

@@ -6,7 +6,7 @@ from scipy.integrate import DOP853, Radau
 from .problem import Problem
 
 LOOK = 200  # steps between two tests for stiffness, whose eigenvalues cost more than a step
-TINY, CREEPING = 1e-6, 20  # a step is tiny below this share of the time (of 1 s before 1 s); so many tiny steps in a row are stagnation
+TINY, CREEPING = 1e-6, 20  # a step below TINY max(1 s, time) is tiny; CREEPING tiny steps in a row are stagnation
 STABLE = 3.0  # -Re(h lambda) above which the system counts as stiff; the stability limit of DOP853 is about 6
 
 

@@ -1,7 +1,7 @@
 """Declare the arguments that several commands share."""
 
-SYSTEM = {"metavar": "SYSTEM", "help": "SYSTEM.xml, a robot's .urdf, or a folder with a system.xml in it"}
-SYSTEM_OR_FMU = SYSTEM | {"help": SYSTEM["help"] + "; or an FMU"}
+SYSTEM = {"metavar": "SYSTEM", "help": "a system in XML, a robot in URDF, or a folder with a system.xml"}
+SYSTEM_OR_FMU = SYSTEM | {"help": SYSTEM["help"] + ", or an FMU"}
 
 
 def add_fmi(parser):
