@@ -70,7 +70,7 @@ document.addEventListener('pointermove', event => {
 });
 """
 
-# Color of lines and text in plots; svg() replaces it by the color of the text around them.
+# Colour of lines and text in plots; svg() replaces it by the colour of the text around them.
 INK = "#1d2434"
 plt.rcParams.update({key: INK for key in ("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color")} | {
     "figure.facecolor": "none", "axes.facecolor": "none", "legend.facecolor": "none", "savefig.facecolor": "none"})  # fmt: skip

@@ -211,7 +211,7 @@ def draw(axis, result, names, size):
     """
     Draw curves whose magnitude is `size`, with a legend.
 
-    Of an array with many elements the legend has the first and the last, and colors run from dark to bright. Otherwise it has MOST_NAMES names.
+    Of an array with many elements the legend has the first and the last, and colours run from dark to bright. Otherwise it has MOST_NAMES names.
     """
     from matplotlib import colormaps
 

@@ -234,7 +234,7 @@ class Scene {
     return mesh;
   }
 
-  // Returns a material in the shape's own color, or in that of its body.
+  // Returns a material in the shape's own colour, or in that of its body.
   materialOfShape(shape, i) {
     if (shape.color) {
       const opacity = shape.color.length > 7 ? parseInt(shape.color.slice(7), 16) / 255 : 1;
@@ -292,7 +292,7 @@ class Scene {
     for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
   }
 
-  // Adds a rod between two things, or from the center of a planar body to its joint.
+  // Adds a rod between two things, or from the centre of a planar body to its joint.
   addRod(holder) {
     const thickness = 0.014 * this.radius / (1 + this.things.length / 60);
     const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);

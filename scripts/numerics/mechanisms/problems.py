@@ -19,8 +19,8 @@ class Body:
     """A planar body at the start, where its angle is 0. An inertia of 0 means a mass point."""
 
     mass: float  # kg
-    inertia: float  # kg m2, about the center of mass
-    centre: np.ndarray  # center of mass, in m
+    inertia: float  # kg m2, about the centre of mass
+    centre: np.ndarray  # centre of mass, in m
     velocity: tuple = (0.0, 0.0)  # m/s
     rate: float = 0.0  # rad/s
 

@@ -18,13 +18,13 @@ class Link:
     """A rigid body at the start, where its axes are parallel to the ground's, and the joint to its parent."""
 
     mass: float  # kg
-    inertia: np.ndarray  # about the center of mass, 3 x 3, in kg m2
-    centre: np.ndarray  # center of mass, in m
+    inertia: np.ndarray  # about the centre of mass, 3 x 3, in kg m2
+    centre: np.ndarray  # centre of mass, in m
     joint: str  # "hinge", "slide", "ball" or "free"
     above: int | None = GROUND  # index of the parent
     point: tuple = (0.0, 0.0, 0.0)  # position of the joint
     axis: tuple = (0.0, 0.0, 1.0)  # of the joint
-    velocity: tuple = (0.0, 0.0, 0.0)  # of the center of mass, in m/s
+    velocity: tuple = (0.0, 0.0, 0.0)  # of the centre of mass, in m/s
     turning: tuple = (0.0, 0.0, 0.0)  # angular velocity, in rad/s
     motor: float = 0.0  # inertia of the drive, reduced to the joint, in kg m2
     friction: float = 0.0  # viscous, in N m s/rad
@@ -54,9 +54,9 @@ class Closing:
 class Motion(NamedTuple):
     """The motion of all links (second index) at several times (first index)."""
 
-    centres: np.ndarray  # centers of mass
+    centres: np.ndarray  # centres of mass
     axes: np.ndarray  # rotation matrices, the identity at the start
-    velocities: np.ndarray  # of the centers of mass
+    velocities: np.ndarray  # of the centres of mass
     turnings: np.ndarray  # angular velocities, in the links' axes
 
 
@@ -180,14 +180,14 @@ def robot_arm():
     """
     value, links = start_values("RobotArm"), []
     a2, a3, d2, d3, d4 = (value[name] for name in ("a2", "a3", "d2", "d3", "d4"))
-    # Twist and length before the joint, offset along its axis, center of mass, moments of inertia. The first link needs only its moment about the axis.
+    # Twist and length before the joint, offset along its axis, centre of mass, moments of inertia. The first link needs only its moment about the axis.
     table = [(0, 0, 0, (0, 0, 0), (0.35, 0.35, 0.35)),
              (-np.pi / 2, 0, d2, (0.068, 0.006, -0.016), (0.13, 0.524, 0.539)),
              (0, a2, d3, (0, -0.070, 0.014), (0.066, 0.0125, 0.066)),
              (np.pi / 2, a3, d4, (0, 0, -0.019), (1.8e-3, 1.8e-3, 1.3e-3)),
              (-np.pi / 2, 0, 0, (0, 0, 0), (0.3e-3, 0.3e-3, 0.4e-3)),
              (np.pi / 2, 0, 0, (0, 0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3))]  # fmt: skip
-    masses = [1e-9, *(value[f"m{i}"] for i in range(2, 7))]  # the mass of the first link has no effect, since its center does not move
+    masses = [1e-9, *(value[f"m{i}"] for i in range(2, 7))]  # the mass of the first link has no effect, since its centre does not move
     place, turn = np.zeros(3), np.eye(3)
     for i, ((twist, length, offset, centre, moments), mass) in enumerate(zip(table, masses)):
         place = place + turn @ [length, 0, 0]
@@ -200,7 +200,7 @@ def robot_arm():
 
 
 def tip_of_tool(motion):
-    """Return the positions of the tool's tip, d6 along the flange's z axis from the wrist; the center of mass is at 0.032 m."""
+    """Return the positions of the tool's tip, d6 along the flange's z axis from the wrist; the centre of mass is at 0.032 m."""
     reach = start_values("RobotArm")["d6"] - 0.032
     return motion.centres[:, 5] + reach * motion.axes[:, 5] @ np.array(robot_arm().links[5].axis)
 

@@ -156,7 +156,7 @@ class Slips:
     """The motion of the block: at rest at first, it slips until it has the belt's velocity, and then sticks and slips alternately."""
 
     rate: float  # angular frequency of the slips, in rad/s
-    centre: float  # center of the oscillation in a slip, in m
+    centre: float  # centre of the oscillation in a slip, in m
     limit: float  # position at which the block begins to slip, in m
     belt: float  # velocity of the belt, in m/s
 
