@@ -1,6 +1,6 @@
 /*
- * Seconds of one evaluation of a robot's accelerations by Pinocchio's articulated-body algorithm, in the ground's axes and
- * in the joints': aba URDF fixed|floating COUNT. The arguments change from one evaluation to the next.
+ * Prints the seconds of one evaluation of a robot's accelerations by Pinocchio's articulated-body algorithm, in its
+ * conventions WORLD and LOCAL: aba URDF fixed|floating COUNT. The arguments change from one evaluation to the next.
  */
 #include <cstdio>
 #include <cstdlib>
