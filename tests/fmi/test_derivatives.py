@@ -9,7 +9,7 @@ import fmu
 from fmu import ERROR
 from systems_in_sympy import DEFINITIONS, system
 
-# Functions has kinks: min, max, abs and sign.
+# The system Functions has kinks: min, max, abs and sign.
 SMOOTH = [name for name in DEFINITIONS if name != "Functions"]
 
 
@@ -36,7 +36,7 @@ def derivative_of_accelerations(evaluate, values, direction, held):
 @pytest.mark.parametrize("kind", ["co-simulation", "model exchange"])
 @pytest.mark.parametrize("name", SMOOTH)
 def test_directional_derivatives_of_accelerations(name, kind, open_fmu):
-    """Along random directions in states, inputs and parameters, against the derivative of SymPy's M a = f."""
+    """Derivatives along random directions in states, inputs and parameters agree with those of SymPy's M a = f."""
     definition = system(name)
     instance = open_fmu(name, **({} if kind == "co-simulation" else {"kind": FMU2Model}))
     random, evaluate = np.random.default_rng(2), definition.evaluator("numpy")

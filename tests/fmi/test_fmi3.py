@@ -420,7 +420,10 @@ def test_errors_in_the_callback_end_the_step(opened):
 
 
 def test_a_discarded_step_changes_nothing(opened):
-    """This also holds with early return, which would hide that the motion ends (FMI 3.0.2, sections 2.2.3 and 4.2.1)."""
+    """
+    A discarded step restores the state, even with early return, which would hide that the motion ends (FMI 3.0.2, sections 2.2.3 and
+    4.2.1).
+    """
     falling = dict(omega=0.0)
     strict, early = opened("ParticlePolar").initialize(falling), opened("ParticlePolar", earlyReturnAllowed=True).initialize(falling)
     before = strict.get("r", "theta", "vr")

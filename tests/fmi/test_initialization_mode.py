@@ -70,7 +70,7 @@ def without_derivatives(values, name):
 
 
 def read_all(version, kind, instance):
-    """Values of every variable, and of the functions of the kind."""
+    """Values of every variable, and results of the functions for this kind of instance."""
     result = []
     for types, getter in ((("Real", "Float64"), "Float64" if version == 3 else "Real"), (("Integer", "Int32"), "Int32" if version == 3 else "Integer"),
                           (("Boolean",), "Boolean"), (("Int64",), "Int64")):  # fmt: skip

@@ -20,7 +20,7 @@ ONE_STEP = [name for name in [*fmu.all_names(), "BeadOnHoop", "TwoCarts"] if nam
 
 
 def change(instance, name, i):
-    """Change what an importer may change before step i: an input, its derivative, a parameter."""
+    """Change an input, its derivative, or a parameter before step i, as an importer may."""
     inputs, parameter = fmu.names_of(name, "input"), fmu.names_of(name, "parameter")[0]
     if inputs and i % 3 == 0:
         instance.set({inputs[0]: np.sin(i) / 10})

@@ -188,7 +188,7 @@ def lagged_actuator(t):
 
 
 def limited_controller(t):
-    """Saturated until `first`, and from then on with the integral (5/2 - 1)/2."""
+    """Saturated until `first`, and again once the integral is (5/2 - 1)/2."""
     first, decay = -np.log(0.15) / 100, np.exp(-100 * t)
     integral = min(max(0, t - first), 0.75)
     return {"D": 1 - decay, "I": integral, "u": min(5, 2 * (1 + 2 * integral + 10 * decay))}

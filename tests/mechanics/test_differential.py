@@ -24,7 +24,7 @@ from differential.system import Action, Plan, System, Table
 from references import Motion
 
 SEED = 644
-COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the smallest count that has all families of equations, whatever the seed
+COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the smallest count that has all families of equations, with this seed
 # Seeds with contacts, stops, friction, events, frames, hills and event mode; scripts/differential --kind switching runs many.
 SWITCHING = [34, 47, 52]
 SMOOTH = {

@@ -46,7 +46,7 @@ def test_forces_are_multipliers(name, form, open_fmu):
 
 
 def without_displacements(text):
-    """The same system as an author writes it who needs no reaction forces."""
+    """The same system without displacements, as for an author who needs no reaction forces."""
     text = re.sub(r"<displacement .*?/>|<output .*?</output>", "", text)
     for written, plain in [(r"px \+ \(l \+ stretch\)", "l"), (r"py - \(l \+ stretch\)", "-l"), (r"theta \+ turn", "theta"),
                            (r"\(l \+ stretch\[j\]\)", "l"), (r"- d\*sin\(u\)|\+ d\*cos\(u\)|\+ d/3", "")]:  # fmt: skip

@@ -212,7 +212,8 @@ def servo(period, s=SERVO):
 @pytest.mark.parametrize("ref, q, uMax", [(1.0, 1e-3, 24.0), (1.0, 1e-3, 3.0), (0.02, 2e-3, 24.0)])
 def test_servo_is_its_recursion(ref, q, uMax, open_fmu):
     """
-    The exponential of a matrix gives the motion between 200 samples, and encoder counts the samples; with and without limited voltage.
+    The matrix exponential gives the motion between 200 samples, and the counts of the encoder give the voltage, with and without
+    saturation.
     """
     instance = open_fmu("DigitalServo").initialize(dict(ref=ref, q=q, uMax=uMax), 1e-11)
     A, B = servo(SERVO["Ts"])
@@ -267,7 +268,10 @@ def worm(tau, c, back=1.0, s=WORM):
 
 @pytest.mark.parametrize("tau, c, omega", [(6.0, 1.5, 0.0), (5.2, 1.5, 3.0), (-1.5, 1.5, -3.0), (0.0, 0.2, 0.0), (3.0, 0.2, 0.0)])
 def test_worm_lifts_and_lowers(tau, c, omega, open_fmu):
-    """Lifting pays for the loss; a self-locking gear needs torque to lower; another runs down by itself. From rest and in motion."""
+    """
+    Lifting takes extra torque for the loss; a self-locking gear is lowered by the motor; otherwise the load runs down. From rest and in
+    motion.
+    """
     back = 1.0 if omega > 0 or tau > (1 + c) * 2 else -1.0
     acceleration, _ = worm(tau, c, back)
     instance = open_fmu("WormGear").initialize({"tau": tau, "c": c, "omega": omega, "W": omega / 30}, 1e-9)

@@ -207,7 +207,8 @@ void sines(size_t count, const double *x, double *s, double *c) {
 
 def test_sines(tmp_path):
     """
-    The error is below 1.5 units in the last place, also near multiples of quarter turns and for large arguments; there is no value beyond.
+    The error is below 1.5 units in the last place, also near multiples of quarter turns and for large arguments; the sine of infinity is
+    NaN.
     """
     (tmp_path / "sines.c").write_text(SINES)
     flags = [f"@{ROOT / 'src' / 'ensemble' / f'lanes{lanes}.flags'}" for lanes in ("", HERE)]

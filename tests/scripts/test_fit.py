@@ -175,7 +175,7 @@ def test_starts_of_dependent_coordinates(lagrange_fmu, name, off, start):
 
 
 def test_a_start_that_follows_parameters_and_is_moved(lagrange_fmu):
-    """The FMU does not show the start value before the projection, which is an error."""
+    """The FMU does not show the start value before the projection, so that an expected value is required."""
     with pytest.raises(lagrange_fmu.Problem, match="start value of 'y' follows parameters, and constraints move it; expected a value"):
         lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1})
     lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1, "y": -0.77})

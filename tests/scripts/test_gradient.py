@@ -90,7 +90,7 @@ def test_through_small_bounces(lagrange_fmu):  # noqa: F811
 
 
 def test_to_rest(lagrange_fmu):  # noqa: F811
-    """Through all bounces; afterwards the impulses of the ground and of gravity are equal, whatever the height."""
+    """Gradient of the integral of the height, through all bounces until rest."""
     at = {"h": 0.2, "g": 9.81, "e": 0.5}
     height = lambda h, g, e: mpmath.mpf(2) / 3 * h * mpmath.sqrt(2 * h / g) * (1 + 2 * e**3 / (1 - e**3))  # integral of each parabola: 2/3 of its height times its length
     found = lagrange_fmu.gradient(archive("Ball"), "h", list(at), 1.0, integral=True, start_values=at)

@@ -246,7 +246,7 @@ def test_against_reference_at_the_limit_of_doubles(name, open_fmu):
 
 
 def test_forces_with_kinks(open_fmu):
-    """A force with kinks, of every function of the language, agrees with SciPy's Dormand-Prince method of order 8."""
+    """A force of all functions of the language, with their kinks, agrees with SciPy's Dormand-Prince method of order 8."""
     definition, values = system("Functions"), dict(m=1.5, q=0.2, w=0.5, u=0.7, p=0.3)
     right_side = definition.right_side(lambda t: [values["u"]], [values["m"], values["p"]])
     exact = solve_ivp(right_side, (0, 2), [values["q"], values["w"]], method="DOP853", rtol=2.3e-14, atol=1e-14).y[:, -1]

@@ -413,7 +413,7 @@ def test_bricard(open_fmu):
 
     def derivative(_, state):
         alpha, rate = state
-        h = 1e-3  # of differences of order 6 for what is smooth
+        h = 1e-3  # of central differences of order 6
         points = [bricard_energies(alpha + k * h) for k in (-3, -2, -1, 1, 2, 3)]
         slope = np.array([-1, 9, -45, 45, -9, 1]) @ np.array(points) / (60 * h)
         return [rate, (-slope[1] - slope[0] * rate**2 / 2) / bricard_energies(alpha)[0]]
@@ -424,7 +424,7 @@ def test_bricard(open_fmu):
 
 
 def test_governor_without_width_is_that_by_particles(open_fmu):
-    """With thin rods on the axis, and angles from the vertical in place of the horizontal."""
+    """The governor with thin rods on the axis equals the one by particles, whose angles are from the vertical."""
     w, slider = 1e-5, 3.0
     rho = 0.3 / w**2
     e = (slider / rho) ** (1 / 3)

@@ -425,7 +425,7 @@ def test_errors(tmp_path, line, message):
 
 
 def test_a_mistake_in_a_spring_is_reported_once(tmp_path):
-    """The stiffness is used for energy, length and force, and reported once; a negative one gives a warning."""
+    """A wrong unit of the stiffness, which is used for energy, length and force, is reported once; a negative stiffness gives a warning."""
     (tmp_path / "system.xml").write_text("""<system name="Bad"><parameter name="c" start="2" unit="N"/>
 <coordinate name="x" velocity="v" unit="m"/><particle name="bob" mass="1" x="x"/>
 <spring name="s" from="base" to="bob" stiffness="c"/><spring from="base" to="bob" stiffness="-3" damping="-1"/>

@@ -347,7 +347,8 @@ def test_dice(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_hostile_starts(seed):
     """
-    Boxes that start on a corner, an edge or a face, without friction or with very much: energy never grows, or the message gives the cause.
+    Boxes that start on a corner, an edge or a face, without friction or with very much: energy never grows, or the simulation fails with
+    the cause.
     """
     chance = np.random.default_rng(seed)
     turn = [Rotation.from_euler("zyx", [chance.uniform(0, 6), *angles]) for angles in (chance.uniform(0.1, 1.4, 2), (chance.uniform(0.1, 1.4), 0), (0, 0))][seed % 3]

@@ -436,7 +436,7 @@ def test_hand(open_fmu):
 
 
 def test_slack_tendon(open_fmu):
-    """A new state may lie beyond either end of the slack interval; each state starts the simulation anew."""
+    """A state set in one step may cross both ends of the slack interval, so that a new instance is initialized for each state."""
     reference, random, lengths = Reference(SLACK), np.random.default_rng(1), set()
     for _ in range(STATES):
         reference.draw(random)

@@ -106,7 +106,7 @@ MJCF_CASES = [
 @pytest.mark.parametrize("element, attribute, asked, remedy", MJCF_CASES, ids=[f"{case[0]}-{case[1].split('=')[0]}" for case in MJCF_CASES])
 def test_warnings_of_mjcf(element, attribute, asked, remedy, tmp_path):
     """
-    The warning appears once, for the element or its <default>; it does not if the attribute has no effect for this <include>, or is 0.
+    The warning appears once, for the element or its <default>. It is omitted if the attribute has no effect for this <include>, or is 0.
     """
     name = attribute.split("=")[0]
     message = f"{name} of <{element}> {UNREAD} {remedy}"

@@ -407,7 +407,7 @@ CASES = [
               [(1e-3, dict(tau=1e2 * (-1) ** i)) for i in range(300)], "the series do not give way", 1e-7, 600, 0),
     switching("damping that alternates between 0.1 and 1e5 N m s", "DampedPendulum", dict(b=0.1, theta=2.0),
               [(0.05, dict(b=(0.1, 1e5)[i % 2])) for i in range(100)], "no chattering", 1e-7, 60_000, 26),
-    # --- The cart.
+    # --- Carts with extreme mass ratios and unstable equilibria.
     Case("mass ratio 1e-8", "InvertedPendulumCart", dict(M=1e-8, m=1.0, theta=0.5), 1.0, 0.1,
          "energy and momentum, to 100 times the tolerance", cart_invariants, 1e-8, 1000),
     Case("mass ratio 1e8", "InvertedPendulumCart", dict(M=1e8, m=1.0, theta=0.5), 10.0, 0.1,
@@ -418,7 +418,7 @@ CASES = [
          "20 digits of SymPy's equations; cos(theta) = 0 is no special place", reference_error, 1e-7, 1000, exchange=1e-3),
     Case("balanced by feedback", "InvertedPendulumCart", dict(theta=0.2), 20.0, 1e-3,
          "the unstable equilibrium is held: |theta| below 1e-6 at the end", lambda run: abs(run["theta"][-1]), 1e-6, 20000, actions=balanced),
-    # --- Kepler.
+    # --- Kepler orbits.
     Case("Kepler e = 0.9, 100 revolutions", "ParticlePolar", kepler_values(0.9), revolutions(0.9, 100), revolutions(0.9, 12.5),
          "Kepler's equation", kepler_error, 1e-10, 10000, 1e-14),
     Case("Kepler e = 0.99, 100 revolutions", "ParticlePolar", kepler_values(0.99), revolutions(0.99, 100), revolutions(0.99, 12.5),
@@ -436,7 +436,7 @@ CASES = [
          "parabola: without azimuthal rate phi goes on below 0", throw_error, 1e-9, 1000, 1e-13),
     Case("start at the pole", "ParticleSpherical", dict(phi=0.0, omegaTheta=1.0), 1.0, 0.1,
          "the azimuth does not exist", refused="mass matrix is singular.*'theta'", exchange=0.0),
-    # --- The stiff spring.
+    # --- Stiff springs.
     *(Case(f"spring of {k:g} N/m, critical damping", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=2 * np.sqrt(k), r=1.0 + 9.81 * np.cos(0.5) / k, theta=0.5), 5.0, 0.01,
            "rigid pendulum, up to m g / k", rigid_error, max(100 / k, 1e-7), 2000, 1e-8, exchange=max(100 / k, 1e-4)) for k in (1e4, 1e6, 1e8, 1e10)),
     *(Case(f"spring of {k:g} N/m, undamped bounce, by taylor", "BouncingSpring", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
@@ -445,7 +445,7 @@ CASES = [
     *(Case(f"spring of {k:g} N/m, undamped bounce, by auto", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
            "the bounce goes on: its own energy is kept", bounce_error, bound, work, 1e-10)
       for k, bound, work in ((1e4, 1e-3, 10000), (1e6, 1e-2, 100000), (1e8, 1e-2, 500000))),
-    # --- Fast pivot.
+    # --- Fast pivots.
     *(Case(f"pivot at {w:g} rad/s", "RotatingPivotPendulum", spinning(w), 2.0, 0.01,
            "averaged motion: the pivot's own circle upon a free swing", averaged_error, 2e-5, 30000, 1e-12) for w in (1e3, 1e4)),
     # --- Long chains, high energy.

@@ -108,7 +108,7 @@ class Importer:
 
 
 class Supplier:
-    """Sets inputs within steps, {name: function of time}; calls what it is given at each request."""
+    """Callback that sets inputs within steps, {name: function of time}, and calls `action` with the instance at each request."""
 
     def __init__(self, signals, action=None):
         self.signals, self.action, self.times, self.instance, self.problem = signals, action, [], None, None

@@ -114,7 +114,7 @@ def small_bounces():
 
 
 def belt(times, k, F, u):
-    """Positions of the block in closed form: a linear oscillator while it slides, and the velocity of the belt while it sticks."""
+    """Positions of the block in closed form: a linear oscillation while it slides, uniform motion with the belt while it sticks."""
     w = mpmath.sqrt(k)
     slide_at = 1.5 * F / k
     # Starts from rest at 0: x'' = F - k x until v = u, where the block sticks.

@@ -220,7 +220,7 @@ def test_a_force_that_turns_and_grows_moves_it_from_rest(open_fmu, method, stick
 
 @pytest.mark.parametrize("k, forces", [(0, [1.2, 0.9, 0, 0]), (3, [1.2, 0.9, 0, 0]), (3, [1.2, 0.9, 1.2, -0.9])])
 def test_it_leaves_rest_in_the_direction_of_its_acceleration(open_fmu, k, forces):
-    """The initial slip is along neither force; it depends on the other bodies that start at the same time."""
+    """The initial slip is not along the force, and depends on the bodies that start to slip at the same time."""
     mass = np.diag([5.0, 1, 5, 1])
     mass[np.ix_([0, 2], [0, 2])] += k * np.array([[1, -1], [-1, 1]])
     forces = np.array(forces)
