@@ -101,8 +101,9 @@ class Slave2(Slave):
     def begin(self):
         pass
 
-    def jump(self, values):
-        self.set(values)
+    def change(self, set_values):
+        """Call set_values() in a mode in which inputs may jump."""
+        set_values()
 
     def events(self):
         return self.fmu.getInteger(self.counter)[0]
@@ -202,10 +203,8 @@ class Slave3(Slave):
         if self.has_events:
             self.update()
 
-    def update(self, values=None):
-        """Iterate event mode, with new inputs unless `values` is None, and enter step mode."""
-        if values is not None:
-            self.set(values)
+    def update(self):
+        """Iterate event mode, and enter step mode."""
         needs_more, ends = True, False
         while needs_more and not ends:
             needs_more, ends, *_ = self.fmu.updateDiscreteStates()
@@ -213,12 +212,12 @@ class Slave3(Slave):
             raise Problem(f"{self.description.modelName} ended the simulation at an event")
         self.fmu.enterStepMode()
 
-    def jump(self, values):
+    def change(self, set_values):
         if self.has_events:
             self.fmu.enterEventMode()
-            self.update(values)
-        else:
-            self.set(values)
+        set_values()
+        if self.has_events:
+            self.update()
 
     def step(self, begin, end, piece, record):
         parts = [(begin, end, None)] if piece is None else [(begin, end, piece[0])] if self.signals.moving else self.held_halves(piece, begin, end)
@@ -288,13 +287,18 @@ def _run(slave, recorder, steps, record_events):
         if before is not None and _jumps(before, piece, end - time):
             if record and recorder.lastSampleTime != time:
                 record(time)
-            slave.jump(piece[0])
+            slave.change(lambda: slave.set(piece[0]))  # noqa: B023 - called at once
             if record:
                 record(time)
         slave.step(time, end, piece, record)
         if is_point:
             recorder.sample(end, force=True)
         before = None if piece is None else (value(piece, end - time), _size(piece, end - time))
+
+
+def check_platform(archive):
+    if platform not in supported_platforms(archive):
+        raise Problem(f"{archive} has no library for {platform} but for {', '.join(supported_platforms(archive)) or 'no platform'}; expected an FMU that was built for this machine")
 
 
 def co_simulate(archive, description, start_values, signals, output, interval, start, stop, tolerance=None, record_events=True, logger=None, debug_logging=True, visible=False, fmi_call_logger=None):
@@ -304,8 +308,7 @@ def co_simulate(archive, description, start_values, signals, output, interval, s
     A `tolerance` of None leaves the choice to the FMU. `logger` is called as by FMPy, but not for steps that are repeated to locate events.
     Raise Interrupted if a step fails, and Problem if the FMU has no library for this platform.
     """
-    if platform not in supported_platforms(archive):
-        raise Problem(f"{archive} has no library for {platform} but for {', '.join(supported_platforms(archive)) or 'no platform'}; expected an FMU that was built for this machine")
+    check_platform(archive)
     folder = extract(archive)
     slave = None
 

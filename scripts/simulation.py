@@ -24,7 +24,7 @@ from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem, Unfinished
 from .signals import signals_of
-from .variables import checked_start, elements, instead, known, names_of, near_file, start_values, units_of
+from .variables import checked_start, elements, instead, known, names_of, near_file, start_values, startable, units_of
 from .whole_files import write_whole
 
 
@@ -85,7 +85,13 @@ def experiment_of(description, start_time=None, stop_time=None, output_interval=
     return start, stop, step
 
 
-def _log_into(problems):
+def tolerance_of(description, tolerance=None):
+    """Return the relative tolerance, by default that of the FMU's experiment; None if there is neither."""
+    tolerance = tolerance or getattr(description.defaultExperiment, "tolerance", None)
+    return tolerance and float(tolerance)
+
+
+def log_into(problems):
     """Return a logger that appends errors to the list `problems`, and prints warnings."""
 
     def log(*words):
@@ -124,7 +130,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
         raise Problem(f"{fmu} is of FMI {description.fmiVersion}; expected an FMU of FMI 2.0 or 3.0")
     is_own = fmi_type == "CoSimulation"
     _check_options(options, OPTIONS if is_own else FMPY)
-    start = checked_start(start, description)
+    start = checked_start(start, description, startable(description))
     names = [variable.name for variable in description.modelVariables]
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
     outputs = outputs if output is None else [name for name in known(names_of(output, "output"), ["time", *names], description) if name != "time"]
@@ -138,11 +144,11 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
         return Motion(fmu, description, tree, starts, scalars(repack_fields(values[["time", *outputs]])), scalars(values))
 
     problems = []
-    options = {"logger": _log_into(problems), "debug_logging": True} | options
+    options = {"logger": log_into(problems), "debug_logging": True} | options
     try:
         if is_own:
-            tolerance = options.pop("relative_tolerance", None) or getattr(description.defaultExperiment, "tolerance", None)
-            values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance and float(tolerance), **options)
+            tolerance = tolerance_of(description, options.pop("relative_tolerance", None))
+            values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance, **options)
         else:
             values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
     except FMICallException as problem:

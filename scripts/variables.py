@@ -19,6 +19,11 @@ def settable(description):
     return [v.name for v in description.modelVariables if v.start is not None and v.type in ("Real", "Float64")]
 
 
+def startable(description):
+    """Return the names of the variables that take a start value, integers and Booleans too."""
+    return [v.name for v in description.modelVariables if v.start is not None and v.type not in ("String", "Binary")]
+
+
 def elements(name, shape):
     """Return the names of an array's elements as in FMI 2.0, such as der(theta[1]); for a scalar a list of its name."""
     places = itertools.product(*(range(1, count + 1) for count in shape or ()))
@@ -111,9 +116,9 @@ def known(names, among, description, what="is not a variable"):
     return list(names)
 
 
-def checked_start(start, description):
-    """Return the start values as numbers; raise Problem if one is for a variable that does not exist or cannot be set."""
-    names, free = [variable.name for variable in description.modelVariables], settable(description)
+def checked_start(start, description, free=None):
+    """Return the start values as numbers; raise Problem if one is for a variable that does not exist, or is not in `free`, by default settable()."""
+    names, free = [variable.name for variable in description.modelVariables], settable(description) if free is None else free
     for name in start:
         if name in names and name not in free:
             raise Problem(f"'{name}' of {description.modelName} cannot be set{why_not(name, description)}; these can be: {', '.join(free)}")

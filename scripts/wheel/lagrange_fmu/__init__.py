@@ -27,11 +27,12 @@ if TYPE_CHECKING:
     from .fit_result import Fit
     from .linearization import Linearization
     from .results import Result
+    from .session import Simulation
     from .variational import Sensitivities
 
     __version__: str
 
-__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "live", "new", "run", "sensitivities", "simulate", "sweep", "words"]
+__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "live", "new", "run", "sensitivities", "simulate", "start", "sweep", "words"]
 
 
 def __getattr__(name: str) -> Any:
@@ -122,6 +123,32 @@ def simulate(
 
     words = {"output": output, "input": input, "hold": hold, "fmi_type": fmi_type, "fmi": fmi, "solver": solver, "step": step, "tolerance": tolerance}
     return Result.of(motion_of(system, start_values, None, stop_time=stop_time, record_events=record_events, **words, **options))
+
+
+def start(
+    system: str | PathLike[str],
+    start_values: Mapping[str, float | str] | None = None,
+    /,
+    *,
+    fmi: int | None = None,
+    solver: str | None = None,
+    tolerance: float | None = None,
+    **values: float | str,
+) -> Simulation:
+    """
+    Starts an FMU, or a system, which is built first, for a program that takes its steps: see Simulation.
+
+        with lagrange_fmu.start("cart.xml", x=0.1) as sim:
+            while sim.time < 2:
+                sim["F"] = -10 * sim["x"]
+                sim.step(0.01)
+
+    start_values, values: of coordinates, velocities, inputs and parameters by name, in SI units or as texts such as "30deg"
+    fmi, solver: the version of FMI, 2 or 3, and the method, where the FMU is not built yet; tolerance: relative
+    """
+    from .session import Simulation
+
+    return Simulation(system, numbers_by_name(start_values) | numbers_by_name(values), fmi, solver, tolerance)
 
 
 def linearize(

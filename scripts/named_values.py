@@ -1,0 +1,47 @@
+"""The values of an instance of an FMU by the names of its variables. Also a module of the wheel."""
+
+import numpy as np
+
+from .problem import Problem
+from .variables import known
+
+
+def accessor(verb, variable, description):
+    """The name of FMPy's function that gets or sets variables of this type."""
+    is_second = description.fmiVersion == "2.0"
+    return verb + (("Integer" if is_second else "Int64") if variable.type == "Enumeration" else variable.type)
+
+
+class NamedValues:
+    """Reads `values["theta"]`, a number or an array, and `values["theta", "omega"]`, an array of both; `time` is in s."""
+
+    def __init__(self, fmu, description, time):
+        self.fmu, self.description, self.time = fmu, description, time
+        self.variables = {variable.name: variable for variable in description.modelVariables}
+
+    def variable(self, name):
+        if not isinstance(name, str):
+            raise Problem(f"{name!r} is not the name of a variable; expected a text, such as '{next(iter(self.variables), 'time')}'")
+        known([name], self.variables, self.description)
+        return self.variables[name]
+
+    def __getitem__(self, name):
+        if isinstance(name, (tuple, list)):
+            return np.array([self[one] for one in name])
+        if name == "time":
+            return self.time
+        variable = self.variable(name)
+        get = getattr(self.fmu, accessor("get", variable, self.description))
+        if variable.shape:
+            return np.array(get([variable.valueReference], int(np.prod(variable.shape)))).reshape(variable.shape)
+        [value] = get([variable.valueReference])
+        return bool(value) if variable.type == "Boolean" else value
+
+    def __contains__(self, name):
+        return name in self.variables
+
+    def __iter__(self):
+        return iter(self.variables)
+
+    def _ipython_key_completions_(self):
+        return list(self.variables)

@@ -1,0 +1,164 @@
+"""A simulation whose steps a program takes one by one."""
+
+import math
+import shutil
+import weakref
+from contextlib import contextmanager
+from numbers import Real
+
+import numpy as np
+from fmpy import extract
+from fmpy.fmi1 import FMICallException
+from fmpy.simulation import instantiate_fmu
+
+from .co_simulation import Slave2, Slave3, check_platform
+from .named_values import NamedValues, accessor
+from .problem import Problem
+from .quantities import number_of
+from .running import fmu_of
+from .saved_state import State, check_ability, check_state, content2, content3, go_to2, go_to3
+from .signals import REAL
+from .simulation import described, experiment_of, log_into, tolerance_of
+from .variables import checked_start, numbers_by_name, startable, why_not
+
+
+def _release(folder, instances):
+    """Frees the instances, of which there is one at most, and their files."""
+    while instances:
+        instances.pop().freeInstance()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+class Simulation(NamedValues):
+    """
+    A running FMU. `sim["theta"]` reads a variable, `sim["theta", "omega"]` an array of several; `sim["tau"] = 0.5` sets an input or a parameter, which keeps
+    this value. step() advances, save() and restore() return to a state, reset() starts again, close() ends it, as does the end of a `with`.
+    `time` is in s; `inputs` and `outputs` are names.
+    """
+
+    def __init__(self, system, start_values, fmi=None, solver=None, tolerance=None):
+        with fmu_of(system, method=solver, fmi=fmi) as archive:
+            description = described(archive)
+            if description.coSimulation is None:
+                raise Problem(f"{archive} has no co-simulation; expected an FMU with it")
+            check_platform(archive)
+            folder, instances = extract(str(archive)), []
+        self._close = weakref.finalize(self, _release, folder, instances)
+        self._begin, *_ = experiment_of(description)
+        super().__init__(None, description, self._begin)
+        self._tolerance, self._problems = tolerance_of(description, tolerance), []
+        self._start = checked_start(start_values, description, startable(description))
+        self.inputs, self.outputs = ([v.name for v in description.modelVariables if v.causality == kind] for kind in ("input", "output"))
+        self._is_third = description.fmiVersion.startswith("3")
+        has_events = self._is_third and description.coSimulation.hasEventMode
+        try:
+            with self._told("cannot start"):
+                self.fmu = instantiate_fmu(folder, description, "CoSimulation", False, True, log_into(self._problems), None, None, has_events, has_events)
+                instances.append(self.fmu)
+                self._slave = (Slave3 if self._is_third else Slave2)(self.fmu, description, None)
+                self._initialize(self._start)
+        except Problem:
+            self.close()
+            raise
+
+    @contextmanager
+    def _told(self, what):
+        """Makes a Problem of a call that fails: what the FMU cannot do, and what it logs."""
+        self._problems.clear()
+        try:
+            yield
+        except FMICallException as problem:
+            raise Problem(f"{self.description.modelName} {what}: {'; '.join(dict.fromkeys(self._problems)) or problem}") from None
+
+    def _initialize(self, start_values):
+        self._slave.initialize(start_values, None, self._begin, None, self._tolerance)
+        self._slave.begin()
+        self.time = self._begin
+
+    def _check_open(self):
+        if self.fmu is None:
+            raise Problem(f"the simulation of {self.description.modelName} is closed; expected lagrange_fmu.start(...) again")
+
+    def __getitem__(self, name):
+        self._check_open()
+        with self._told(f"has no value of {name!r}"):
+            return super().__getitem__(name)
+
+    def __setitem__(self, name, value):
+        self._check_open()
+        variable = self.variable(name)
+        self._check_settable(variable)
+        values = self._numbers(variable, value)
+        set_values = getattr(self.fmu, accessor("set", variable, self.description))
+        with self._told(f"does not take {value!r} for '{name}'"):
+            self._slave.change(lambda: set_values([variable.valueReference], values))
+
+    def _check_settable(self, variable):
+        if variable.causality == "input" or variable.causality == "parameter" and variable.variability == "tunable":
+            return
+        name = variable.name
+        if name in startable(self.description):
+            raise Problem(f"'{name}' can be set at the start alone; expected start(..., {{'{name}': ...}}) or reset({{'{name}': ...}})")
+        raise Problem(f"'{name}' of {self.description.modelName} cannot be set{why_not(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
+
+    def _numbers(self, variable, value):
+        """As many as the variable has, of its type."""
+        name, count = variable.name, int(np.prod(variable.shape)) if variable.shape else 1
+        try:
+            numbers = np.asarray(number_of(name, value, variable.unit or "1"), dtype=float).ravel()
+        except (TypeError, ValueError):
+            raise Problem(f"'{name}' is set to {value!r}; expected a number") from None
+        if len(numbers) != count or not np.isfinite(numbers).all():
+            raise Problem(f"'{name}' is set to {value!r}; expected {'a finite number' if count == 1 else f'{count} finite numbers'}")
+        if variable.type in REAL:
+            return numbers.tolist()
+        if (numbers % 1 != 0).any() or variable.type == "Boolean" and not np.isin(numbers, (0, 1)).all():
+            raise Problem(f"'{name}' is set to {value!r}; expected {'True or False' if variable.type == 'Boolean' else 'a whole number'}")
+        return [bool(number) if variable.type == "Boolean" else int(number) for number in numbers]
+
+    def step(self, length):
+        """Advances by a length in s, with constant inputs. A step that fails raises a Problem, and leaves the time as it was; restore() and reset() are possible then."""
+        self._check_open()
+        length = number_of("the step", length, "s")
+        if not (isinstance(length, Real) and 0 < length < math.inf):
+            raise Problem(f"the step is {length!r}; expected a positive number of seconds")
+        end = self.time + float(length)
+        with self._told(f"cannot step from {self.time:.9g} s to {end:.9g} s"):
+            self._slave.step(self.time, end, None, None)
+        self.time = end
+
+    def save(self):
+        """The State, to which restore() returns, bit for bit."""
+        self._check_open()
+        check_ability(self.description)
+        with self._told("cannot save its state"):
+            return State(self.time, self.description.guid, (content3 if self._is_third else content2)(self.fmu))
+
+    def restore(self, state):
+        self._check_open()
+        check_state(state, self.description)
+        with self._told("cannot restore the state"):
+            (go_to3 if self._is_third else go_to2)(self.fmu, state.content)
+        self.time = state.time
+
+    def reset(self, start_values=None, /, **values):
+        """Starts again, from the start values of start() and these in their place."""
+        self._check_open()
+        start_values = checked_start(numbers_by_name(start_values) | numbers_by_name(values), self.description, startable(self.description))
+        with self._told("cannot start"):
+            self.fmu.reset()
+            self._initialize(self._start | start_values)
+
+    def close(self):
+        self._close()
+        self.fmu = self._slave = None
+
+    def __enter__(self):
+        self._check_open()
+        return self
+
+    def __exit__(self, *problem):
+        self.close()
+
+    def __repr__(self):
+        return f"<{'closed simulation' if self.fmu is None else 'simulation'} of {self.description.modelName} at {self.time:.9g} s>"
