@@ -19,6 +19,7 @@ from fmpy import extract, platform, supported_platforms
 from fmpy.fmi1 import FMICallException
 from fmpy.simulation import Recorder, apply_start_values, instantiate_fmu, settable_in_initialization_mode, settable_in_instantiated
 
+from .feedback import Feedback
 from .problem import Problem
 from .signals import REAL, value
 
@@ -279,8 +280,8 @@ def _steps(signals, start, stop, interval):
             time = end
 
 
-def _run(slave, recorder, steps, record_events):
-    """Take the steps, (begin, end, polynomials of the inputs, is_point), with rows at communication points and at events."""
+def _run(slave, recorder, steps, record_events, feedback=None):
+    """Take the steps, (begin, end, polynomials of the inputs, is_point), with rows at communication points and at events; apply the feedback after each."""
     record = (lambda time: recorder.sample(time, force=True)) if record_events else None
     before = None
     for time, end, piece, is_point in steps:
@@ -293,6 +294,8 @@ def _run(slave, recorder, steps, record_events):
         slave.step(time, end, piece, record)
         if is_point:
             recorder.sample(end, force=True)
+        if feedback:
+            feedback.apply(end)
         before = None if piece is None else (value(piece, end - time), _size(piece, end - time))
 
 
@@ -301,11 +304,11 @@ def check_platform(archive):
         raise Problem(f"{archive} has no library for {platform} but for {', '.join(supported_platforms(archive)) or 'no platform'}; expected an FMU that was built for this machine")
 
 
-def co_simulate(archive, description, start_values, signals, output, interval, start, stop, tolerance=None, record_events=True, logger=None, debug_logging=True, visible=False, fmi_call_logger=None):
+def co_simulate(archive, description, start_values, signals, output, interval, start, stop, tolerance=None, feedback=None, record_events=True, logger=None, debug_logging=True, visible=False, fmi_call_logger=None):
     """
     Simulate an FMU; return a structured array of the time, in s, and the variables named in `output`.
 
-    A `tolerance` of None leaves the choice to the FMU. `logger` is called as by FMPy, but not for steps that are repeated to locate events.
+    A `tolerance` of None leaves the choice to the FMU. `feedback` is the function of Feedback, in place of `signals`. `logger` is called as by FMPy, but not for steps that are repeated to locate events.
     Raise Interrupted if a step fails, and Problem if the FMU has no library for this platform.
     """
     check_platform(archive)
@@ -327,9 +330,12 @@ def co_simulate(archive, description, start_values, signals, output, interval, s
             first = next(steps)
             slave.initialize(start_values, first[2], start, stop, tolerance)
             slave.begin()
+            follow = feedback and Feedback(feedback, slave, description)
+            if follow:
+                follow.apply(start)
             recorder = Recorder(fmu, description, output, interval)
             recorder.sample(start, force=True)
-            _run(slave, recorder, itertools.chain([first], steps), record_events)
+            _run(slave, recorder, itertools.chain([first], steps), record_events, follow)
             fmu.terminate()
         except (FMICallException, Problem) as problem:
             if recorder is None:

@@ -3,6 +3,8 @@
 import numpy as np
 
 from .problem import Problem
+from .quantities import number_of
+from .signals import REAL
 from .variables import known
 
 
@@ -10,6 +12,26 @@ def accessor(verb, variable, description):
     """The name of FMPy's function that gets or sets variables of this type."""
     is_second = description.fmiVersion == "2.0"
     return verb + (("Integer" if is_second else "Int64") if variable.type == "Enumeration" else variable.type)
+
+
+def _count(variable):
+    return int(np.prod(variable.shape)) if variable.shape else 1
+
+
+def numbers_for(variable, value):
+    """A list of as many numbers of its type as the variable has."""
+    name, count = variable.name, _count(variable)
+    try:
+        numbers = np.asarray(number_of(name, value, variable.unit or "1"), dtype=float).ravel()
+    except (TypeError, ValueError):
+        raise Problem(f"'{name}' is set to {value!r}; expected a number") from None
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        raise Problem(f"'{name}' is set to {value!r}; expected {'a finite number' if count == 1 else f'{count} finite numbers'}")
+    if variable.type in REAL:
+        return numbers.tolist()
+    if (numbers % 1 != 0).any() or variable.type == "Boolean" and not np.isin(numbers, (0, 1)).all():
+        raise Problem(f"'{name}' is set to {value!r}; expected {'True or False' if variable.type == 'Boolean' else 'a whole number'}")
+    return [bool(number) if variable.type == "Boolean" else int(number) for number in numbers]
 
 
 class NamedValues:
@@ -33,9 +55,12 @@ class NamedValues:
         variable = self.variable(name)
         get = getattr(self.fmu, accessor("get", variable, self.description))
         if variable.shape:
-            return np.array(get([variable.valueReference], int(np.prod(variable.shape)))).reshape(variable.shape)
+            return np.array(get([variable.valueReference], _count(variable))).reshape(variable.shape)
         [value] = get([variable.valueReference])
         return bool(value) if variable.type == "Boolean" else value
+
+    def set(self, variable, numbers):
+        getattr(self.fmu, accessor("set", variable, self.description))([variable.valueReference], numbers)
 
     def __contains__(self, name):
         return name in self.variables

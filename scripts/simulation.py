@@ -20,6 +20,7 @@ from numpy.lib.recfunctions import repack_fields
 
 from .co_simulation import EVENTS, OPTIONS, Interrupted, co_simulate
 from .exchange import exchange
+from .feedback import is_feedback
 from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem, Unfinished
@@ -120,7 +121,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     Return the Motion of an FMU from start values by name, over its experiment.
 
     `output` has the names of the variables to record, in place of all outputs. `input` is a table or function for signals_of(), whose values are
-    held between rows or over each step if `hold`. The options are those of co_simulate(), or in model exchange of simulate_fmu() of FMPy.
+    held between rows or over each step if `hold`; or a function for Feedback. The options are those of co_simulate(), or in model exchange of simulate_fmu() of FMPy.
     Raise Problem, or Unfinished if the simulation stops.
     """
     if fmi_type not in TYPES:
@@ -135,7 +136,10 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     outputs = [variable.name for variable in description.modelVariables if variable.causality == "output"]
     outputs = outputs if output is None else [name for name in known(names_of(output, "output"), ["time", *names], description) if name != "time"]
     begin, stop, step = experiment_of(description, *(options.pop(name, None) for name in ("start_time", "stop_time", "output_interval")))
-    signals = None if input is None else signals_of(input, description, begin, hold)
+    feedback = input if is_feedback(input) else None
+    if feedback and not is_own:
+        raise Problem("the input is a function of the time and the simulation; expected co-simulation, whose steps begin with its values")
+    signals = None if input is None or feedback else signals_of(input, description, begin, hold)
     tree = read_tree(fmu)
     recorded = list(dict.fromkeys([*outputs, *(name for name in (*variables_of_scene(scene_of(tree)), *ENERGIES, EVENTS) if name in names)]))
     starts = start_values(description) | {name: value for name, value in start.items() if np.ndim(value) == 0}
@@ -148,7 +152,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     try:
         if is_own:
             tolerance = tolerance_of(description, options.pop("relative_tolerance", None))
-            values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance, **options)
+            values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance, feedback=feedback, **options)
         else:
             values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
     except FMICallException as problem:

@@ -208,3 +208,51 @@ def test_mistakes(given, message):
     with pytest.raises(Problem) as problem:
         simulate(fmu.archive("Pushed"), {}, input=given)
     assert message in str(problem.value)
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_fine_rows_in_coarse_steps(version):
+    """sin(5 t) every 1 ms with steps of 10 ms: v = (1 - cos(5 t))/5. Between rows the curve is off by h^2/8 of its second derivative, 3e-6."""
+    times = np.linspace(0, 1, 1001)
+    result = simulate(archives("Pushed")[version], {}, input={"time": times, "F": np.sin(5 * times)}, output_interval=0.01, **EVEN).outputs
+    assert len(result) == 101
+    np.testing.assert_allclose(result["v"], (1 - np.cos(5 * result["time"])) / 5, atol=1e-6)
+
+
+@pytest.mark.parametrize("version", [0, 1])
+def test_feedback_is_held_in_each_step(version):
+    """Of a mass of 1 kg with F = -9 x - 2 v: the exact map over a step of 0.05 s, x + h v + h^2/2 F, v + h F."""
+    seen = []
+
+    def control(time, sim):
+        seen.append((time, sim.time, sim["time"]))
+        return -9 * sim["x"] - 2 * sim["v"]
+
+    words = {"output_interval": 0.05, **EVEN}
+    result = simulate(archives("Pushed")[version], {"x": 1}, input=control, **words).outputs
+    x, v, h = 1.0, 0.0, 0.05
+    for row in result:
+        np.testing.assert_allclose((row["x"], row["v"]), (x, v), rtol=1e-12)
+        force = -9 * x - 2 * v
+        x, v = x + h * v + h**2 / 2 * force, v + h * force
+    assert len(result) == 21 and result["push"][0] == -18 and result["push"][1] == -18  # just before the next value
+    assert all(time == other == third for time, other, third in seen) and [time for time, *_ in seen] == result["time"].tolist()
+    named = simulate(archives("Pushed")[version], {"x": 1}, input=lambda time, sim: {"F": control(time, sim)}, **words).outputs
+    assert (named == result).all()
+
+
+@pytest.mark.parametrize("function, message", [
+    (lambda t, sim: [1, 2], "the input at 0 s has 2 numbers; expected 1, of F"),
+    (lambda t, sim: math.nan if t else 0, "'F' is set to nan; expected a finite number"),
+    (lambda t, sim: {"x": 1}, "'x' is not an input of Pushed"),
+    (lambda t, sim: sim["y"], "'y' is not a variable of Pushed"),
+    (lambda t, sim: None, "'F' is set to None; expected a number|expected a finite number"),
+])  # fmt: skip
+def test_wrong_feedback(function, message):
+    with pytest.raises(Problem, match=message):
+        simulate(archives("Pushed")[0], {}, input=function, **EVEN)
+
+
+def test_feedback_needs_co_simulation():
+    with pytest.raises(Problem, match="expected co-simulation, whose steps begin with its values"):
+        simulate(archives("Pushed")[0], {}, input=lambda t, sim: 0.0, fmi_type="ModelExchange")

@@ -57,7 +57,7 @@ def simulate(
     start_values: Mapping[str, float] | None = None,
     *,
     output: str | Sequence[str] | None = None,
-    input: str | PathLike[str] | np.ndarray | Mapping[str, Any] | Callable[[float], Any] | Any = None,
+    input: str | PathLike[str] | np.ndarray | Mapping[str, Any] | Callable[..., Any] | Any = None,
     hold: bool = False,
     record_events: bool = True,
     fmi_type: str = "CoSimulation",
@@ -83,6 +83,7 @@ def simulate(
     input : path, array, dict, DataFrame or callable, optional
         A CSV, a structured array, a dict of arrays or a DataFrame has the columns "time" and names of inputs. Inputs are linear between rows;
         two rows with the same time are a jump. A function of time returns a dict of numbers by name, or a number for each input.
+        A function of the time and the simulation, such as lambda t, sim: -sim["x"], gives the inputs that hold over each step.
         A dict of functions and numbers by name is allowed, too.
     hold : bool
         True to hold each input from row to row, or the value of a function over each step, instead of interpolating.

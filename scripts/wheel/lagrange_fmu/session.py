@@ -6,18 +6,16 @@ import weakref
 from contextlib import contextmanager
 from numbers import Real
 
-import numpy as np
 from fmpy import extract
 from fmpy.fmi1 import FMICallException
 from fmpy.simulation import instantiate_fmu
 
 from .co_simulation import Slave2, Slave3, check_platform
-from .named_values import NamedValues, accessor
+from .named_values import NamedValues, numbers_for
 from .problem import Problem
 from .quantities import number_of
 from .running import fmu_of
 from .saved_state import State, check_ability, check_state, content2, content3, go_to2, go_to3
-from .signals import REAL
 from .simulation import described, experiment_of, log_into, tolerance_of
 from .variables import checked_start, numbers_by_name, startable, why_not
 
@@ -88,10 +86,9 @@ class Simulation(NamedValues):
         self._check_open()
         variable = self.variable(name)
         self._check_settable(variable)
-        values = self._numbers(variable, value)
-        set_values = getattr(self.fmu, accessor("set", variable, self.description))
+        numbers = numbers_for(variable, value)
         with self._told(f"does not take {value!r} for '{name}'"):
-            self._slave.change(lambda: set_values([variable.valueReference], values))
+            self._slave.change(lambda: self.set(variable, numbers))
 
     def _check_settable(self, variable):
         if variable.causality == "input" or variable.causality == "parameter" and variable.variability == "tunable":
@@ -100,21 +97,6 @@ class Simulation(NamedValues):
         if name in startable(self.description):
             raise Problem(f"'{name}' can be set at the start alone; expected start(..., {{'{name}': ...}}) or reset({{'{name}': ...}})")
         raise Problem(f"'{name}' of {self.description.modelName} cannot be set{why_not(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
-
-    def _numbers(self, variable, value):
-        """As many as the variable has, of its type."""
-        name, count = variable.name, int(np.prod(variable.shape)) if variable.shape else 1
-        try:
-            numbers = np.asarray(number_of(name, value, variable.unit or "1"), dtype=float).ravel()
-        except (TypeError, ValueError):
-            raise Problem(f"'{name}' is set to {value!r}; expected a number") from None
-        if len(numbers) != count or not np.isfinite(numbers).all():
-            raise Problem(f"'{name}' is set to {value!r}; expected {'a finite number' if count == 1 else f'{count} finite numbers'}")
-        if variable.type in REAL:
-            return numbers.tolist()
-        if (numbers % 1 != 0).any() or variable.type == "Boolean" and not np.isin(numbers, (0, 1)).all():
-            raise Problem(f"'{name}' is set to {value!r}; expected {'True or False' if variable.type == 'Boolean' else 'a whole number'}")
-        return [bool(number) if variable.type == "Boolean" else int(number) for number in numbers]
 
     def step(self, length):
         """Advances by a length in s, with constant inputs. A step that fails raises a Problem, and leaves the time as it was; restore() and reset() are possible then."""
