@@ -11,7 +11,7 @@ from .variables import known
 
 
 def is_feedback(data):
-    """True for a function of two arguments, the time and the simulation."""
+    """Return True for a function of two arguments, the time and the simulation."""
     try:
         parameters = inspect.signature(data).parameters.values() if callable(data) else ()
     except ValueError:  # as of NumPy's functions
@@ -20,7 +20,7 @@ def is_feedback(data):
 
 
 class Feedback:
-    """The inputs function(time, values), a dict by name or a number for each, which hold over a step."""
+    """Inputs that are constant over a step: function(time, values) returns a dict by name, or a number for each."""
 
     def __init__(self, function, slave, description):
         self.function, self.slave = function, slave
@@ -28,7 +28,7 @@ class Feedback:
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
 
     def apply(self, time):
-        """Evaluates and sets them."""
+        """Evaluate and set the inputs."""
         self.values.time = time
         given = self._by_name(self.function(time, self.values), time)
         found = [(self.values.variables[name], numbers_for(self.values.variables[name], value)) for name, value in given.items()]

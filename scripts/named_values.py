@@ -9,7 +9,7 @@ from .variables import known
 
 
 def accessor(verb, variable, description):
-    """The name of FMPy's function that gets or sets variables of this type."""
+    """Return the name of FMPy's function that gets or sets variables of this type."""
     is_second = description.fmiVersion == "2.0"
     return verb + (("Integer" if is_second else "Int64") if variable.type == "Enumeration" else variable.type)
 
@@ -19,7 +19,7 @@ def _count(variable):
 
 
 def numbers_for(variable, value):
-    """A list of as many numbers of its type as the variable has."""
+    """Return the value as a list of numbers of the variable's type; raise Problem if it does not fit."""
     name, count = variable.name, _count(variable)
     try:
         numbers = np.asarray(number_of(name, value, variable.unit or "1"), dtype=float).ravel()
@@ -35,7 +35,7 @@ def numbers_for(variable, value):
 
 
 class NamedValues:
-    """Reads `values["theta"]`, a number or an array, and `values["theta", "omega"]`, an array of both; `time` is in s."""
+    """Variables by name: values["theta"] is a number or an array, values["theta", "omega"] an array of both; `time` is in s."""
 
     def __init__(self, fmu, description, time):
         self.fmu, self.description, self.time = fmu, description, time

@@ -137,15 +137,34 @@ def start(
     **values: float | str,
 ) -> Simulation:
     """
-    Starts an FMU, or a system, which is built first, for a program that takes its steps: see Simulation.
+    Start an FMU, or a system, which is built first, for a program that takes its steps.
 
-        with lagrange_fmu.start("cart.xml", x=0.1) as sim:
-            while sim.time < 2:
-                sim["F"] = -10 * sim["x"]
-                sim.step(0.01)
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    start_values : dict of float, optional
+        Start values of coordinates, velocities, inputs and parameters by name, as numbers or as texts such as "30deg".
+    fmi : {2, 3}, optional
+        Version of FMI for a system that is not built yet; 2 by default.
+    solver : str, optional
+        Method in place of the system's own, for a system that is not built yet.
+    tolerance : float, optional
+        Relative tolerance; by default that of the FMU's experiment.
+    **values
+        More start values, by names that are words of Python.
 
-    start_values, values: of coordinates, velocities, inputs and parameters by name, in SI units or as texts such as "30deg"
-    fmi, solver: the version of FMI, 2 or 3, and the method, where the FMU is not built yet; tolerance: relative
+    Returns
+    -------
+    Simulation
+        It reads and sets variables by name, and has step(), save(), restore(), reset() and close().
+
+    Examples
+    --------
+    >>> with lagrange_fmu.start("cart.xml", theta="5deg") as sim:
+    ...     while sim.time < 2:
+    ...         sim["F"] = 20 * sim["theta"] + 4 * sim["omega"]
+    ...         sim.step(0.01)
     """
     from .session import Simulation
 

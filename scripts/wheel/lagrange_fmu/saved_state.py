@@ -11,7 +11,7 @@ from .problem import Problem
 
 @dataclass(frozen=True)
 class State:
-    """A saved state at a time in s. It can be pickled, and restored in every simulation of the same FMU."""
+    """A saved state at a time in s; it can be pickled, and restored in every simulation of the same FMU."""
 
     time: float
     fmu: str  # its GUID
@@ -22,7 +22,7 @@ class State:
 
 
 def check_state(state, description):
-    """Raises a Problem for what is no state of this FMU."""
+    """Raise Problem unless it is a State of this FMU."""
     if not isinstance(state, State):
         raise Problem(f"{state!r} is not a saved state; expected what save() returned")
     if state.fmu != description.guid:

@@ -21,7 +21,7 @@ from .variables import checked_start, numbers_by_name, startable, why_not
 
 
 def _release(folder, instances):
-    """Frees the instances, of which there is one at most, and their files."""
+    """Free the instances, of which there is at most one, and their files."""
     while instances:
         instances.pop().freeInstance()
     shutil.rmtree(folder, ignore_errors=True)
@@ -29,9 +29,10 @@ def _release(folder, instances):
 
 class Simulation(NamedValues):
     """
-    A running FMU. `sim["theta"]` reads a variable, `sim["theta", "omega"]` an array of several; `sim["tau"] = 0.5` sets an input or a parameter, which keeps
-    this value. step() advances, save() and restore() return to a state, reset() starts again, close() ends it, as does the end of a `with`.
-    `time` is in s; `inputs` and `outputs` are names.
+    A running FMU.
+
+    `sim["theta"]` reads a variable, `sim["theta", "omega"]` an array of several. `sim["tau"] = 0.5` sets an input or a parameter, which keeps this value.
+    close(), or the end of a `with`, ends the simulation. `time` is in s; `inputs` and `outputs` are lists of names.
     """
 
     def __init__(self, system, start_values, fmi=None, solver=None, tolerance=None):
@@ -50,7 +51,7 @@ class Simulation(NamedValues):
         self._is_third = description.fmiVersion.startswith("3")
         has_events = self._is_third and description.coSimulation.hasEventMode
         try:
-            with self._told("cannot start"):
+            with self._named("cannot start"):
                 self.fmu = instantiate_fmu(folder, description, "CoSimulation", False, True, log_into(self._problems), None, None, has_events, has_events)
                 instances.append(self.fmu)
                 self._slave = (Slave3 if self._is_third else Slave2)(self.fmu, description, None)
@@ -60,8 +61,8 @@ class Simulation(NamedValues):
             raise
 
     @contextmanager
-    def _told(self, what):
-        """Makes a Problem of a call that fails: what the FMU cannot do, and what it logs."""
+    def _named(self, what):
+        """Raise Problem for a call that fails, with what the FMU logs."""
         self._problems.clear()
         try:
             yield
@@ -79,7 +80,7 @@ class Simulation(NamedValues):
 
     def __getitem__(self, name):
         self._check_open()
-        with self._told(f"has no value of {name!r}"):
+        with self._named(f"has no value of {name!r}"):
             return super().__getitem__(name)
 
     def __setitem__(self, name, value):
@@ -87,7 +88,7 @@ class Simulation(NamedValues):
         variable = self.variable(name)
         self._check_settable(variable)
         numbers = numbers_for(variable, value)
-        with self._told(f"does not take {value!r} for '{name}'"):
+        with self._named(f"does not take {value!r} for '{name}'"):
             self._slave.change(lambda: self.set(variable, numbers))
 
     def _check_settable(self, variable):
@@ -99,35 +100,36 @@ class Simulation(NamedValues):
         raise Problem(f"'{name}' of {self.description.modelName} cannot be set{why_not(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
 
     def step(self, length):
-        """Advances by a length in s, with constant inputs. A step that fails raises a Problem, and leaves the time as it was; restore() and reset() are possible then."""
+        """Advance by a length in s, with constant inputs. Raise Problem if the step fails; then the time is unchanged, and restore() and reset() are possible."""
         self._check_open()
         length = number_of("the step", length, "s")
         if not (isinstance(length, Real) and 0 < length < math.inf):
             raise Problem(f"the step is {length!r}; expected a positive number of seconds")
         end = self.time + float(length)
-        with self._told(f"cannot step from {self.time:.9g} s to {end:.9g} s"):
+        with self._named(f"cannot step from {self.time:.9g} s to {end:.9g} s"):
             self._slave.step(self.time, end, None, None)
         self.time = end
 
     def save(self):
-        """The State, to which restore() returns, bit for bit."""
+        """Return the State for restore()."""
         self._check_open()
         check_ability(self.description)
-        with self._told("cannot save its state"):
+        with self._named("cannot save its state"):
             return State(self.time, self.description.guid, (content3 if self._is_third else content2)(self.fmu))
 
     def restore(self, state):
+        """Return to a saved State, bit for bit."""
         self._check_open()
         check_state(state, self.description)
-        with self._told("cannot restore the state"):
+        with self._named("cannot restore the state"):
             (go_to3 if self._is_third else go_to2)(self.fmu, state.content)
         self.time = state.time
 
     def reset(self, start_values=None, /, **values):
-        """Starts again, from the start values of start() and these in their place."""
+        """Start again, with these start values in place of those of start()."""
         self._check_open()
         start_values = checked_start(numbers_by_name(start_values) | numbers_by_name(values), self.description, startable(self.description))
-        with self._told("cannot start"):
+        with self._named("cannot start"):
             self.fmu.reset()
             self._initialize(self._start | start_values)
 
