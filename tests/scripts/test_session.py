@@ -1,4 +1,4 @@
-"""Simulations whose steps a program takes: against closed forms, and back to saved states bit for bit."""
+"""Simulations by start and step of the package agree with closed forms, and restore saved states bit for bit."""
 
 import gc
 import pickle
@@ -16,14 +16,14 @@ from motions import lagrange_fmu  # noqa: F401
 PUSHED = """<system name="PushedInSession"><parameter name="m" start="1" unit="kg" min="0"/><input name="F" unit="N"/>
   <coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/><force coordinate="x">F</force><output name="twice" unit="N">2*F</output>
   <experiment stopTime="1" stepSize="0.25"/></system>"""
-# x' = n u where `on`, and a noise that is drawn every 10 ms; the wall stops the motion.
+# The force n u if `on`, and noise drawn every 10 ms; the particle bounces off the wall.
 NOISY = """<system name="NoisyInSession"><parameter name="n" type="Integer" start="2"/><parameter name="on" type="Boolean" start="true"/>
   <parameter name="seed" type="Integer" start="3"/><input name="u" unit="N"/>
   <coordinate name="x" velocity="v" unit="m" start="0.1"/><particle mass="1" x="x"/>
   <mode name="k"/><mode name="noise"/><sample every="0.01"><set mode="k">k + 1</set><set mode="noise">gauss(seed, k)</set></sample>
   <force coordinate="x">on*n*u + noise</force><contact name="wall" gap="x" unit="m" restitution="0.5"/>
   <experiment stopTime="1" stepSize="0.01"/></system>"""
-# A square root without a value beyond 1 m.
+# The force has a square root of a negative number beyond x = 1 m.
 ENDS = """<system name="EndsInSession"><parameter name="c" start="0" unit="N"/><parameter name="L" start="1" unit="m"/><coordinate name="x" velocity="v" unit="m" velocityStart="1"/>
   <particle mass="1" x="x"/><force coordinate="x">c*sqrt(1 - x/L)</force><experiment stopTime="2" stepSize="0.25"/></system>"""
 
@@ -42,18 +42,18 @@ BOTH = pytest.mark.parametrize("archive", [fmu.archive, fmi3.archive])
 
 @BOTH
 def test_inputs_are_held_in_steps(archive, lagrange_fmu):  # noqa: F811
-    """Of a mass of 2 kg: in each step of 0.1 s its velocity grows by F/m times that, and its place by the mean velocity times that."""
+    """A mass of 2 kg under a constant force within each step of 0.1 s has the closed form v + h F/m, x + h v + h^2/2 F/m."""
     x = v = 0.0
     with lagrange_fmu.start(archive("PushedInSession"), m="2000g") as sim:
         assert sim.inputs == ["F"] and "x" in sim and "y" not in sim and set(sim.outputs) <= set(sim)
         for k in range(10):
             sim["F"] = k**2
-            assert sim["twice"] == 2 * k**2  # at once
+            assert sim["twice"] == 2 * k**2  # before the step
             sim.step(0.1)
             x, v = x + 0.1 * v + k**2 / 2 * 0.005, v + 0.1 * k**2 / 2
             np.testing.assert_allclose(sim["x", "v"], (x, v), rtol=1e-13)
         assert sim.time == pytest.approx(1) and sim["time"] == sim.time
-        sim["m"] = 1  # a parameter is tuned
+        sim["m"] = 1  # a tunable parameter
         sim.step("100ms")
         assert sim["v"] == pytest.approx(v + 8.1, rel=1e-13)
         sim.reset(m=4, x="10cm", v=1)
@@ -63,7 +63,7 @@ def test_inputs_are_held_in_steps(archive, lagrange_fmu):  # noqa: F811
 
 
 def run(sim, steps=30):
-    """Of irregular steps, which end between samples, with what a program does at them."""
+    """States after each of `steps` steps that end between samples, with an input that jumps."""
     found = []
     for k in range(steps):
         sim["u"] = -5.0 if k % 3 else 1.0
@@ -74,7 +74,7 @@ def run(sim, steps=30):
 
 @BOTH
 def test_back_to_a_state_bit_for_bit(archive, lagrange_fmu):  # noqa: F811
-    """Across samples, noise and impacts; in the same simulation, in another one beside it, and from bytes."""
+    """The motion through samples, noise and impacts repeats from a saved state, in the same simulation and, by pickle, in another one."""
     path = archive("NoisyInSession")
     with lagrange_fmu.start(path, seed=7) as sim, lagrange_fmu.start(path, seed=7, u=-5) as other:
         run(sim, 7)
@@ -92,7 +92,7 @@ def test_back_to_a_state_bit_for_bit(archive, lagrange_fmu):  # noqa: F811
 
 @BOTH
 def test_types(archive, lagrange_fmu):  # noqa: F811
-    """v = n u t without noise, as its seed draws it: the difference of two runs."""
+    """Booleans and integers keep their types. The velocities of two runs with the same noise differ by n u t."""
     path = archive("NoisyInSession")
     speeds = []
     for start in ({"n": 5}, {"on": False}):
@@ -107,7 +107,7 @@ def test_types(archive, lagrange_fmu):  # noqa: F811
 
 @BOTH
 def test_a_step_that_fails(archive, lagrange_fmu):  # noqa: F811
-    """x = t, until 1 m; from a state before, with the force off the FMU continues."""
+    """x = t until the root fails at 1 m; the time stays that before the failed step, and the simulation continues from a saved state."""
     with lagrange_fmu.start(archive("EndsInSession")) as sim:
         sim.step(0.9)
         state = sim.save()
@@ -146,7 +146,7 @@ WRONG = [
 
 @BOTH
 def test_mistakes(archive, lagrange_fmu):  # noqa: F811
-    """A Problem each, after which the simulation continues."""
+    """Each mistake raises a Problem, after which the simulation continues."""
     with lagrange_fmu.start(archive("NoisyInSession")) as sim, lagrange_fmu.start(archive("PushedInSession")) as other:
         for code, message in WRONG:
             with pytest.raises(lagrange_fmu.Problem) as problem:
@@ -158,7 +158,7 @@ def test_mistakes(archive, lagrange_fmu):  # noqa: F811
     for code in ("sim['u']", "sim['u'] = 1", "sim.step(1)", "sim.save()", "sim.restore(None)", "sim.reset()", "sim.__enter__()"):
         with pytest.raises(lagrange_fmu.Problem, match=r"the simulation of NoisyInSession is closed; expected lagrange_fmu.start\(...\) again"):
             exec(code, {"sim": sim})
-    sim.close()  # twice is once
+    sim.close()  # closing twice has no effect
     assert repr(sim) == "<closed simulation of NoisyInSession at 0.1 s>"
 
 
@@ -178,7 +178,7 @@ def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
 
 
 def test_many_simulations_leave_nothing(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
-    """Neither those that are closed nor those that are forgotten."""
+    """Simulations that are closed, garbage-collected, or fail to start leave no files."""
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     path = fmu.archive("PushedInSession")
     for k in range(20):
@@ -194,13 +194,13 @@ def test_many_simulations_leave_nothing(lagrange_fmu, tmp_path, monkeypatch):  #
 
 
 def example(beginning):
-    """From the page of the package, with the FMU in place of its system."""
+    """Code of the README of the package, with the built FMU in place of the system."""
     [code] = [code for code in EXAMPLES if beginning in code]
     return code.replace('"Cart.xml"', repr(str(fmu.archive("Cart"))))
 
 
 def test_the_example_balances(lagrange_fmu, capsys):  # noqa: F811
-    """(M + m) x'' = F - ..., m l^2 theta'' = m g l sin(theta) - m l cos(theta) x'': the linear one has theta'' < 0 for these gains."""
+    """Linearized and without friction, M l theta'' = ((M + m) g - 20) theta - 4 omega, which is stable, since (M + m) g = 10.8 N."""
     variables = {"lagrange_fmu": lagrange_fmu}
     exec(example("while sim.time < 2"), variables)
     assert capsys.readouterr().out == "[0.1 0. ]\n" and variables["state"].time == pytest.approx(2)
@@ -210,7 +210,7 @@ def test_the_example_balances(lagrange_fmu, capsys):  # noqa: F811
 
 
 def test_the_environment_for_learning(lagrange_fmu):  # noqa: F811
-    """As Gymnasium checks environments: among others, equal seeds and actions give equal observations."""
+    """The environment passes the checks of Gymnasium, such as equal observations for equal seeds and actions."""
     pytest.importorskip("gymnasium")
     from gymnasium.utils.env_checker import check_env
 
