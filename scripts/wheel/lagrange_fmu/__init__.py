@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from .adjoint import Gradient
     from .building import build, check, new
+    from .resting import Equilibrium
     from .fit_result import Fit
     from .linearization import Linearization
     from .results import Result
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
     __version__: str
 
-__all__ = ["Problem", "build", "check", "fit", "from_sympy", "gradient", "linearize", "live", "new", "run", "sensitivities", "simulate", "start", "sweep", "words"]
+__all__ = ["Problem", "build", "check", "equilibrium", "fit", "from_sympy", "gradient", "linearize", "live", "new", "run", "sensitivities", "simulate", "start", "sweep", "words"]
 
 
 def __getattr__(name: str) -> Any:
@@ -169,6 +170,48 @@ def start(
     from .session import Simulation
 
     return Simulation(system, numbers_by_name(start_values) | numbers_by_name(values), fmi, solver, tolerance)
+
+
+def equilibrium(
+    system: str | PathLike[str],
+    guess: Mapping[str, float | str] | None = None,
+    *,
+    hold: Mapping[str, float | str] | None = None,
+    vary: str | Sequence[str] = (),
+) -> Equilibrium:
+    """
+    Find where a system rests, near a guess: all time derivatives of its states are 0, and constraints are fulfilled.
+
+    Parameters
+    ----------
+    system : path
+        An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
+    guess : dict of float, optional
+        Coordinates, states, inputs and parameters where the search begins; by default their start values.
+    hold : dict of float, optional
+        Coordinates, states, outputs, inputs and parameters that have these values in the end.
+    vary : str or sequence of str
+        Inputs and parameters that are found, too, such as the torque that holds an arm.
+
+    Returns
+    -------
+    Equilibrium
+        `point` has the values by name, for simulate() or linearize(); `outputs` the outputs there. `stability` is "stable", "unstable" or
+        "undecided", by the `eigenvalues` of the `linearization`; `constraints` names closed contacts and sticking friction.
+
+    Raises
+    ------
+    Problem
+        If a name is unknown, or no point of rest is found; the message names the accelerations and rates that remain.
+
+    Examples
+    --------
+    >>> found = lagrange_fmu.equilibrium("arm.xml", {"elbow": 0.5}, hold={"height": 0.8}, vary=["torque"])
+    >>> found.point["torque"], found.stability
+    """
+    from .resting import equilibrium
+
+    return equilibrium(system, numbers_by_name(guess, "guess"), numbers_by_name(hold, "hold"), names_of(vary, "vary"))
 
 
 def linearize(

@@ -76,7 +76,7 @@ def _projection(point, at, share):
     return projection, None
 
 
-def _tangents(point, at):
+def tangents(point, at):
     """
     Return an orthonormal basis of the tangent space of the constraints, among them closed contacts and sticking friction, as columns.
 
@@ -91,10 +91,10 @@ def _tangents(point, at):
     raise Problem(f"{point.name} has no linearization at this point: beside it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
-def independent(tangents):
+def independent(directions):
     """Return the indices of as many independent rows as there are columns: the first rows that are far from the span of those before."""
-    rows, chosen = tangents.copy(), []
-    for _ in range(tangents.shape[1]):
+    rows, chosen = directions.copy(), []
+    for _ in range(directions.shape[1]):
         lengths = np.linalg.norm(rows, axis=1)
         chosen.append(int(np.argmax(lengths >= 0.3 * lengths.max())))
         direction = rows[chosen[-1]] / lengths[chosen[-1]]
@@ -105,20 +105,22 @@ def independent(tangents):
 def linearize(system, at=None, method=None):
     """See lagrange_fmu.linearize; `method` is a solver in place of the system's own."""
     with opened(system, dict(at or {}), method) as point:
-        return _linearization(point)
+        found = linearization_at(point)
+        rates = dict(zip(point.derivatives, point.read(point.derivatives)))
+        moving = [f"{name} = {value:.6g}" for name, value in rates.items() if abs(value) > 1e-6]
+        if moving:
+            warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=3)
+        return found
 
 
-def _linearization(point):
+def linearization_at(point):
+    """Return the Linearization at the start of the point, which is then there."""
     at = point.start()
     constraints = point.constraining()
-    tangents = _tangents(point, at) if len(at) else np.empty((0, 0))
-    chosen = independent(tangents)
-    basis = tangents @ np.linalg.inv(tangents[chosen])
+    directions = tangents(point, at) if len(at) else np.empty((0, 0))
+    chosen = independent(directions)
+    basis = directions @ np.linalg.inv(directions[chosen])
     point.start(at)
-    derivatives = dict(zip(point.derivatives, point.read(point.derivatives)))
-    moving = [f"{name} = {value:.6g}" for name, value in derivatives.items() if abs(value) > 1e-6]
-    if moving:
-        warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=4)
     rates = [point.derivatives[i] for i in chosen]
     return Linearization(
         point.jacobian(rates, point.states) @ basis,

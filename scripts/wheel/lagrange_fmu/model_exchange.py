@@ -49,8 +49,9 @@ class Point:
             [name for name in names if not name.removesuffix(")").endswith(ends)] for names in (self.derivatives, self.states, settable(description), outputs)
         )
         self.inputs = [v.name for v in description.modelVariables if v.causality == "input"]
-        self.name, self.units = description.modelName, units_of(description)
+        self.description, self.name, self.units = description, description.modelName, units_of(description)
         self.limits = {v.name: tuple(float(end) if end is not None else none for end, none in ((v.min, -np.inf), (v.max, np.inf))) for v in description.modelVariables}
+        self.nominals = {v.name: abs(float(v.nominal or 1.0)) for v in description.modelVariables}
         self.starts = {v.name: float(v.start) for v in description.modelVariables if v.name in self.states}
         self.indicator_count = description.numberOfEventIndicators
         modes = [v for v in description.modelVariables if v.variability == "discrete" and v.causality == "local" and v.name not in COUNTERS]

@@ -1,0 +1,17 @@
+"""Finds where a system rests, near a guess; prints the point, and by the eigenvalues of the linearization whether it is stable."""
+
+from ..quantities import assignment
+from .words_of_systems import SYSTEM_OR_FMU
+
+
+def arguments(parser):
+    parser.add_argument("system", **SYSTEM_OR_FMU)
+    parser.add_argument("guess", nargs="*", type=assignment, metavar="NAME=VALUE", help="where the search begins, and parameters; else their start values")
+    parser.add_argument("--hold", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="what has this value in the end: coordinates, states, outputs")
+    parser.add_argument("--vary", nargs="+", action="extend", default=[], metavar="NAME", help="inputs and parameters to be found too")
+
+
+def run(arguments):
+    from .. import equilibrium
+
+    print(equilibrium(arguments.system, dict(arguments.guess), hold=dict(arguments.hold), vary=arguments.vary))

@@ -1,0 +1,230 @@
+"""
+Points at which a system rests: f(x, p) = 0 for the time derivatives f of all states x, with values that are held, h(x) = h0, and inputs or parameters p that vary.
+
+Newton's method on the constraints: with an orthonormal basis T of the directions in which the states can move, each step solves J (T z, dp) = -(f, h - h0) by least
+squares with least norm, so that coordinates on which nothing depends stay at the guess. A step changes no value by more than a share of its size, is halved until
+the residual falls, and ends on the constraints by the FMU's initialization. Residuals and values count relative to nominal values. Where steps are too long, or none
+lessens the residual, as at a pendulum that is horizontal, coordinates first move a little along their accelerations, downhill: to a rest that is rather stable.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from fmpy.fmi1 import FMICallException
+
+from .linearization import Linearization, linearization_at, tangents
+from .model_exchange import opened
+from .problem import Problem
+from .quantities import numbers_of
+from .variables import known
+
+STEPS, HALVINGS = 200, 25
+LARGEST = 0.5  # step, relative to a value or its nominal value
+SINGULAR = 1e-10  # of the largest singular value: directions without effect
+PRECEDENCE = 1e3  # of held values over balances, in the error that steps lessen
+BALANCED = 1e-9  # of a rate, relative to what the largest terms of its linearization give
+CONVERGED = 1e-13  # relative step
+FURTHEST = 1e9  # relative to nominal values and the guess: beyond, forces only fade
+DOWNHILL, NUDGE = 20, 0.1  # moves along accelerations, relative to nominal values
+PERTURBED, DOUBLE = 1e-9, 1e-5  # of the matrix, by which eigenvalues are perturbed in proportion to their condition numbers, and double ones at most
+WORK = "nonConservativeWork"  # a state that nothing depends on
+SHOWN, NOTABLE = 3, 1e-3  # rates in a message, relative to the largest
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """
+    Where a system rests. `point` has states, inputs and what varied by name, in SI units, and `outputs` the outputs there; `linearization` is that at the
+    point, `eigenvalues` are those of its A, and `constraints` names closed contacts and sticking frictions, which stay so. `stability` is "stable" if all
+    real parts are negative, "unstable" if one is positive, else "undecided", as for what swings without damping.
+    """
+
+    point: dict
+    outputs: dict
+    linearization: Linearization
+    eigenvalues: np.ndarray
+    stability: str
+
+    @property
+    def constraints(self):
+        return self.linearization.constraints
+
+    def __str__(self):
+        lines = [f"{name} = {value:.9g}" for name, value in (self.point | self.outputs).items()]
+        lines += [f"contacts that stay closed and frictions that stay stuck: {', '.join(self.constraints)}"] if self.constraints else []
+        return "\n".join([*lines, f"{self.stability}; eigenvalues: {', '.join(f'{value:.6g}' for value in self.eigenvalues) or 'none'}"])
+
+
+def stability_of(matrix):
+    """Return the eigenvalues of a matrix, and what their real parts say; those within their perturbation are 0."""
+    eigenvalues, vectors = np.linalg.eig(matrix)
+    with np.errstate(over="ignore"):  # infinite where eigenvectors are parallel
+        conditions = np.linalg.norm(np.linalg.pinv(vectors, rcond=0.0), axis=1)  # of right eigenvectors of length 1
+    error = np.linalg.norm(matrix) * np.minimum(PERTURBED * conditions, DOUBLE)
+    is_stable = (eigenvalues.real < -error).all()
+    return eigenvalues, "unstable" if (eigenvalues.real > error).any() else "stable" if is_stable else "undecided"
+
+
+def _scaled(linear, nominals):
+    """Return A for states relative to their nominal values, without the state of <work/>."""
+    kept = [i for i, name in enumerate(linear.states) if name != WORK]
+    size = np.array([nominals[linear.states[i]] for i in kept])
+    return linear.A[np.ix_(kept, kept)] * size / size[:, None]
+
+
+class _Search:
+    """A Point with the values that are sought: its states, and what varies, which are its values."""
+
+    def __init__(self, point, hold, vary):
+        self.point, self.vary, self.hold = point, vary, hold
+        self.places = [point.states.index(name) for name in hold if name in point.states]
+        self.outputs = [name for name in hold if name not in point.states]
+        self.wanted = np.array([hold[name] for name in [*(point.states[i] for i in self.places), *self.outputs]])
+        self.size = np.array([point.nominals[name] for name in [*point.states, *vary]])
+        held = [point.nominals[point.states[i]] for i in self.places] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
+        self.weight = np.array([*(1 / self.size[: len(point.states)]), *(PRECEDENCE / np.array(held))])
+        self.jacobian = None
+
+    def go_to(self, values):
+        """The values on the constraints, and the residuals there."""
+        count = len(self.point.states)
+        self.point.values |= dict(zip(self.vary, values[count:]))
+        at = self.point.start(values[:count])
+        found = [*self.point.read(self.point.derivatives), *(np.array([*at[self.places], *self.point.read(self.outputs)]) - self.wanted)]
+        return np.concatenate([at, values[count:]]), np.array(found)
+
+    def linearize(self, values):
+        """Keeps the Jacobian of the residuals there, by all values; returns that by the directions in which these can move, and the directions."""
+        point, count = self.point, len(self.point.states)
+        basis = tangents(point, values[:count]) if count else np.empty((0, 0))
+        self.go_to(values)
+        names = [*point.states, *self.vary]
+        held = np.eye(len(names))[self.places]
+        self.jacobian = np.vstack([point.jacobian(point.derivatives, names), held, point.jacobian(self.outputs, names)])
+        directions = np.zeros((len(names), basis.shape[1] + len(self.vary)))
+        directions[:count, : basis.shape[1]] = basis
+        directions[count:, basis.shape[1] :] = np.eye(len(self.vary))
+        return self.jacobian @ directions, directions
+
+    def step(self, values, residual):
+        """Return the Newton step, of bounded length. Rows that are a single state, such as der(x) = v, and held values have precedence over balances."""
+        slopes, directions = self.linearize(values)
+        lengths = np.linalg.norm(directions / self.size[:, None], axis=0)
+        slopes, missing = self.weight[:, None] * slopes / lengths, -self.weight * residual
+        first = self.is_state() | (np.arange(len(residual)) >= len(self.point.derivatives))
+        _, singular, right = np.linalg.svd(slopes[first])
+        rank = np.count_nonzero(singular > SINGULAR * singular.max(initial=0.0))
+        part = np.linalg.lstsq(slopes[first], missing[first], rcond=SINGULAR)[0]
+        free = right[rank:].T
+        part += free @ np.linalg.lstsq(slopes[~first] @ free, missing[~first] - slopes[~first] @ part, rcond=SINGULAR)[0]
+        step = directions / lengths @ part
+        largest = np.max(np.abs(step) / np.maximum(self.size, np.abs(values)), initial=0.0)
+        return step * min(1.0, LARGEST / largest) if largest else step
+
+    def is_state(self):
+        """Return True for each residual that is a state itself, as der(x) = v."""
+        return (np.count_nonzero(self.jacobian, axis=1) == 1) & (self.jacobian.max(axis=1, initial=0.0) == 1)
+
+    def moving(self):
+        """Return the indices of coordinates among the states, and of their velocities."""
+        count = len(self.point.states)
+        coordinates = np.flatnonzero(self.is_state()[:count])
+        velocities = np.argmax(self.jacobian[coordinates], axis=1) if len(coordinates) else coordinates
+        return coordinates[velocities < count], velocities[velocities < count]
+
+    def downhill(self, residual):
+        """Return a small move of coordinates along their accelerations, and of other states along their rates; None if there is none."""
+        count = len(self.point.states)
+        coordinates, velocities = self.moving()
+        move = np.zeros(len(self.size))
+        move[:count] = residual[:count]
+        move[coordinates], move[velocities] = residual[velocities], 0.0
+        move[self.places] = 0.0
+        largest = np.max(np.abs(move) / self.size, initial=0.0)
+        return move * (NUDGE / largest) if largest else None
+
+    def error(self, residual):
+        return np.linalg.norm(self.weight * residual)
+
+    def shortened(self, values, residual, step):
+        """The values after the longest part of the step that lessens the error, and the residual there; None where none does."""
+        for halving in range(HALVINGS):
+            try:
+                reached, found = self.go_to(values + step / 2**halving)
+            except FMICallException:  # there is no such position
+                self.point.messages.clear()
+                continue
+            if np.isfinite(found).all() and self.error(found) < self.error(residual):
+                return reached, found
+        return None
+
+    def unbalanced(self, values, residual):
+        """The residuals that are not 0, by their names."""
+        terms = np.abs(self.jacobian) @ np.maximum(self.size, np.abs(values))
+        names = [*self.point.derivatives, *(self.point.states[i] for i in self.places), *self.outputs]
+        return {name: value for name, value, size in zip(names, residual, terms) if abs(value) > BALANCED * max(size, 1e-3)}
+
+    def run(self):
+        values = np.array([*self.point.start(), *self.point.read(self.vary)])
+        self.linearize(values)
+        values[self.moving()[1]] = 0.0
+        values, residual = self.go_to(values)
+        limits, moves = FURTHEST * np.maximum(self.size, np.abs(values)), 0
+        for _ in range(STEPS):
+            step = self.step(values, residual)
+            if not residual.any() or (np.abs(values) > limits).any():
+                break
+            length = np.max(np.abs(step) / np.maximum(self.size, np.abs(values)), initial=0.0)
+            is_newton = length > CONVERGED and (length < LARGEST * (1 - CONVERGED) or moves == DOWNHILL)
+            found = self.shortened(values, residual, step) if is_newton else None
+            if found is None and (moves == DOWNHILL or not self.unbalanced(values, residual)):
+                break
+            moves += found is None
+            values, residual = found or self.moved(values, residual)
+        values, residual = self.go_to(values)
+        off = self.unbalanced(values, residual)
+        if off or (np.abs(values) > limits).any():
+            raise Problem(self.why(values, off))
+        return values
+
+    def moved(self, values, residual):
+        """Return the values and the residual after a move downhill, or the same ones if there is no such position."""
+        move = self.downhill(residual)
+        try:
+            return self.go_to(values if move is None else values + move)
+        except FMICallException:
+            self.point.messages.clear()
+            return self.go_to(values)
+
+    def why(self, values, off):
+        """The message about what does not balance."""
+        largest = max(map(abs, off.values()), default=0.0)
+        units, shown = self.point.units, [name for name in sorted(off, key=lambda name: -abs(off[name])) if abs(off[name]) > NOTABLE * largest][:SHOWN]
+        rates = [f"{name} = {off[name]:.6g} {units[name]}" for name in shown if name not in self.hold]
+        missed = [f"{name} is off by {off[name]:.6g} {units[name]}" for name in shown if name in self.hold]
+        place = ", ".join(f"{name} = {value:.6g}" for name, value in list(zip([*self.point.states, *self.vary], values))[:6])
+        free = [name for name in self.point.inputs if name not in self.vary]
+        remedy = f"or an input that balances it, as vary={free[:1]}" if free else "or fewer values that are held" if self.hold else "or other parameters"
+        return f"{self.point.name} does not come to rest near the guess: {', '.join(rates + missed) or 'it only comes closer to rest further and further away'} where the search ends, at {place}; expected another guess, {remedy}"
+
+
+def equilibrium(system, guess, hold, vary):
+    with opened(system, dict(guess), what="rest there") as point:
+        names = [*point.settable, *point.outputs]
+        hold = numbers_of({name: hold[name] for name in known(hold, names, point.description)}, point.units)
+        known(vary, [name for name in point.settable if name not in point.states], point.description, "is no input or parameter")
+        for name in vary:
+            if name in hold:
+                raise Problem(f"'{name}' is held and varies; expected one of these")
+        sought = {name: value for name, value in hold.items() if name in (*point.states, *point.outputs)}
+        point.values |= {name: value for name, value in hold.items() if name not in point.outputs}
+        search = _Search(point, sought, list(vary))
+        values = search.run()
+        count = len(point.states)
+        point.values |= dict(zip(point.states, values[:count])) | dict(zip(vary, values[count:]))
+        linear = linearization_at(point)
+        eigenvalues, stability = stability_of(_scaled(linear, point.nominals))
+        varied = dict(zip(vary, values[count:].tolist()))
+        found = linear.point | varied | {name: value for name, value in point.values.items() if name not in point.states}
+        outputs = dict(zip(point.outputs, point.read(point.outputs).tolist()))
+        return Equilibrium({name: float(value) + 0.0 for name, value in found.items()}, outputs, linear, eigenvalues, stability)
