@@ -176,7 +176,7 @@ static void log_weakest(struct Instance *instance, double time) {
         time, name);
 }
 
-/* Logs that the solver stopped, and advice. Another solver does not help against events without end. */
+/* Logs that the solver stopped, and advice. Another solver does not help against endless events. */
 static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                      bool ends_at_event, double reached) {
   const struct Solver *solver = lagrangian.solver;
