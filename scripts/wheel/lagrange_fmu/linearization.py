@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
+from . import responses
 from .model_exchange import opened
 from .problem import Problem
 
@@ -30,7 +31,7 @@ class Linearization(NamedTuple):
     Examples
     --------
     >>> A, B, C, D = lagrange_fmu.linearize("cart.xml")[:4]
-    >>> numpy.linalg.eigvals(A)
+    >>> lagrange_fmu.linearize("cart.xml").bode("theta").plot()
     """
 
     A: np.ndarray  # n x n
@@ -42,6 +43,28 @@ class Linearization(NamedTuple):
     outputs: list[str]  # names, in the order of y
     point: dict[str, float]  # x0, after projection onto the constraints, and u0, by name
     constraints: list[str]  # names of the contacts that are closed and the friction that sticks at x0, which count as constraints
+
+    def poles(self):
+        """Return the eigenvalues of A in 1/s, those of the least absolute value first."""
+        return responses.poles(self)
+
+    def bode(self, of=None, by=None, frequencies=None):
+        """
+        Return the frequency response of the outputs `of` to the inputs `by`, by default of all to all.
+
+        It has `frequency` in rad/s, by default around the poles, complex `values`, `magnitude`, `phase` in degrees, and plot(); bode["theta", "F"] is
+        the response of one output to one input. Jupyter shows the plot.
+        """
+        return responses.bode(self, of, by, frequencies)
+
+    def step(self, of=None, by=None, times=None):
+        """
+        Return the response of the outputs `of` to a unit step of each input `by`, by default of all to all, as changes from the operating point.
+
+        It has `time` in s, by default until the slowest poles have decayed, `values`, and plot(); step["theta", "F"] is the response of one output to
+        one input. Jupyter shows the plot.
+        """
+        return responses.step(self, of, by, times)
 
 
 def _column(point, at, i, share):
