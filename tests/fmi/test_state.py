@@ -267,7 +267,7 @@ FORGERIES += [("=d", TIME + 8 * NUMBERS.index(number), 1e3) for number in ("last
 
 
 def refuses(instance, data, *forgery):
-    with instance.fails(ERROR, "no instance can have saved"):
+    with instance.fails(ERROR, "values that no instance can have saved"):
         instance.fmu.deSerializeFMUstate(forged(data, *forgery))
     instance.reset()
 

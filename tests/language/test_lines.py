@@ -107,4 +107,4 @@ def test_motions_name_the_included_file():
     messages = []
     with pytest.raises(FMICallException):
         fmpy.simulate_fmu(fmu.archive("DryTrain"), stop_time=4, logger=lambda *words: messages.append(words[-1].decode()), fmi_call_logger=None)
-    assert re.search(r"sign, line 8 of cart\.xml, jumps back and forth there", "".join(messages)), messages
+    assert re.search(r"sign, line 8 of cart\.xml, chatters: on both sides of its jump", "".join(messages)), messages

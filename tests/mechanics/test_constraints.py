@@ -356,7 +356,7 @@ def test_fixed_start_values_that_leave_no_solution(open_fmu):
 
 def test_redundant_constraints_differ_from_contradictory_ones(open_fmu):
     instance = open_fmu("Twice").initialize()
-    assert any("'other' follows from the others" in text for _, _, text in instance.messages)
+    assert any("'other' is redundant" in text for _, _, text in instance.messages)
     energy = instance.get("totalEnergy")
     for _ in range(200):
         instance.step(0.01)
@@ -365,7 +365,7 @@ def test_redundant_constraints_differ_from_contradictory_ones(open_fmu):
     assert (tension, other) == (pytest.approx(load / 5, abs=1e-9), pytest.approx(2 * load / 5, abs=1e-9))
     assert abs(instance.get("totalEnergy") - energy) < 1e-8
     contrary = open_fmu("Contrary")
-    with contrary.fails(ERROR, "'other' with the others: it is -0.1 where 0 is expected"):
+    with contrary.fails(ERROR, "'other' with the others: its residual is -0.1"):
         contrary.initialize()
 
 
@@ -374,7 +374,7 @@ def test_redundant_constraints_differ_from_contradictory_ones(open_fmu):
 def test_constraints_that_part_later(number, size, open_fmu):
     """A constraint that follows from the other at the start, but not later, stays active."""
     instance = open_fmu(f"Parting{number}").initialize()
-    with instance.fails(DISCARD, r"the constraint 'c[01]' cannot be kept there with the others; expected constraints that agree"):
+    with instance.fails(DISCARD, r"the constraint 'c[01]' cannot be fulfilled with the others; expected constraints that are consistent"):
         while instance.time < 1:
             instance.step(size)
     assert instance.time < 1
@@ -383,7 +383,7 @@ def test_constraints_that_part_later(number, size, open_fmu):
 def test_constraints_without_derivatives(open_fmu):
     for name, start in (("Whole0", {"x": 0.3, "y": 0.01}), ("Whole1", {"x": 0.5, "y": 0.0})):
         instance = open_fmu(name)
-        with instance.fails(ERROR, "'c0' has no derivatives by the coordinates where it holds"):
+        with instance.fails(ERROR, "the derivatives of the constraint 'c0' vanish where it holds"):
             instance.initialize(start)
 
 
@@ -428,7 +428,7 @@ def test_overconstrained_table(open_fmu):
     fold.
     """
     instance = open_fmu("Table").initialize()
-    assert any("'third' follows from the others" in text for _, _, text in instance.messages)
+    assert any("'third' is redundant" in text for _, _, text in instance.messages)
     energy = instance.get("totalEnergy")
     for _ in range(500):
         instance.step(0.01)
@@ -444,7 +444,7 @@ def test_limit_of_a_mechanism(open_fmu):
     with instance.fails(DISCARD, "stopped at time 4.88"):
         instance.step(0.1)
     told = " ".join(text for status, _, text in instance.messages if status == 2)
-    assert ("'pull'" in told or "'line'" in told) and "limit of a mechanism's reach" in told
+    assert ("'pull'" in told or "'line'" in told) and "limit of a mechanism" in told
     assert all(np.isfinite(instance.get("p", "q", "vp", "vq")))
 
 
@@ -551,4 +551,4 @@ def test_messages_name_the_violated_constraint(name):
     log = lambda *words: messages.append(words[-1].decode())
     with pytest.raises(FMICallException):
         fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=1, output_interval=0.1, fmi_type="ModelExchange", logger=log)
-    assert any("the constraint 'c1' cannot be kept there with the others" in message for message in messages), messages
+    assert any("the constraint 'c1' cannot be fulfilled with the others" in message for message in messages), messages

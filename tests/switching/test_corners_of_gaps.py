@@ -39,7 +39,7 @@ def built():
 def test_a_corner_asks_for_two_contacts(open_fmu, corner, method):
     _, _, function, reached = CORNERS[corner]
     instance = open_fmu(f"Corner{corner}{method.title()}").initialize()
-    with instance.fails(DISCARD, f"the gap of the contact 'corner' has a corner there, by {function}, line 1 .* expected a <contact> for each piece"):
+    with instance.fails(DISCARD, f"the gap of the contact 'corner' has a corner, by {function}, line 1 .* expected a <contact> for each piece"):
         instance.step(3.0)
     text = next(text for _, _, text in instance.messages if "has a corner" in text)
     assert reached is None or float(text.split()[1][:-1]) == pytest.approx(reached, abs=1e-5)

@@ -17,8 +17,8 @@ PUSHED = """<system name="{name}"><coordinate name="y" velocity="u" unit="m" sta
   <coordinate name="x" velocity="v" unit="m" start="{place} + 0.1"/><particle mass="2" x="x"/>{further}
   <contact name="push" gap="x - y - 0.1" unit="m" restitution="{e}"/><stop coordinate="x" max="1" restitution="{e}"/></system>"""
 LATER = "if(time &lt; 1, 0, 0.1)"
-BOTH = r"the contacts '(push|x\.max)' and '(push|x\.max)' crush what is between them: prescribed motions close one of them"
-ALONE = r"the contact 'x\.max' closes, and nothing at it can give way: all that changes its gap is prescribed; expected"
+BOTH = r"the contacts '(push|x\.max)' and '(push|x\.max)' crush a body between them: prescribed motions close one of them"
+ALONE = r"the contact 'x\.max' closes by prescribed motions alone; expected"
 
 
 def pushed(place, speed, acceleration, e=0, further=""):
@@ -40,7 +40,7 @@ CRUSHED = {
     # Two bodies; the message may name any pair.
     "InARow": ("""<system name="{name}"><coordinate name="y" velocity="u" unit="m" velocityStart="1" acceleration="0"/><coordinate name="x" velocity="v" unit="m" start="0.5"/>
       <coordinate name="z" velocity="w" unit="m" start="0.7"/><particle mass="1" x="x"/><particle mass="100" x="z"/>
-      <contact name="push" gap="x - y - 0.1" unit="m"/><contact name="next" gap="z - x - 0.1" unit="m"/><stop coordinate="z" max="1"/></system>""", 0.8, r"the contacts '\S+' and '\S+' crush what is between them:"),
+      <contact name="push" gap="x - y - 0.1" unit="m"/><contact name="next" gap="z - x - 0.1" unit="m"/><stop coordinate="z" max="1"/></system>""", 0.8, r"the contacts '\S+' and '\S+' crush a body between them:"),
     "Alone": ("""<system name="{name}"><coordinate name="x" velocity="v" unit="m" velocityStart="1" acceleration="0"/><coordinate name="z" velocity="w" unit="m"/>
       <particle mass="1" x="x" y="z"/><stop coordinate="x" max="1"/></system>""", 1.0, ALONE),
     "AloneFromRest": ("""<system name="{name}"><coordinate name="x" velocity="v" unit="m" start="1" acceleration="if(time &lt; 1, 0, 0.1)"/>

@@ -220,7 +220,7 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
                 outcomes = [motion for gain, motion in impacts_by_trial(case) if gain <= 1e-12 * size**2]
                 has_others = any(not np.allclose(motion, v, atol=1e-6 * size) for motion in outcomes)
                 several += has_others
-                assert has_others == any("has more than one outcome" in text for _, _, text in instance.messages)
+                assert has_others == any("has more than one solution" in text for _, _, text in instance.messages)
         instance.messages.clear()
         swapped = case.start(other)
         turned += np.allclose(v, swapped, atol=1e-8 * abs(v).max())
@@ -308,7 +308,7 @@ def rod_pressure(theta, mu):
 def test_a_locking_rod_is_an_error(open_fmu, w, words):
     assert rod_pressure(1.2, 2) < 0
     instance = open_fmu("PainleveRod")
-    with instance.fails(ERROR, rf"contact 'tip' has {words} .* friction 'rub'.*Painleve"):
+    with instance.fails(ERROR, rf"contact 'tip' has {words}, .*friction 'rub'.*Painleve"):
         instance.initialize({"w": w, "vy": np.cos(1.2) * w})
 
 
@@ -350,7 +350,7 @@ def test_a_jamming_rod_is_reported(open_fmu, mu, theta, rise, tolerance):
 
 
 def told_of_other_forces(instance):
-    return sum("which may not be the only one" in text for _, _, text in instance.messages)
+    return sum("may have another solution" in text for _, _, text in instance.messages)
 
 
 def test_contacts_that_are_too_many_to_try_all(open_fmu):

@@ -63,7 +63,7 @@ def test_a_worm_that_jams(name, kind):
     with pytest.raises(FMICallException):
         fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=1, output_interval=0.1, fmi_type=kind, logger=log)
     time = 0 if JAMS[name][1] == AT_ONCE else 0.5
-    expected = f"time {time}: the force of the constraint 'gear' has no solution there, as the friction 'teeth', which follows from it, slides"
+    expected = f"time {time}: the force of the constraint 'gear' has no solution, as the friction 'teeth', which follows from it, slides"
     found = [message for message in messages if message.startswith(expected)]
     assert found and found[0].endswith("both jam each other (Painleve's paradox); expected less friction, or another load"), messages
     assert not any("mass matrix" in message or "in place of sign" in message for message in messages)
@@ -90,14 +90,14 @@ def test_a_worm_with_two_motions():
     log = lambda *words: messages.append(words[-1].decode())
     with pytest.raises(FMICallException):
         fmpy.simulate_fmu(str(fmu.archive("WormBack")), stop_time=1, output_interval=0.1, logger=log)
-    assert any(m.startswith("time 0: the friction 'teeth', whose force follows from those of constraints, has more than one motion") for m in messages), messages
+    assert any(m.startswith("time 0: the friction 'teeth', whose force follows from constraint forces, can stick or slide in more than one way") for m in messages), messages
     assert not any("no solution" in message for message in messages)
 
 
 @pytest.mark.parametrize("method", ["Taylor", "Radau", "Bdf"])
 def test_a_worm_that_jams_on_its_way(open_fmu, method):
     instance = open_fmu(f"WormGrows{method}").initialize()
-    with instance.fails(fmu.DISCARD, "the force of the constraint 'gear' has no solution there, as the friction 'teeth', .* jam each other"):
+    with instance.fails(fmu.DISCARD, "the force of the constraint 'gear' has no solution, as the friction 'teeth', .* jam each other"):
         instance.step(1.0)
     text = next(text for _, _, text in instance.messages if "jam each other" in text)
     assert float(text.split()[1][:-1]) == pytest.approx(0.5, abs=1e-4)

@@ -29,8 +29,8 @@ static const double jamming_share = 1e-3;
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
 
-static const char crushed[] = "contacts crush what is between them";
-static const char no_pushes[] = "the forces of contacts cannot be found there";
+static const char crushed[] = "contacts crush a body between them";
+static const char no_pushes[] = "the forces of contacts cannot be found";
 
 struct RestingContacts {
   struct Pushes pushes;
@@ -122,11 +122,10 @@ static void fill_resting(const struct Settlement *settlement, struct RestingCont
 }
 
 void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact) {
-  log_message(
-      settlement->instance, settlement_status(settlement),
-      "time %g: the contact '%s' closes, and nothing at it can give way: all that changes its gap is prescribed; "
-      "expected prescribed motions that keep the gap open, or a coordinate that is free",
-      settlement->time, settlement->switches->contacts[contact].name);
+  log_message(settlement->instance, settlement_status(settlement),
+              "time %g: the contact '%s' closes by prescribed motions alone; expected prescribed motions that keep the "
+              "gap open, or a free coordinate in the gap",
+              settlement->time, settlement->switches->contacts[contact].name);
 }
 
 /* Of the contacts among the pushes, the one whose push closes a row's gap most; the row itself where none does. */
@@ -148,9 +147,8 @@ static void log_crushed(const struct Settlement *settlement, const struct Pushes
   while (pushes->member[row] != contact) row++;
   log_message(
       settlement->instance, settlement_status(settlement),
-      "time %g: the contacts '%s' and '%s' crush what is between them: prescribed motions close one of them, and "
-      "no force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of "
-      "one",
+      "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions close one of them, and no "
+      "force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of one",
       settlement->time, contacts[contact].name, contacts[pushes->member[find_opponent(pushes, row)]].name);
 }
 
@@ -242,12 +240,11 @@ static const char *refuse_forces(const struct Settlement *settlement, const stru
                                  const char *how_many) {
   const struct Pushes *pushes = &resting->pushes;
   size_t contact = find_locked(resting);
-  log_message(
-      settlement->instance, settlement_status(settlement),
-      "time %g: the force of the contact '%s' has %s solution there, as the friction '%s' slides and presses it "
-      "together (Painleve's paradox); expected less friction, or another position",
-      settlement->time, settlement->switches->contacts[pushes->member[contact]].name, how_many,
-      locking_friction(settlement, pushes, contact));
+  log_message(settlement->instance, settlement_status(settlement),
+              "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
+              "together (Painleve's paradox); expected less friction, or another position",
+              settlement->time, settlement->switches->contacts[pushes->member[contact]].name, how_many,
+              locking_friction(settlement, pushes, contact));
   return "forces of contacts with friction are not determined";
 }
 
@@ -283,8 +280,8 @@ static void tell_of_others(const struct Settlement *settlement, const struct Res
   if (settlement->instance->told_other_forces) return;
   settlement->instance->told_other_forces = true;
   log_message(settlement->instance, STATUS_WARNING,
-              "time %g: the forces of the contacts that slide there, such as '%s' with the friction '%s', are one "
-              "solution, which may not be the only one: it could not be shown for so many that act on one another",
+              "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another "
+              "solution: too many contacts are coupled to exclude it",
               settlement->time, settlement->switches->contacts[pushes->member[contact]].name,
               locking_friction(settlement, pushes, contact));
 }

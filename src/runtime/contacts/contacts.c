@@ -36,7 +36,7 @@ static const double unresolved_share = 1e-6;
 /* A velocity whose square is no number is none. */
 static const double least_speed = 1e-150;
 
-static const char no_impact[] = "a contact cannot take an impact there";
+static const char no_impact[] = "an impact of a contact has no solution";
 
 /* The touching contact that closes fastest; contact_count for none. */
 static size_t find_impact(const struct Settlement *settlement) {
@@ -146,11 +146,10 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
 /* Singular equations name no contact by themselves; other reasons were logged with theirs. */
 static const char *refuse_singular_impact(const struct Settlement *settlement, size_t contact) {
   if (settlement->instance->singular != 0)
-    log_message(
-        settlement->instance, settlement_status(settlement),
-        "time %g: the contact '%s' cannot take an impact, as the equations of motion are singular while all that "
-        "touch are open; expected masses for all that moves without contacts",
-        settlement->time, settlement->switches->contacts[contact].name);
+    log_message(settlement->instance, settlement_status(settlement),
+                "time %g: the impact of the contact '%s' has no solution, as the equations of motion are singular "
+                "without contacts; expected masses for all coordinates",
+                settlement->time, settlement->switches->contacts[contact].name);
   return no_impact;
 }
 
@@ -221,7 +220,7 @@ static const char *refuse_rest(const struct Settlement *settlement) {
   while (contact + 1 < switches->contact_count && !is_touching(settlement, contact)) contact++;
   log_message(settlement->instance, settlement_status(settlement),
               "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
-              "constraints that leave it room",
+              "fewer constraints",
               settlement->time, switches->contacts[contact].name);
   return no_impact;
 }
@@ -368,8 +367,8 @@ static void log_parted(const struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
     if (settlement->takes_part[i] < 0.0 && !is_rounded(settlement, i))
       log_message(settlement->instance, STATUS_DONE,
-                  "time %g: the start is moved so that the contact '%s' is not penetrated, whose gap was %g",
-                  settlement->time, settlement->switches->contacts[i].name, settlement->takes_part[i]);
+                  "time %g: the start values are moved to open the contact '%s', whose gap was %g", settlement->time,
+                  settlement->switches->contacts[i].name, settlement->takes_part[i]);
 }
 
 static bool lift_start(struct Settlement *settlement) {
@@ -410,11 +409,10 @@ static const char *check_values(const struct Settlement *settlement) {
     bool has_gap = isfinite(contact_value(settlement, i, CONTACT_GAP));
     bool needs_rate = contact_is_closed(settlement, i) || is_touching(settlement, i);
     if (has_gap && (!needs_rate || isfinite(contact_value(settlement, i, CONTACT_RATE)))) continue;
-    log_message(
-        settlement->instance, settlement_status(settlement),
-        "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; expected "
-        "one that is finite there, such as (1 + tanh(x/2))/2 in place of 1/(1 + exp(-x))",
-        settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");
+    log_message(settlement->instance, settlement_status(settlement),
+                "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; "
+                "expected a gap that is finite, such as (1 + tanh(x/2))/2 in place of 1/(1 + exp(-x))",
+                settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");
     return "a contact has no finite gap";
   }
   return NULL;

@@ -30,7 +30,7 @@ static const double negligible_force = 1e-12;
 /* In units of the forces while a friction sticks: larger ones while it slides are those of a jam. */
 static const double jammed_force = 1e6;
 
-static const char neither[] = "a friction switches back and forth there without end";
+static const char neither[] = "a friction chatters";
 
 /* What decides on the mode of a friction. */
 struct FrictionState {
@@ -180,11 +180,10 @@ void frictions_blame(const struct Settlement *settlement, const char *missing) {
   for (size_t i = 1; i < switches->friction_count; i++)
     if (settlement->flips[friction_indicator(switches, i)] > settlement->flips[friction_indicator(switches, worst)])
       worst = i;
-  log_message(
-      settlement->instance, STATUS_DISCARD,
-      "time %g: no %s are found for the frictions there, of which '%s' switched most; expected less friction, or "
-      "another position",
-      settlement->time, missing, switches->frictions[worst].name);
+  log_message(settlement->instance, STATUS_DISCARD,
+              "time %g: no %s are found for the frictions, of which '%s' switched most; expected less friction, or "
+              "another position",
+              settlement->time, missing, switches->frictions[worst].name);
 }
 
 const char *frictions_act(struct Settlement *settlement, bool *switched) {
@@ -326,10 +325,9 @@ const char *frictions_check(struct Settlement *settlement) {
     size_t place = friction_place(settlement->switches, i, weaker_force(settlement, i));
     double force = settlement->value[place];
     if (!(force < -settlement->noise[place] - rounding) || is_within_error(settlement, place)) continue;
-    log_message(
-        settlement->instance, settlement_status(settlement),
-        "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...) of what it depends on",
-        settlement->time, settlement->switches->frictions[i].name, force);
+    log_message(settlement->instance, settlement_status(settlement),
+                "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...)", settlement->time,
+                settlement->switches->frictions[i].name, force);
     return "the force of a friction is negative";
   }
   return NULL;
@@ -382,8 +380,8 @@ bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
   }
   if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(settlement, friction))) return false;
   log_message(settlement->instance, settlement_status(settlement),
-              "time %g: the force of the %s '%s' has no solution there, as the friction '%s', which follows from it, "
-              "slides, and both jam each other (Painleve's paradox); expected less friction, or another load",
+              "time %g: the force of the %s '%s' has no solution, as the friction '%s', which follows from it, slides, "
+              "and both jam each other (Painleve's paradox); expected less friction, or another load",
               settlement->time, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
               switches->frictions[friction].name);
   return true;

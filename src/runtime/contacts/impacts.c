@@ -311,8 +311,8 @@ static void tell_of_other_outcomes(const struct Settlement *settlement, struct I
   if (!switches->friction_laws->has_other_impulses(settlement, pushes, problem->rate, problem->impulse)) return;
   settlement->instance->told_other_impulses = true;
   log_message(settlement->instance, STATUS_WARNING,
-              "time %g: the impact there, such as that of the contact '%s' with the friction '%s', has more than one "
-              "outcome by the law of impacts; one of them is taken",
+              "time %g: an impact, such as of the contact '%s' with the friction '%s', has more than one solution; one "
+              "of them is taken",
               settlement->time, switches->contacts[pushes->member[0]].name,
               switches->frictions[pushes->member[pushes->contact_count]].name);
 }

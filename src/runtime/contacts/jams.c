@@ -138,11 +138,10 @@ static void take_motion(struct JamSearch *search, size_t combination) {
 
 static void log_several(const struct JamSearch *search) {
   const struct Settlement *settlement = search->settlement;
-  log_message(
-      settlement->instance, settlement_status(settlement),
-      "time %g: the friction '%s', whose force follows from those of constraints, has more than one motion there "
-      "by which it sticks or slides (Painleve's paradox); expected less friction, or another load",
-      settlement->time, settlement->switches->frictions[search->friction].name);
+  log_message(settlement->instance, settlement_status(settlement),
+              "time %g: the friction '%s', whose force follows from constraint forces, can stick or slide in more than "
+              "one way (Painleve's paradox); expected less friction, or another load",
+              settlement->time, settlement->switches->frictions[search->friction].name);
 }
 
 /* Rounds that follow take what was found as their own. */

@@ -104,5 +104,5 @@ const char *contacts_share_load(struct Settlement *settlement, bool *again) {
   if (*again) return NULL;
   settlement_restore_modes(settlement);
   settlement->changed = changed;
-  return settlement_evaluate(settlement) ? NULL : "there are no accelerations at an event";
+  return settlement_evaluate(settlement) ? NULL : "the accelerations do not exist after an event";
 }

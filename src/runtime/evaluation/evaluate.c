@@ -22,11 +22,10 @@ const char *evaluate_kind(size_t constraint) {
 }
 
 void log_unkept(const struct Instance *instance, enum Status status, double time, size_t constraint) {
-  log_message(
-      instance, status,
-      "time %g: the %s '%s' cannot be kept there with the others; expected constraints that agree as the motion "
-      "goes on, and have no jumps, or other start values or parameters",
-      time, evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
+  log_message(instance, status,
+              "time %g: the %s '%s' cannot be fulfilled with the others; expected constraints that are consistent and "
+              "do not jump, or other start values or parameters",
+              time, evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
 }
 
 void log_singularity(const struct Instance *instance, enum Status status, double time) {
@@ -156,7 +155,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   case VARIABLE_STATISTIC: return STATUS_ERROR; /* not a Real */
   }
   if (status == STATUS_DONE && !isfinite(result)) {
-    log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value here; try other parameters or states",
+    log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value; try other parameters or states",
                 instance->situation->time, variable->name);
     status = STATUS_DISCARD;
   }

@@ -9,7 +9,7 @@
 #include "instance/held.h"
 #include "instance/projection.h"
 
-const char solver_resting[] = "the steps become too short to change the time, as at a singularity";
+const char solver_resting[] = "the step size fell below the resolution of time, as at a singularity";
 
 void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state) {
   point->time = time;
@@ -91,7 +91,7 @@ bool solver_is_held(const struct Instance *instance) {
 
 /* A step errs by about the tolerance. If the projection moves the state by 1000 times that, the step is wrong. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
-  static const char problem[] = "a constraint cannot be kept there";
+  static const char problem[] = "a constraint cannot be fulfilled";
   if (!solver_is_held(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
   bool is_kept = moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10);
@@ -105,7 +105,7 @@ void solver_free_memory(struct Instance *instance) {
 }
 
 bool solver_lacks_memory(const struct Instance *instance) {
-  log_message(instance, STATUS_ERROR, "there is no memory for the solver");
+  log_message(instance, STATUS_ERROR, "out of memory for the solver");
   return false;
 }
 

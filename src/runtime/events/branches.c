@@ -11,7 +11,7 @@
 /* Switches of one branch in an event resolution before it counts as endless. */
 enum { FLIP_LIMIT = 8 };
 
-static const char without_end[] = "a mode changes back and forth there without end";
+static const char without_end[] = "a mode switches without end (chattering)";
 
 static const char jammed[] = "a friction and a constraint jam each other";
 
@@ -92,8 +92,8 @@ static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
   if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
   if (continuity_explain_corner(settlement, branch)) return without_end;
   log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-              "time %g: %s, line %ld of %s, jumps back and forth there: on either side of its jump the motion leads "
-              "back to it, as with dry friction that sticks; expected <friction>, which sticks, in place of sign",
+              "time %g: %s, line %ld of %s, chatters: on both sides of its jump the motion leads back to it, as with "
+              "dry friction that sticks; expected <friction> in place of sign",
               settlement->time, facts->function, facts->line, facts->file);
   return without_end;
 }

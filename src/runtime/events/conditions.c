@@ -123,11 +123,10 @@ static bool find_endless_sample(const struct Settlement *settlement) {
     double period = settlement->value[sample_place(switches, i, SAMPLE_EVERY)], time = settlement->time;
     double offset = settlement->value[sample_place(switches, i, SAMPLE_OFFSET)];
     if (is_period(period, offset, time)) continue;
-    log_message(
-        settlement->instance, settlement_status(settlement),
-        "time %g: a <sample> has every=\"%s\", which is %g s, and its offset is %g s; expected a period above 0, "
-        "and one that is not lost against the time",
-        time, switches->events[switches->samples[i].event].when, period, offset);
+    log_message(settlement->instance, settlement_status(settlement),
+                "time %g: a <sample> has every=\"%s\", which is %g s, and its offset is %g s; expected a period above "
+                "0 and above the resolution of time",
+                time, switches->events[switches->samples[i].event].when, period, offset);
     return true;
   }
   return false;
@@ -136,7 +135,7 @@ static bool find_endless_sample(const struct Settlement *settlement) {
 const char *conditions_happen(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   *again = false;
-  if (find_endless_sample(settlement)) return "there are no samples";
+  if (find_endless_sample(settlement)) return "the period of a <sample> is not valid";
   /* Conditions that contacts and frictions fulfil from the start on have not just become true. */
   if (settlement->occasion == AT_START && !settlement->has_started) note_conditions(settlement, false);
   settlement->has_started = true;

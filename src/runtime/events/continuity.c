@@ -10,7 +10,7 @@
 /* In units of the scales of the state: a smaller change may be a rounding error. */
 static const double least_kink = 1e-6;
 
-const char constraints_not_kept[] = "the constraints cannot be kept at an event";
+const char constraints_not_kept[] = "the constraints cannot be fulfilled after an event";
 
 const char *continuity_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -67,8 +67,8 @@ static const char *check_energy(const struct Settlement *settlement) {
   double jump = fmax(share_of_jump(settlement, 0, 2), share_of_jump(settlement, 2, count - 2));
   if (!(jump > continuity_allowed_share(settlement))) return NULL;
   log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-              "time %g: %s, line %ld of %s, jumps there in an energy or a position, by a share of %.2g, for which no "
-              "velocity tells its part; expected energies without jumps, or an <event> that sets the velocities",
+              "time %g: %s, line %ld of %s, makes an energy or a position jump by a fraction of %.2g, which determines "
+              "no velocities; expected energies without jumps, or an <event> that sets the velocities",
               settlement->time, settlement->energetic->function, settlement->energetic->line,
               settlement->energetic->file, jump);
   return "an energy jumps";
@@ -109,11 +109,11 @@ bool continuity_explain_corner(struct Settlement *settlement, size_t branch) {
   size_t contact = find_corner(settlement, branch);
   if (contact == settlement->switches->contact_count) return false;
   bool is_discarded = settlement->occasion == AT_EVENT || settlement->occasion == AT_CHANGE;
-  log_message(
-      settlement->instance, is_discarded ? STATUS_DISCARD : STATUS_ERROR,
-      "time %g: the gap of the contact '%s' has a corner there, by %s, line %ld of %s, and both of its pieces are "
-      "touched; expected a <contact> for each piece",
-      settlement->time, settlement->switches->contacts[contact].name, facts->function, facts->line, facts->file);
+  log_message(settlement->instance, is_discarded ? STATUS_DISCARD : STATUS_ERROR,
+              "time %g: the gap of the contact '%s' has a corner, by %s, line %ld of %s, and both of its pieces touch; "
+              "expected a <contact> for each piece",
+              settlement->time, settlement->switches->contacts[contact].name, facts->function, facts->line,
+              facts->file);
   return true;
 }
 
@@ -132,13 +132,13 @@ static const char *check_constraints(struct Settlement *settlement) {
   const char *name = lagrangian.constraints.names[unkept];
   if (settlement->set_mode || settlement->moved)
     log_message(instance, status,
-                "time %g: an event sets %s so that the %s '%s' does not hold; expected values of <set> for all "
-                "coordinates and velocities that it moves, which fulfil it",
+                "time %g: an event sets %s that violate the %s '%s'; expected a <set> of all its coordinates and "
+                "velocities, with values that fulfil it",
                 settlement->time, settlement->moved ? "coordinates" : "modes", evaluate_kind(unkept), name);
   else if (!continuity_explain_corner(settlement, (size_t)(settlement->switched - settlement->switches->branches)))
     log_message(instance, status,
-                "time %g: %s, line %ld of %s, turns or jumps there in the %s '%s', and positions or velocities would "
-                "have to jump with it; expected one without kinks",
+                "time %g: %s, line %ld of %s, has a kink or jump in the %s '%s', so that positions or velocities would "
+                "have to jump; expected one without kinks",
                 settlement->time, settlement->switched->function, settlement->switched->line,
                 settlement->switched->file, evaluate_kind(unkept), name);
   return constraints_not_kept;

@@ -191,7 +191,7 @@ static const char *pass_late(struct Instance *instance, bool *passes, bool *chan
   if (problem != NULL || memcmp(before, state, size) == 0) return problem;
   settlement = settlement_at(instance, zero, state, IN_EXCHANGE);
   if (evaluate_prepare(instance) != STATUS_DONE || !settlement_values(&settlement, state, settlement.value))
-    return "there are no accelerations behind an event";
+    return "the accelerations do not exist after an event";
   move_by(&settlement, time - zero);
   memcpy(instance->state, state, size);
   return NULL;

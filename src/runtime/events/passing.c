@@ -49,11 +49,11 @@ static const double further_steps = 16.0, further_share = 2.0, share_before_even
 static const double window_share = 1.25;
 
 static const char gathering[] =
-    "events gather there without end, as bounces do that an <event> makes; a <contact> comes to rest";
-static const char corner[] = "the corner of a gap is touched from both sides";
-static const char flutter[] = "a contact opens and closes there without end";
-static const char too_close[] = "events lie closer there than can be told";
-static const char no_modes[] = "with these parameters there is no acceleration there";
+    "events accumulate (Zeno behaviour), as bounces by an <event> do; a <contact> comes to rest";
+static const char corner[] = "both sides of the corner of a gap touch";
+static const char flutter[] = "a contact opens and closes without end (Zeno behaviour)";
+static const char too_close[] = "the events are too close together to be separated";
+static const char no_modes[] = "the accelerations do not exist with these parameters";
 
 /* Finds the modes at a time, and the values that depend on them. Returns NULL, or the reason for a failure. */
 static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
@@ -110,7 +110,7 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
   const struct Solver *solver = lagrangian.solver;
   situation_begin(instance->situation, time);
   bool is_done = solver->restart == NULL || solver->restart(instance, instance->event_state, step);
-  return is_done ? NULL : "there is no memory for the solver";
+  return is_done ? NULL : "out of memory for the solver";
 }
 
 /* Ends the communication step before an event, at which the importer asks for the modes. */
@@ -251,8 +251,8 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
   if (progress->unsure > UNSURE_LIMIT) {
     const char *function = instance->limited_by;
     log_message(instance, STATUS_DISCARD,
-                "time %.15g: what events look at may hide some of them there however closely it is followed%s%s; "
-                "expected a function that is not so narrow, narrow ones at other places, or a looser tolerance",
+                "time %.15g: the event indicators may hide events however short the steps are%s%s; expected a function "
+                "that is less narrow, or a looser tolerance",
                 progress->searched, function != NULL ? ", by " : "", function != NULL ? function : "");
     return too_close;
   }
@@ -261,8 +261,8 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
     return too_close;
   name_indicator(indicator, name, sizeof name);
   log_message(instance, STATUS_DISCARD,
-              "time %.15g: %s comes to 0 and goes from it there faster than can be told; expected an expression that "
-              "does so less often",
+              "time %.15g: %s crosses zero and returns faster than can be resolved; expected an expression that "
+              "crosses zero less often",
               progress->searched, name);
   return too_close;
 }
@@ -288,11 +288,12 @@ static const char *refuse_gathering(struct Instance *instance, const struct Comm
   if (is_at_corner(instance, progress->searched, indicator)) return corner;
   name_indicator(indicator, name, sizeof name);
   if (!is_of_contact(indicator)) {
-    log_message(instance, STATUS_DISCARD, "time %.15g: %s switches there without end", progress->searched, name);
+    log_message(instance, STATUS_DISCARD, "time %.15g: %s switches without end (Zeno behaviour)", progress->searched,
+                name);
     return gathering;
   }
   log_message(instance, STATUS_DISCARD,
-              "time %.15g: %s opens and closes there without end, as where it opens with no speed%s; expected %s",
+              "time %.15g: %s opens and closes without end, as when it opens without speed%s; expected %s",
               progress->searched, name, finer != NULL ? " and the errors of the method are larger than its gap" : "",
               finer != NULL ? finer : "a force or parameters for which it lifts or presses clearly");
   return flutter;
@@ -325,7 +326,8 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
     return refuse_gathering(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
-  if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return "the state is not known there";
+  if (!lagrangian.solver->interpolate(instance, time, instance->event_state))
+    return "the state is not available at the event";
   return pass_event(instance, step, time, indicator);
 }
 
@@ -358,9 +360,9 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
   bool is_branch = progress->indicator < lagrangian.switches->branch_count;
   if (2 * progress->count < step->count) return;
   name_indicator(progress->indicator, name, sizeof name);
-  log_message(instance, STATUS_DISCARD, "time %g: there were %ld events in the step, the last of %s%s",
+  log_message(instance, STATUS_DISCARD, "time %g: %ld events in the step, the last of %s%s",
               instance->situation->last_step.end, progress->count, name,
-              is_branch ? " as where the motion follows a switch by going back and forth" : "");
+              is_branch ? " as when the motion chatters about its zero" : "");
 }
 
 bool events_explain_stop(struct Instance *instance, double time) {

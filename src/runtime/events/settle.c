@@ -21,8 +21,8 @@
 
 enum { ROUND_LIMIT = 2000 };
 
-static const char no_accelerations[] = "there are no accelerations at an event",
-                  no_first_accelerations[] = "there are no accelerations";
+static const char no_accelerations[] = "the accelerations do not exist after an event",
+                  no_first_accelerations[] = "the accelerations do not exist";
 
 static const char *act_by_contacts(struct Settlement *settlement, bool *again) {
   const struct ContactLaws *laws = settlement->switches->contact_laws;
@@ -85,7 +85,7 @@ static const char *settle_in_rounds(struct Settlement *settlement) {
   const char *problem = NULL;
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
-    if (round == ROUND_LIMIT) return "events follow one another there without end";
+    if (round == ROUND_LIMIT) return "events follow each other without end (Zeno behaviour)";
     if (!settlement_evaluate(settlement)) return no_accelerations;
     if (round == 0) conditions_begin(settlement);
     problem = settle_once(settlement, &again);

@@ -67,8 +67,7 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
     const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
     double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
                                        direction->acceleration, direction->acceleration_along);
-    if (!isfinite(derivative))
-      return discard_call(instance, "the derivative of '%s' is not finite here", variable->name);
+    if (!isfinite(derivative)) return discard_call(instance, "the derivative of '%s' is not finite", variable->name);
     value[i] = derivative;
   }
   return STATUS_DONE;
@@ -129,7 +128,7 @@ enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknow
   if (lagrangian.reverse_sweep != NULL && lagrangian.reverse_sweep->is_for(instance, unknown, unknown_count))
     return reverse_derivative(instance, unknown, unknown_count, known, known_count, seed, value);
   double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
-  if (column == NULL) return refuse_call(instance, "there is no memory for the derivatives");
+  if (column == NULL) return refuse_call(instance, "out of memory for the derivatives");
   enum Status status = STATUS_DONE;
   for (size_t j = 0; j < known_count && status == STATUS_DONE; j++)
     status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j]);

@@ -147,7 +147,7 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   if (!isfinite(moved)) {
     double time = instance->situation->time;
     log_unkept(instance, STATUS_ERROR, time, lagrangian.constraints.projection->unkept(instance, time));
-    return log_error(instance, "time %g: the constraints cannot be fulfilled here", time);
+    return log_error(instance, "time %g: the constraints cannot be fulfilled", time);
   }
   *states_changed |= moved > 0.0;
   return STATUS_DONE;

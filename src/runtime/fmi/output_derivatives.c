@@ -25,7 +25,7 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
   size_t matrix = lagrangian.linear == NULL ? 0 : states * (states + inputs + 1);
   expansion->state = instance->memory.allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
   if (expansion->state == NULL) {
-    log_error(instance, "there is no memory for the derivatives of outputs");
+    log_error(instance, "out of memory for the derivatives of outputs");
     return false;
   }
   expansion->input = expansion->state + states;
@@ -75,7 +75,7 @@ static enum Status read_derivative(struct Instance *instance, const struct Expan
   double derivative = rows[variable->index][order];
   for (int k = 2; k <= order; k++) derivative *= k;
   if (!isfinite(derivative))
-    return discard_call(instance, "the derivative %d of '%s' is not finite here", order, variable->name);
+    return discard_call(instance, "the derivative %d of '%s' is not finite", order, variable->name);
   *value = derivative;
   return STATUS_DONE;
 }

@@ -60,7 +60,7 @@ static enum Status read_known(struct Instance *instance, const struct Weights *w
     return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
   if (isfinite(*value)) return STATUS_DONE;
-  return discard_call(instance, "the derivative by '%s' is not finite here", variable->name);
+  return discard_call(instance, "the derivative by '%s' is not finite", variable->name);
 }
 
 static enum Status sweep(struct Instance *instance, const struct Weights *weights) {
@@ -76,7 +76,7 @@ static enum Status derivative_by_sweep(struct Instance *instance, const unsigned
                                        const unsigned *known, size_t known_count, const double *seed, double *value) {
   size_t count = 2 * lagrangian.state_count + lagrangian.results.count + known_count_of_system();
   double *block = instance->memory.allocate(count, sizeof *block);
-  if (block == NULL) return refuse_call(instance, "there is no memory for the derivatives");
+  if (block == NULL) return refuse_call(instance, "out of memory for the derivatives");
   struct Weights weights = weights_in(block);
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++)

@@ -84,7 +84,7 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
 enum Status values_none(void *component, enum Function function, size_t count, const char *name) {
   struct Instance *instance = enter(component, function, name);
   if (instance == NULL) return STATUS_ERROR;
-  return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variable for this function");
+  return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variables of this type");
 }
 
 /* True if the importer integrates, and sets states at any time. Some importers set them one by one, as variables. */

@@ -26,7 +26,8 @@ static bool can_instantiate(const struct Log *log, const char *name, fmi2Type ty
   else if (name == NULL || *name == '\0')
     log_write(log, STATUS_ERROR, "fmi2Instantiate: the instance has no name; expected one");
   else if (type != fmi2ModelExchange && type != fmi2CoSimulation)
-    log_write(log, STATUS_ERROR, "fmi2Instantiate: the type %d is unknown", (int)type);
+    log_write(log, STATUS_ERROR, "fmi2Instantiate: the type is %d; expected fmi2ModelExchange or fmi2CoSimulation",
+              (int)type);
   else if (guid == NULL || strcmp(guid, lagrangian.guid) != 0)
     log_write(log, STATUS_ERROR, "fmi2Instantiate: the GUID is '%s'; expected '%s', that of this binary",
               guid != NULL ? guid : "NULL", lagrangian.guid);

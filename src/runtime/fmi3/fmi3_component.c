@@ -85,7 +85,7 @@ static struct Component *instantiate(const struct Component *description, enum K
                                      const char *function) {
   struct Component *component = component_create(description, kind);
   if (component == NULL) {
-    log_write(log, STATUS_ERROR, "%s: there is no memory", function);
+    log_write(log, STATUS_ERROR, "%s: out of memory", function);
     return NULL;
   }
   log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);

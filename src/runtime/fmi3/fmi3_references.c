@@ -36,7 +36,7 @@ void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size
   fmi3_memory.free(workspace->block);
   workspace->block = fmi3_memory.allocate(count + 1, size);
   workspace->size = workspace->block != NULL ? count * size : 0;
-  if (workspace->block == NULL) refuse_call(&component->instance, "there is no memory for %zu values", count);
+  if (workspace->block == NULL) refuse_call(&component->instance, "out of memory for %zu values", count);
   return workspace->block;
 }
 

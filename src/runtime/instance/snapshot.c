@@ -170,7 +170,7 @@ const char *snapshot_fault(const struct Instance *instance, const void *block, s
   if (memcmp(&header, &expected, sizeof header) != 0) return "they are damaged";
   if (fixed.kind != (int32_t)instance->kind)
     return "they come from an instance of the other kind, model exchange or co-simulation";
-  return is_possible(instance, &fixed, situation) ? NULL : "no instance can have saved what they hold";
+  return is_possible(instance, &fixed, situation) ? NULL : "they contain values that no instance can have saved";
 }
 
 void snapshot_take(const struct Instance *instance, void *block) {

@@ -208,8 +208,8 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
   begin_window(choice, time);
   if (situation->statistics[STATISTIC_HANDOVERS]++ == 0)
     log_message(instance, STATUS_DONE,
-                "time %.15g: the system is stiff here; the solver goes on with Radau IIA, and with "
-                "Taylor series again where they get further (solverHandovers counts)",
+                "time %.15g: the system is stiff; the solver continues with Radau IIA, and returns to Taylor series "
+                "where they are faster (solverHandovers counts)",
                 time);
   memset(instance->saved, 0, largest_saved_size());
   instance->solver_memory = automatic->memory[choice->method];
@@ -313,7 +313,7 @@ static const char *make_step(struct Instance *instance, struct Auto *automatic, 
 
 static const char *auto_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Auto *automatic = auto_enter(instance);
-  static const char no_handover[] = "the solver cannot begin there";
+  static const char no_handover[] = "the solver cannot restart at this time";
   const char *problem = NULL;
   if (judge(instance, automatic->choice) && !hand_over(instance, automatic, step)) problem = no_handover;
   if (problem == NULL) problem = make_step(instance, automatic, step);

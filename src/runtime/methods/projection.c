@@ -275,9 +275,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* that of an open contact has none */
-      log_message(instance, STATUS_DONE,
-                  "time %g: the %s '%s' follows from the others; of all forces that carry the load, theirs are "
-                  "the smallest",
+      log_message(instance, STATUS_DONE, "time %g: the %s '%s' is redundant; the forces are those of least norm",
                   instance->situation->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }
 
@@ -292,8 +290,8 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
     refuse_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
   else
     refuse_call(instance,
-                "no %s near the start values fulfil the %s '%s' with the others: it is %g where 0 is expected; "
-                "expected start values nearer to a solution, fewer of them fixed, or parameters for which there is one",
+                "no %s near the start values fulfil the %s '%s' with the others: its residual is %g; expected start "
+                "values nearer to a solution, fewer of them fixed, or other parameters",
                 what, kind, name, -work.lack[constraint]);
   return false;
 }
@@ -321,11 +319,10 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
 }
 
 static bool refuse_vanishing(struct Instance *instance, size_t constraint) {
-  refuse_call(
-      instance,
-      "the %s '%s' has no derivatives by the coordinates where it holds, so that it cannot hold the "
-      "motion; expected it without a square, a root or abs of the whole, or a start away from a singular position",
-      evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
+  refuse_call(instance,
+              "the derivatives of the %s '%s' vanish where it holds, so that it exerts no force; expected it without a "
+              "square, a root or abs of the whole, or a start away from a singular position",
+              evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
   return false;
 }
 
@@ -336,8 +333,8 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
     if (!lagrangian.constraints.coordinate_is_fixed[i % n]) continue;
     if (fabs(instance->state[i] - before[i]) > 1e-9 * scale_of(before, i)) {
       refuse_call(instance,
-                  "the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected another "
-                  "start value there, or fewer fixed coordinates",
+                  "the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected this start "
+                  "value, or fewer fixed coordinates",
                   evaluate_name(VARIABLE_STATE, i), instance->state[i], before[i]);
       return false;
     }
@@ -377,8 +374,8 @@ static bool has_jumped(struct Instance *instance) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     if (lagrangian.constraints.inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
-                "time %g: the %s '%s' is %g where 0 is expected: it depends on %s, and the coordinates cannot "
-                "follow a jump; expected inputs that move as their derivatives tell",
+                "time %g: the residual of the %s '%s' is %g after a jump of an input: it depends on %s; expected "
+                "inputs that move continuously, as their derivatives say",
                 time, evaluate_kind(j), lagrangian.constraints.names[j], -work.lack[j],
                 lagrangian.constraints.inputs[j]);
     return true;
@@ -391,8 +388,8 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, time);
   else
     log_message(instance, STATUS_DISCARD,
-                "time %g: after a parameter or an input was set, no %s near the present ones fulfil the %s "
-                "'%s' with the others: it is %g where 0 is expected; expected values for which there are some",
+                "time %g: after a parameter or an input was set, no %s near the present ones fulfil the %s '%s' with "
+                "the others: its residual is %g; expected values with a solution nearby",
                 time, what, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
                 -work_of(instance).lack[constraint]);
 }

@@ -344,7 +344,7 @@ static const char *begin(struct Instance *instance, struct Radau *radau, double 
     radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.steps.nominal[k]);
   bool is_solvable = solver_derivatives(instance, time, radau->state, radau->first) &&
                      radau_systems_evaluate(instance, &radau->systems, time, radau->state);
-  return is_solvable ? NULL : "the equations have no solution there";
+  return is_solvable ? NULL : "the equations have no solution";
 }
 
 /*
@@ -414,7 +414,7 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
     }
     step = fmin(next, 0.9 * step);
   }
-  return "no step is short enough";
+  return "steps were rejected too often";
 }
 
 void radau_try_first(struct Instance *instance, double step) {

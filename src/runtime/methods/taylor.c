@@ -180,9 +180,9 @@ static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
 static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
   if (!taylor->crosses) taylor->crossing.path += moved;
   else if (crawls(&taylor->crossing, moved, 1e-9))
-    return "a function jumps back and forth there, as dry friction does when it sticks; <friction> is made for that";
+    return "a function chatters, as does dry friction that is not written as <friction>";
   if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
-    return "the system is stiff there; it needs <solver method=\"auto\"/>";
+    return "the system is stiff and needs <solver method=\"auto\"/>";
   return NULL;
 }
 
@@ -201,7 +201,7 @@ static const char *taylor_advance(struct Instance *instance, const struct Commun
   const char *problem = reason_to_stop(instance, taylor, moved);
   if (problem == NULL) problem = keep_constraints(instance, taylor);
   if (problem == NULL && !expand(instance, taylor, step->length))
-    problem = "the motion has a singularity there, or grows without bound";
+    problem = "the motion has a singularity or grows without bound";
   if (problem != NULL) cut_series(taylor);
   else instance->situation->statistics[STATISTIC_STEPS]++;
   return problem;

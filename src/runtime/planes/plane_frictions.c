@@ -19,7 +19,7 @@ enum { TOGETHER_LIMIT = 20 };
 
 static const char *refuse_directions(const struct Settlement *settlement) {
   frictions_blame(settlement, "directions");
-  return "the directions of frictions in a plane cannot be found there";
+  return "the slip directions of frictions in a plane cannot be found";
 }
 
 /* Whether one that slides has to be tried to stick. */

@@ -32,8 +32,7 @@ static void keep_message(void *receiver, enum Status status, const char *message
 static void tell_impossible_start(struct Instance *instance, const char *reason) {
   if (instance->told_impossible_start) return;
   log_message(instance, STATUS_WARNING,
-              "values read in initialization mode are as they were set, since the simulation cannot start there: %s",
-              reason);
+              "values in initialization mode are those that were set, since there is no consistent start: %s", reason);
   instance->told_impossible_start = true;
 }
 
@@ -141,7 +140,7 @@ enum Status reading_follow_start(struct Instance *instance, const struct Seed *s
   bool is_found = has_memory && find_along(instance, seed, state, kept, along);
   if (along != NULL) instance->memory.free(along);
   if (kept != NULL) instance->memory.free(kept);
-  if (!has_memory) return refuse_call(instance, "there is no memory for the derivatives");
+  if (!has_memory) return refuse_call(instance, "out of memory for the derivatives");
   if (is_found) return STATUS_DONE;
   return discard_call(instance, "the simulation cannot start near these start values; expected others");
 }

@@ -36,8 +36,8 @@ static const double SLOW_WORK = 2e9;
 /* Operations in a communication step if the system sets no maxSteps: about 10 s. */
 static const double WORK_LIMIT = 3e10;
 
-static const char usual_remedy[] = "retrying will not help; go on from an earlier state with a larger tolerance, other "
-                                   "parameters or other coordinates";
+static const char usual_remedy[] = "retrying will not help; restore an earlier state, and use a larger tolerance, "
+                                   "other parameters or other coordinates";
 
 /* Brings the solver to the start of the step: it continues its last step or restarts. */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
@@ -61,13 +61,13 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
 
 /* Warns early about slow steps. */
 static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step, double work) {
-  log_message(
-      instance, STATUS_WARNING,
-      "%s has taken %ld steps from time %.15g and is at %.15g, on the way to %.15g; it gives up after %ld, which "
-      "maxSteps of <solver> %s",
-      lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
-      lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps : (long)((double)step->count * WORK_LIMIT / work),
-      lagrangian.steps.max_steps > 0 ? "sets" : "can change: by default it is as many as take about 10 s");
+  log_message(instance, STATUS_WARNING,
+              "slow: %s has taken %ld steps from time %.15g to %.15g, and needs to reach %.15g; it stops after %ld, "
+              "which maxSteps of <solver> %s",
+              lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
+              lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps
+                                             : (long)((double)step->count * WORK_LIMIT / work),
+              lagrangian.steps.max_steps > 0 ? "sets" : "can change (default: about 10 s of work)");
 }
 
 /* Data of a communication step in progress. */
@@ -91,13 +91,10 @@ static double work_in_step(const struct Instance *instance, const struct Communi
 /* Returns NULL, or the limit that is exceeded. */
 static const char *excess(const struct CommunicationStep *step, double work) {
   if (lagrangian.steps.max_steps == 0)
-    return work < WORK_LIMIT
-               ? NULL
-               : "it has taken as many steps within one communication step as take about 10 s; expected a "
-                 "shorter step, or maxSteps of <solver>, which allows for more";
-  return step->count < lagrangian.steps.max_steps
-             ? NULL
-             : "it has taken as many steps as maxSteps of <solver> allows within one communication step";
+    return work < WORK_LIMIT ? NULL
+                             : "the limit of work in one communication step, about 10 s, is reached; expected a "
+                               "shorter step, or a larger maxSteps of <solver>";
+  return step->count < lagrangian.steps.max_steps ? NULL : "maxSteps of <solver> is reached in one communication step";
 }
 
 /* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
@@ -169,11 +166,10 @@ static void log_weakest(struct Instance *instance, double time) {
   const struct EventLaws *laws = lagrangian.event_laws;
   const char *name = lagrangian.constraints.projection->weakest(instance, time, instance->state);
   if (name != NULL && (laws == NULL || !laws->holds_at_times(name)))
-    log_message(
-        instance, STATUS_DISCARD,
-        "time %g: of the constraints, '%s' holds the motion most weakly here, as happens at the limit of a mechanism's "
-        "reach; constraints also fail where they contradict each other, jump or have a kink",
-        time, name);
+    log_message(instance, STATUS_DISCARD,
+                "time %g: of the constraints, '%s' is closest to singular, as at the limit of a mechanism; constraints "
+                "also fail if they contradict each other, jump or have a kink",
+                time, name);
 }
 
 /* Logs that the solver stopped, and advice. Another solver does not help against endless events. */

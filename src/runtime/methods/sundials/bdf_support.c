@@ -89,11 +89,11 @@ static double longest_step(const struct CommunicationStep *step) {
  */
 static const char *limit_by_functions(struct Instance *instance, const struct Bdf *bdf, double time, double end) {
   double last = 0.0;
-  if (CVodeGetLastStep(bdf->cvode, &last) < 0) return "SUNDIALS has no state there";
+  if (CVodeGetLastStep(bdf->cvode, &last) < 0) return "CVODE failed to return its last step";
   double bound = last > 0.0 ? 100.0 * last : 2.0 * (end - time);
   double longest = sundials_longest_step(instance, time, bound);
   if (longest < bound && solver_rests(time, longest)) return solver_resting;
-  return CVodeSetStopTime(bdf->cvode, time + longest) >= 0 ? NULL : "SUNDIALS does not take a time to stop at";
+  return CVodeSetStopTime(bdf->cvode, time + longest) >= 0 ? NULL : "CVODE failed to set the stop time";
 }
 
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step) {
@@ -101,10 +101,10 @@ const char *bdf_advance(struct Instance *instance, const struct CommunicationSte
   struct Situation *situation = instance->situation;
   double before = situation->last_step.end, time = before;
   if (sundials_tiny_step(instance, step)) return NULL;
-  if (CVodeSetMaxStep(bdf->cvode, longest_step(step)) < 0) return "SUNDIALS does not take a longest step";
+  if (CVodeSetMaxStep(bdf->cvode, longest_step(step)) < 0) return "CVODE failed to set the longest step";
   const char *problem = lagrangian.taylor.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, step->end);
   if (problem != NULL) return problem;
-  if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "no step is short enough";
+  if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "steps were rejected too often";
   situation->last_step = (struct Span){before, time};
   situation->statistics[STATISTIC_STEPS]++;
   return NULL;

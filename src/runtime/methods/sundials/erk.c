@@ -126,8 +126,9 @@ static const char *advance(struct Instance *instance, const struct Communication
     if (flag >= 0 && obeys_equations(instance, erk, before, time)) break;
     erk->trial = 0.1 * fmin(erk->trial, rest);
     N_VScale(1.0, erk->before, state);
-    if (solver_rests(before, erk->trial)) return "the equations have no solution there, or steps would be too short";
-    if (!start_method(instance, erk, before, erk->trial, step->end)) return "SUNDIALS cannot be restarted there";
+    if (solver_rests(before, erk->trial))
+      return "the equations have no solution, or the step size fell below the resolution of time";
+    if (!start_method(instance, erk, before, erk->trial, step->end)) return "ERKStep cannot be restarted";
   }
   ERKStepGetCurrentStep(erk->arkode, &erk->trial);
   situation->suggested_step = erk->trial;
