@@ -62,6 +62,21 @@ PUSHED = """
 """
 PUSHES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
 
+# A mass hangs by a rod from a bead on a rail with a step: the rod is consistent until the bead is moved onto the step.
+HUNG = """
+<system name="Hung">
+  <coordinate name="x" velocity="v" start="-0.5" velocityStart="1"/>
+  <coordinate name="y" velocity="w"/>
+  <coordinate name="p" velocity="vp" start="-0.3"/>
+  <coordinate name="q" velocity="vq" start="-1"/>
+  <particle mass="1" x="x" y="y"/>
+  <particle mass="1" x="p" y="q"/>
+  <gravity y="-9.81"/>
+  <constraint name="rail">y - if(x &gt; 0, 1e-3, 0)</constraint>
+  <constraint name="rod">(p - x)^2 + (q - y)^2 - 1</constraint>
+</system>
+"""
+
 # A displacement in piecewise functions with kinks and table knots.
 STRETCHED = """
 <system name="Stretched">
@@ -122,7 +137,7 @@ def built():
     for method in METHODS:
         texts[f"Pressed{method}"] = PRESSED.format(method=method)
         texts[f"Late{method}"] = LATE.format(method=method, tolerance=1e-10)
-    build_systems("pieces", texts)
+    build_systems("pieces", texts | {"Hung": HUNG})
 
 
 def along_curve(height, slope, curvature, x, speed, end):
@@ -181,6 +196,13 @@ def test_a_kink_in_a_constraint_is_an_error(open_fmu, kink, method):
         for _ in range(12):
             instance.step(0.125)
     assert instance.get("x") == pytest.approx(0, abs=1e-9)
+
+
+def test_a_step_is_blamed_on_its_own_constraint(open_fmu):
+    """The rod fulfils its constraint until the projection moves the bead."""
+    instance = open_fmu("Hung").initialize()
+    with instance.fails(DISCARD, r"a condition, line \d+ of system.xml, has a kink or jump in the constraint 'rail'"):
+        instance.step(3.0)
 
 
 @pytest.mark.parametrize("kink, method", by_turns(KINKS)[::2])

@@ -23,7 +23,10 @@ struct Projection {
    * discarded; the state is then as before.
    */
   bool (*follow_change)(struct Instance *instance);
-  /* Returns the constraint of largest residual after the last project() or drift(), at the same time, has failed. */
+  /*
+   * Returns the constraint of largest residual after the last project() or drift(), at the same time, has failed or
+   * moved too far.
+   */
   size_t (*unkept)(struct Instance *instance, double time);
   /*
    * Returns the name of the constraint whose row of the Jacobian is closest to singular at a state, as at the limit of
@@ -37,7 +40,7 @@ extern const struct Projection projection;
 /* Returns the numbers of workspace that an instance needs for it. */
 static inline size_t projection_work_count(void) {
   if (lagrangian.constraints.projection == NULL) return 0;
-  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count +
+  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count + 1 +
          indicator_count(lagrangian.switches);
 }
 

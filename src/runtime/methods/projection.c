@@ -43,6 +43,7 @@ struct Work {
   double *start;                /* state_count: where project() began */
   double *first_slope;          /* of each constraint */
   double *rounding;             /* rounding error bounds of the indicators */
+  double *first; /* the first state that lack belongs to: 0 for coordinates, coordinate_count for velocities */
 };
 
 static struct Work work_of(const struct Instance *instance) {
@@ -54,7 +55,8 @@ static struct Work work_of(const struct Instance *instance) {
   work.before = work.moved + lagrangian.state_count;
   work.start = work.before + lagrangian.state_count;
   work.first_slope = work.start + lagrangian.state_count;
-  work.rounding = work.first_slope + lagrangian.constraints.count;
+  work.first = work.first_slope + lagrangian.constraints.count;
+  work.rounding = work.first + 1;
   return work;
 }
 
@@ -76,6 +78,8 @@ static bool evaluate_lack(struct Instance *instance, double time, const double *
   struct Work work = work_of(instance);
   struct Point point = solver_point(instance, time, state);
   struct Seed seed = {.state = work.moved};
+  bool is_of_positions = target == POSITIONS || target == START_POSITIONS;
+  *work.first = is_of_positions ? 0.0 : (double)lagrangian.coordinate_count;
   switch (target) {
   case POSITIONS: instance->singular = lagrangian.constraints.correct_positions(&point, &seed, work.change); break;
   case VELOCITIES: instance->singular = lagrangian.constraints.correct_velocities(&point, work.change); break;
@@ -137,14 +141,18 @@ static bool has_redundant(const struct Work *work) {
   return false;
 }
 
-/* Projects the velocities at consistent coordinates. Returns the largest change in units of the scales. */
+/*
+ * Projects the velocities at consistent coordinates. Returns the largest change in units of the scales. Sets the
+ * residuals to 0 on success.
+ */
 static double project_velocities(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = move_velocities(instance, time, state, VELOCITIES);
-  if (!isfinite(size) || !has_redundant(&work)) return size;
-  bool hold =
-      evaluate_lack(instance, time, state, VELOCITIES) && others_hold(&work, state, lagrangian.coordinate_count);
-  return hold ? size : INFINITY;
+  bool hold = isfinite(size) && (!has_redundant(&work) || (evaluate_lack(instance, time, state, VELOCITIES) &&
+                                                           others_hold(&work, state, lagrangian.coordinate_count)));
+  if (!hold) return INFINITY;
+  memset(work.lack, 0, lagrangian.constraints.count * sizeof *work.lack);
+  return size;
 }
 
 /* True if all constraints are those of frictions, which leave the coordinates alone. */
@@ -192,32 +200,41 @@ static double way_of(const struct Work *work, size_t constraint, double scale) {
   return lack == 0.0 ? 0.0 : fabs(lack) / (work->slope[constraint] * scale);
 }
 
-/* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
-static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
+/* Returns the constraint of largest residual above *most, and sets *most to it; constraints.count for none. */
+static size_t find_above(const struct Work *work, const double *state, size_t first, double *most) {
   size_t worst = lagrangian.constraints.count;
-  double scale = largest_scale(state, first), most = fulfilled;
+  double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     double way = way_of(work, j, scale);
-    if (way > most) {
-      most = way;
+    if (way > *most) {
+      *most = way;
       worst = j;
     }
   }
   return worst;
 }
 
-/* Looks at the residuals that project() has left, then at those where it began: of coordinates, then of velocities. */
+/* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
+static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
+  double most = fulfilled;
+  return find_above(work, state, first, &most);
+}
+
+/* Looks at the residuals that project() has left. Without any, looks at those at its beginning, of both kinds. */
 static size_t unkept(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   int singular = instance->singular;
-  size_t found = find_lacking(&work, work.start, 0);
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (found == lagrangian.constraints.count && evaluate_lack(instance, time, work.start, POSITIONS))
-    found = find_lacking(&work, work.start, 0);
-  if (found == lagrangian.constraints.count && evaluate_lack(instance, time, work.start, VELOCITIES))
-    found = find_lacking(&work, work.start, lagrangian.coordinate_count);
+  size_t n = lagrangian.coordinate_count, none = lagrangian.constraints.count, larger = none;
+  size_t found = find_lacking(&work, work.start, (size_t)*work.first);
+  if (found == none) {
+    double most = fulfilled;
+    memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    if (evaluate_lack(instance, time, work.start, POSITIONS)) found = find_above(&work, work.start, 0, &most);
+    if (evaluate_lack(instance, time, work.start, VELOCITIES)) larger = find_above(&work, work.start, n, &most);
+    if (larger < none) found = larger;
+  }
   instance->singular = singular;
-  return found < lagrangian.constraints.count ? found : 0;
+  return found < none ? found : 0;
 }
 
 /*
