@@ -31,6 +31,13 @@ READ = {
     "Gallery": "gallery.md",
     "Tutorial": "fmu/TUTORIAL.md",
     "Reference": "fmu/README.md",
+    "Theory": {
+        "Overview": "fmu/theory/README.md",
+        "1. Equations of motion": "fmu/theory/01-equations-of-motion.md",
+        "2. Constraints": "fmu/theory/02-constraints.md",
+        "3. Kinematic trees": "fmu/theory/03-kinematic-trees.md",
+        "Bibliography": "fmu/theory/BIBLIOGRAPHY.md",
+    },
     "More": {
         "Systems, and what they were checked against": "fmu/SYSTEMS.md",
         "What the solvers guarantee": "fmu/SOLVERS.md",

@@ -15,7 +15,11 @@ from fmu import BUILD, ROOT, all_names, lagc
 README = (ROOT / "README.md").read_text()
 SYSTEMS = (ROOT / "fmu" / "SYSTEMS.md").read_text()
 SOLVERS = (ROOT / "fmu" / "SOLVERS.md").read_text()
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "src" / "README.md", *sorted((ROOT / "fmu").glob("*.md")), ROOT / "scripts" / "README.md"]
+FOLDERS = (ROOT / "fmu", ROOT / "fmu" / "theory")
+PAGES = [
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "src/README.md", "scripts/README.md")),
+    *(page for folder in FOLDERS for page in sorted(folder.glob("*.md"))),
+]
 
 
 def test_own_system(tmp_path):
