@@ -1,6 +1,10 @@
 /*
- * Lemke's method: w = M z + q + 1 z0, from a large z0 on down to 0, along the path on which each row stays complementary.
- * Ties are broken by the inverse of the basis (lexicographically), so that it does not go round in circles.
+ * Solves w = M z + q with w >= 0, z >= 0, w^T z = 0 by Lemke's method: complementary pivoting for w = M z + q + 1 z0,
+ * from a large z0 at z = 0 down to z0 = 0. Of each pair w_i, z_i one is 0 throughout; the partner of the variable that
+ * leaves the basis enters next. Ties of the ratio test are broken lexicographically by the rows of the inverse of the
+ * basis, so that in exact arithmetic no basis returns and the path is finite. A pivot costs O(n^2). The path is given
+ * up at a secondary ray (no row can leave) or after PIVOTS_A_ROW n pivots. Then it is tried again with a larger
+ * tolerance for ties. Reference: Cottle, Pang and Stone, The Linear Complementarity Problem, chapter 4.
  */
 #include "contacts/complementarity.h"
 
@@ -9,22 +13,23 @@
 
 #include "arithmetic.h"
 
+/* Pivots for each row of the problem before a path is given up. */
 enum { PIVOTS_A_ROW = 50 };
 
-/* Less than this in a pivot is rounding. */
+/* Smaller pivots count as rounding errors; M and q are scaled to a size of 1. */
 static const double least_pivot = 1e-12;
 
-/* So is less than this between two ratios: where the first does not lead to the end, the next is tried. */
+/* Ratios that differ by less are tied. The next value is tried if the path does not end in a solution. */
 static const double least_differences[] = {1e-14, 1e-12, 1e-10};
 
 /*
- * Rows of the equations for the variables of the basis: the coefficients of w, of z, of z0, and the right side. Variables
- * are numbered in this order.
+ * Equations solved for the variables of the basis: coefficients of w, of z and of z0, then the right side. Variables
+ * are numbered in this order: w from 0 on, z from n on, z0 is 2 n.
  */
 struct LemkeTableau {
   size_t n, width;
-  double *row;   /* n rows of width */
-  double *basis; /* the variable of each row */
+  double *row;   /* n x width */
+  double *basis; /* the basic variable of each row, as an exact number */
   double least_difference;
 };
 
@@ -63,7 +68,7 @@ static void pivot_at(const struct LemkeTableau *tableau, size_t leaving, size_t 
   tableau->basis[leaving] = (double)entering;
 }
 
-/* Whether row i comes to 0 before row k, as the entering variable grows: by its right side, then by the inverse. */
+/* True if row i limits the entering variable before row k does, with ties broken. */
 static bool is_first(const struct LemkeTableau *tableau, size_t entering, size_t i, size_t k) {
   const double *one = tableau_row(tableau, i), *other = tableau_row(tableau, k);
   double difference = one[tableau->width - 1] / one[entering] - other[tableau->width - 1] / other[entering];
@@ -72,7 +77,7 @@ static bool is_first(const struct LemkeTableau *tableau, size_t entering, size_t
   return difference < 0.0;
 }
 
-/* The row whose variable leaves; n where none does. z0 goes first among those that come to 0 together. */
+/* Returns the row of the leaving variable; n at a secondary ray. Of tied rows that of z0 is preferred. */
 static size_t find_leaving(const struct LemkeTableau *tableau, size_t entering) {
   size_t n = tableau->n, found = n, last = 2 * n;
   for (size_t i = 0; i < n; i++)
@@ -86,7 +91,7 @@ static size_t find_leaving(const struct LemkeTableau *tableau, size_t entering) 
   return found;
 }
 
-/* The row that the first pivot takes: that of the least q. */
+/* Returns the row of the least q, whose variable leaves first. */
 static size_t find_least(const struct LemkeTableau *tableau) {
   size_t least = 0;
   for (size_t i = 1; i < tableau->n; i++)

@@ -1,10 +1,18 @@
 /*
- * The forces F of contacts at rest and the accelerations a of their gaps fulfil a >= 0, F >= 0, F a = 0, where
+ * Forces F of contacts at rest, with Coulomb friction of the sliding frictions on them. The problem is linear
+ * complementarity for the accelerations a of the gaps:
  *
- *   a = free + S F,   S = mobility of the contacts + that between them and their sliding frictions, mu times.
+ *   a = free + S F,   a >= 0,   F >= 0,   F^T a = 0,   S = W_NN - W_NT D mu,
  *
- * Without friction S is symmetric and there is always one motion. With it there may be none, or several (Painleve's paradox).
- * Contacts whose friction sticks stay as they are.
+ * where W = J M^-1 J^T is the Delassus matrix of contacts (N) and sliding frictions (T), D holds the slip directions,
+ * and mu the friction limits by unit contact forces. Contacts with a friction that sticks are left as they are. Without
+ * friction S is symmetric and positive semidefinite, and the accelerations are unique. With it there may be no solution
+ * or several (Painleve's paradox).
+ *
+ * The problem is set up after the frictions have their modes, if a friction slides on a contact at rest, or if a
+ * contact that its force has opened would close again. If no open contact approaches, the present forces are a
+ * solution, and only their uniqueness is examined (resting_forces.c). Else the solution found sets the contacts. If
+ * there is none, or more than one, or existence is unknown, the motion ends with a message.
  */
 #include "contacts/contact_forces.h"
 
@@ -16,26 +24,30 @@
 #include "contacts/resting_forces.h"
 #include "evaluation/services.h"
 
-/* Noise is what one rounding makes of a value; several together make more of one that is 0 but for them. */
+/*
+ * In rounding error bounds: accelerations of a contact whose force has just vanished that count as 0. Such an
+ * acceleration is 0 but for several rounding errors, more than the bound covers.
+ */
 static const double parting_in_noise = 1e3;
 
-/* In units of the largest free acceleration: less is what rounding leaves of one that others hold. */
+/* Relative to the largest free acceleration: the rounding error of an acceleration that other contacts keep at 0. */
 static const double rounded_acceleration = 1e-12;
 
-/* Contacts whose friction leaves less of their mobility than this are about to jam. */
+/* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
 static const double jamming_share = 1e-3;
 
-/* What a refusal says of them. */
+/* Number of solutions, as messages say it; NULL if the motion continues. */
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
 
 static const char crushed[] = "contacts crush a body between them";
 static const char no_pushes[] = "the forces of contacts cannot be found";
 
+/* The problem of the contacts that take part; forces are in units of unit[]. */
 struct RestingContacts {
   struct Pushes pushes;
   struct RestingForces forces;
-  double *unit; /* of the force of each contact */
+  double *unit; /* unit of the force of each contact: 1 / sqrt(W_ii) */
   void *block;
 };
 
@@ -47,7 +59,7 @@ static bool sticks_on(const struct Settlement *settlement, size_t contact) {
   return sticks;
 }
 
-/* What rounding makes of the acceleration of a contact: all of it, where its force has come to 0 and it parts. */
+/* Returns the rounding error bound of the acceleration; a larger one for a contact whose force has just vanished. */
 static double noise_of_acceleration(const struct Settlement *settlement, size_t contact) {
   size_t indicator = contact_indicator(settlement->switches, contact);
   bool parts = is_hit(settlement, indicator) && settlement->was_opened[contact] != 0.0;
@@ -55,7 +67,7 @@ static double noise_of_acceleration(const struct Settlement *settlement, size_t 
   return (parts ? parting_in_noise : 1.0) * noise;
 }
 
-/* Whether a contact that its force has opened in this event touches, and would come back at once. */
+/* True if a contact that its force has opened in this event accelerates towards closing. */
 static bool any_comes_back(const struct Settlement *settlement) {
   bool any = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++)
@@ -64,7 +76,10 @@ static bool any_comes_back(const struct Settlement *settlement) {
   return any;
 }
 
-/* Which contacts may open or close by their forces, and which frictions slide. Whether such a friction rests on any. */
+/*
+ * Selects the contacts at rest without sticking friction and the frictions that slide, in takes_part. True if a
+ * selected friction rests on a selected contact.
+ */
 static bool choose_resting(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t contacts = switches->contact_count;
@@ -79,7 +94,7 @@ static bool choose_resting(struct Settlement *settlement) {
   return slides;
 }
 
-/* The pushes while the contacts that take part are open. */
+/* Computes the Delassus matrix with the selected contacts open; restores the modes. */
 static bool find_pushes(struct Settlement *settlement, struct Pushes *pushes) {
   const struct SwitchTable *switches = settlement->switches;
   bool changed = settlement->changed;
@@ -92,7 +107,7 @@ static bool find_pushes(struct Settlement *settlement, struct Pushes *pushes) {
   return done;
 }
 
-/* How the push of one contact, with its frictions, moves the gap of another. */
+/* Returns S_ij: the acceleration of gap i by a unit force of contact j with its sliding frictions. */
 static double mobility_with_friction(const struct Settlement *settlement, const struct Pushes *pushes, size_t i,
                                      size_t j) {
   size_t contacts = pushes->contact_count;
@@ -104,7 +119,7 @@ static double mobility_with_friction(const struct Settlement *settlement, const 
   return sum;
 }
 
-/* S, and the free accelerations from those at the present forces. */
+/* Fills S, scaled by the units, and the free accelerations: the present ones less those by the present forces. */
 static void fill_resting(const struct Settlement *settlement, struct RestingContacts *resting) {
   const struct Pushes *pushes = &resting->pushes;
   struct RestingForces *forces = &resting->forces;
@@ -128,7 +143,7 @@ void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t con
               settlement->time, settlement->switches->contacts[contact].name);
 }
 
-/* Of the contacts among the pushes, the one whose push closes a row's gap most; the row itself where none does. */
+/* Returns the contact whose impulse closes the gap of a row most; the row itself if none does. */
 static size_t find_opponent(const struct Pushes *pushes, size_t row) {
   size_t found = row;
   double most = 0.0;
@@ -169,7 +184,10 @@ static void free_resting(const struct Settlement *settlement, struct RestingCont
   pushes_free(settlement, &resting->pushes);
 }
 
-/* False where a contact cannot be moved, and where there is a problem: M is singular, or there is no memory. */
+/*
+ * Sets up the problem. False, with *problem NULL, if no force changes the gap of a contact; with the reason, if M is
+ * singular or memory is missing.
+ */
 static bool create_resting(struct Settlement *settlement, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
   *problem = NULL;
@@ -196,8 +214,8 @@ static bool create_resting(struct Settlement *settlement, struct RestingContacts
 }
 
 /*
- * The open contact at rest that closes most, and by more than rounding, as one that another has opened too soon;
- * contact_count for none.
+ * Returns the open contact at rest with the largest closing acceleration beyond rounding, such as one opened too early;
+ * contact_count if there is none.
  */
 static size_t find_sinking(const struct Settlement *settlement, const struct RestingContacts *resting) {
   double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces), most = 0.0;
@@ -213,7 +231,7 @@ static size_t find_sinking(const struct Settlement *settlement, const struct Res
   return found;
 }
 
-/* The contact that its frictions leave least of its mobility. */
+/* Returns the row with the least diagonal element of S, where friction opposes the motion of the gap most. */
 static size_t find_locked(const struct RestingContacts *resting) {
   const struct RestingForces *forces = &resting->forces;
   size_t locked = 0, n = forces->count;
@@ -222,7 +240,7 @@ static size_t find_locked(const struct RestingContacts *resting) {
   return locked;
 }
 
-/* The friction that takes most of a contact's mobility. */
+/* Returns the name of the friction that reduces the diagonal element of S most. */
 static const char *locking_friction(const struct Settlement *settlement, const struct Pushes *pushes, size_t contact) {
   size_t contacts = pushes->contact_count, most = 0;
   double taken = -INFINITY;
@@ -248,14 +266,14 @@ static const char *refuse_forces(const struct Settlement *settlement, const stru
   return "forces of contacts with friction are not determined";
 }
 
-/* What rests on a contact that closes slides as it moves: it may have been let go as the contact opened. */
+/* Lets frictions in planes on a contact that closes slide: they may have lost their force as the contact opened. */
 static void let_slide(struct Settlement *settlement, size_t contact) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++)
     if (is_in_plane(settlement->switches, i) && rests_on(settlement->switches, i, contact))
       set_friction(settlement, i, 1.0);
 }
 
-/* Opens and closes the contacts as the solution says. Whether that changes any. */
+/* Opens and closes the contacts according to the solution. True if any changes. */
 static bool take_solution(struct Settlement *settlement, const struct RestingContacts *resting) {
   bool changes = false;
   const struct RestingForces *forces = &resting->forces;
@@ -273,7 +291,7 @@ static bool take_solution(struct Settlement *settlement, const struct RestingCon
   return changes;
 }
 
-/* Once, so that what slides for long does not fill the log. */
+/* Warns at most once an instance that the solution may not be unique. */
 static void tell_of_others(const struct Settlement *settlement, const struct RestingContacts *resting) {
   const struct Pushes *pushes = &resting->pushes;
   size_t contact = find_locked(resting);

@@ -5,8 +5,9 @@
 #include "events/settlement.h"
 
 /*
- * Opens and closes contacts at rest according to the unique solution; sets *again if any changed. Returns NULL, or,
- * after logging contact and friction, the reason why the motion cannot go on.
+ * Opens and closes contacts at rest according to the solution for their forces; sets *again if any changed. Warns once
+ * if the solution was not shown to be the only one. Returns NULL, or, after logging contact and friction, the reason
+ * why the motion cannot go on.
  */
 const char *contact_forces_settle(struct Settlement *settlement, bool *again);
 

@@ -1,7 +1,16 @@
 /*
- * Contacts: impacts, rest, and parting. Impacts come one after another, that of the fastest first, with all that are as fast;
- * what a contact beside would then have to take comes as an impact of its own, so that a row of touching bodies hands a push
- * on.
+ * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with those as
+ * fast within rounding; the other touching contacts are open. Contacts that close because of it have impacts of their
+ * own after it, so that a row of touching bodies passes an impulse on (Newton's cradle). After IMPACT_LIMIT impacts of
+ * an event all that touch are taken at once, without restitution. If a contact still closes then, bodies are crushed,
+ * and the motion ends.
+ *
+ * act_once() makes one change a round: it opens contacts that were lifted or part, or takes an impact, or closes those
+ * that come to rest, or projects out penetrations, or opens the closed contact that pulls most. settle.c repeats the
+ * rounds until none changes anything.
+ *
+ * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
+ * 0 again after an impact. A contact with a value other than 0 cannot come to rest in this event by itself.
  */
 #include <float.h>
 #include <math.h>
@@ -17,28 +26,37 @@
 #include "events/indicators.h"
 #include "events/settlement.h"
 
+/* In an event: impacts one after another; projections of penetrated contacts. At the start: projections. */
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
-/* Closing speeds that differ by less of themselves are the same, so that impacts of symmetric systems stay symmetric. */
+/* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
-/* How far a contact may be penetrated where it is set. */
+/*
+ * Penetration that is accepted at the start and after an event sets coordinates, in units of the gap. Relative to its
+ * scale, a fixed coordinate may be moved by as much.
+ */
 static const double largest_penetration = 1e-9;
 
-/* In units of the largest coordinate: start values of four digits penetrate a contact by no more. */
+/* Relative to the largest coordinate: start values with four digits penetrate a contact by no more. */
 static const double rounded_start = 1e-4;
 
-/* A gap below 0 by so many times what rounding makes of it may be found again: a search forgives FLOOR_IN_NOISE times. */
+/* In rounding error bounds: a negative gap up to this is not located again, as the search allows FLOOR_IN_NOISE. */
 static const double found_again = 0.25 * FLOOR_IN_NOISE;
 
-/* Less of the largest rate of a gap in an event may be left by impulses that iterations find. */
+/*
+ * Relative to the largest rate of the gap in this event: closing rates below this may be errors of iterative impulses.
+ */
 static const double unresolved_share = 1e-6;
 
-/* A velocity whose square is no number is none. */
+/* Smaller speeds have no direction: their squares are next to the smallest numbers. */
 static const double least_speed = 1e-150;
 
 static const char no_impact[] = "an impact of a contact has no solution";
 
-/* The touching contact that closes fastest; contact_count for none. */
+/*
+ * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding do not count, but for
+ * the contact whose zero was located, before its first impact.
+ */
 static size_t find_impact(const struct Settlement *settlement) {
   size_t found = settlement->switches->contact_count;
   double fastest = 0.0;
@@ -55,7 +73,7 @@ static size_t find_impact(const struct Settlement *settlement) {
   return found;
 }
 
-/* Whether a contact closes although all that touch have been given impulses at once. */
+/* True if a contact still closes after an impact of all that touch. */
 static bool closes_clearly(const struct Settlement *settlement, size_t contact) {
   size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
   return settlement->value[rate] < -unresolved_share * settlement->largest[rate];
@@ -65,7 +83,7 @@ static void open_all(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->contact_count; i++) set_contact(settlement, i, false);
 }
 
-/* Logs a restitution that is none. */
+/* Logs a restitution outside of 0 to 1, and returns false. */
 static bool check_restitution(const struct Settlement *settlement, size_t contact) {
   double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
   if (restitution >= 0.0 && restitution <= 1.0) return true;
@@ -75,7 +93,10 @@ static bool check_restitution(const struct Settlement *settlement, size_t contac
   return false;
 }
 
-/* The contacts that are hit as fast as one, but for rounding; where pushes go to and fro without end, all that touch. */
+/*
+ * Selects the contacts that are hit as fast as one, within rounding, and all frictions; beyond IMPACT_LIMIT all
+ * touching contacts. False after logging an invalid restitution.
+ */
 static bool choose_hit(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   size_t place = contact_place(switches, contact, CONTACT_RATE);
@@ -94,7 +115,7 @@ static bool choose_hit(struct Settlement *settlement, size_t contact) {
   return is_fine;
 }
 
-/* A friction that rests on contacts, all of which are open, cannot stick. */
+/* Lets sticking frictions slide whose contacts are all open. */
 static void let_go(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -113,7 +134,7 @@ static void let_all_slide(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
 }
 
-/* What slides in a plane and is stopped altogether, by an impact or with what rests, has no direction any more but the one that it had. */
+/* Lets frictions in planes that do not stick, and have stopped, slip along the last direction. False without values. */
 static bool let_stopped_head(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (switches->plane_count == 0) return true;
@@ -128,7 +149,7 @@ static bool let_stopped_head(struct Settlement *settlement) {
   return true;
 }
 
-/* An impact of a contact, and of those that are hit together with it. */
+/* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Settlement *settlement, size_t contact) {
   if (!choose_hit(settlement, contact)) return false;
   settlement_keep_modes(settlement);
@@ -143,7 +164,7 @@ static bool take_impact(struct Settlement *settlement, size_t contact) {
   return done && let_stopped_head(settlement);
 }
 
-/* Singular equations name no contact by themselves; other reasons were logged with theirs. */
+/* Logs singular equations, which name no contact by themselves; other reasons have been logged. */
 static const char *refuse_singular_impact(const struct Settlement *settlement, size_t contact) {
   if (settlement->instance->singular != 0)
     log_message(settlement->instance, settlement_status(settlement),
@@ -153,7 +174,7 @@ static const char *refuse_singular_impact(const struct Settlement *settlement, s
   return no_impact;
 }
 
-/* Whether an open contact that touches would come back at once. */
+/* True if an open contact touches, accelerates towards closing, and would only make bounces that errors hide. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
   if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
@@ -161,7 +182,7 @@ static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   return bounce_is_lost(settlement, contact, contact_value(settlement, contact, CONTACT_RATE));
 }
 
-/* A friction that sticks holds its velocity, which an impact may have set: it slides before anything is held. */
+/* Lets frictions slide that stick at a velocity that an impact has set, before the velocities are projected. */
 static void let_moving_slide(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
@@ -173,7 +194,7 @@ static void let_moving_slide(struct Settlement *settlement) {
   }
 }
 
-/* What does not slide as a contact comes to rest sticks: else what rest takes from the gap would make it slide. */
+/* Lets frictions stick that do not slide as the contact comes to rest: the projection of the gap would move them. */
 static void let_stick(struct Settlement *settlement, size_t contact) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -184,8 +205,9 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
 }
 
 /*
- * Whether one that touches would stay with others that come to rest: those of a body that comes to lie flat differ by rounding, and
- * the last of them has no acceleration of its own, but shares the load. So does one that pulled before the others came to rest.
+ * True if a touching contact stays with others that come to rest. Rates of a body that comes to lie flat differ by
+ * rounding errors, and the last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
+ * contact that pulled before the others came to rest may rest too.
  */
 static bool rests_with_others(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
@@ -205,7 +227,7 @@ static bool close_those(struct Settlement *settlement, bool (*rests)(const struc
   return closes;
 }
 
-/* Closes contacts that come to rest, all at once, and those that stay with them, as accelerations before and behind that tell. */
+/* Closes all contacts that come to rest, and, in this round and the next, those that stay with them. True if any. */
 static bool close_contacts(struct Settlement *settlement) {
   bool comes = close_those(settlement, comes_to_rest), shares = comes || settlement->came_to_rest;
   settlement->came_to_rest = comes;
@@ -225,7 +247,9 @@ static const char *refuse_rest(const struct Settlement *settlement) {
   return no_impact;
 }
 
-/* A contact that would come back at once, and whose gap no force changes; contact_count for none. */
+/*
+ * Returns a closed contact that accelerates towards closing although no force changes its gap; contact_count for none.
+ */
 static size_t find_prescribed(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t contact = 0;
@@ -238,7 +262,7 @@ static size_t find_prescribed(const struct Settlement *settlement) {
   return contact;
 }
 
-/* Takes the velocities to what contacts that have come to rest allow. NULL, or the reason why there are none. */
+/* Projects the velocities onto the contacts that have come to rest. NULL, or the reason why that fails. */
 static const char *let_rest(struct Settlement *settlement) {
   if (!settlement_push(settlement)) return refuse_rest(settlement);
   size_t fixed = find_prescribed(settlement);
@@ -249,12 +273,15 @@ static const char *let_rest(struct Settlement *settlement) {
   return let_stopped_head(settlement) ? NULL : refuse_rest(settlement);
 }
 
-/* How far a contact must be moved apart to open, in units of the largest coordinate; importers keep constraints less well. */
+/*
+ * Returns the gap beyond which a closed contact was moved apart; larger for importers, which keep constraints less
+ * well.
+ */
 static double largest_drift(const struct Settlement *settlement) {
   return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(settlement->state, 0);
 }
 
-/* Opens contacts that were lifted. Whether there were any. */
+/* Opens closed contacts that were moved apart. True if any. */
 static bool open_lifted(struct Settlement *settlement) {
   bool opens = false;
   for (size_t i = 0; i < settlement->switches->contact_count; i++) {
@@ -266,7 +293,7 @@ static bool open_lifted(struct Settlement *settlement) {
   return opens;
 }
 
-/* Opens contacts whose gap has just turned away, as at an edge, or that an event throws apart. Whether there were any. */
+/* Opens closed contacts whose gap opens faster than errors, at a switch such as an edge or by an event. True if any. */
 static bool open_parting(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   double drift = continuity_allowed_share(settlement) * largest_scale(settlement->state, lagrangian.coordinate_count);
@@ -299,9 +326,9 @@ static bool part(struct Settlement *settlement) {
 }
 
 /*
- * Whether what an open contact stands in one another has to be taken up: an importer comes to it late, and an indicator that
- * stays below 0 would not be seen again. Where time is coarse, one that is left without speed and force would be found again
- * and again; so is one that has only just opened, whose gap the other constraints, kept behind the event, have taken below 0.
+ * True if the penetration of an open contact has to be projected out. An importer locates contacts late, and would not
+ * see a zero of an indicator that stays negative. At an event this concerns a contact without speed, or one that has
+ * just opened and that the projection onto other constraints has left penetrated; it would be located again and again.
  */
 static bool has_to_lift(const struct Settlement *settlement, size_t contact) {
   size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
@@ -314,7 +341,7 @@ static bool has_to_lift(const struct Settlement *settlement, size_t contact) {
   return settlement->occasion == IN_EXCHANGE || (settlement->occasion == AT_EVENT && comes_again);
 }
 
-/* Moves all of these apart at once; *lifts where there is any. False where that cannot be. */
+/* Projects the penetrations of all such contacts to 0; *lifts if there are any. False if the projection fails. */
 static bool lift(struct Settlement *settlement, bool *lifts) {
   *lifts = false;
   if (settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
@@ -331,7 +358,7 @@ static bool lift(struct Settlement *settlement, bool *lifts) {
   return done;
 }
 
-/* Takes back a move of the start in which a fixed coordinate had a part. Whether there was any. */
+/* Undoes a projection at the start that has moved a fixed coordinate. True if it has. */
 static bool undo_move_of_fixed(struct Settlement *settlement) {
   const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
   bool moves = false;
@@ -341,13 +368,16 @@ static bool undo_move_of_fixed(struct Settlement *settlement) {
   return moves;
 }
 
-/* Whether the gap of a contact is below 0 by what rounded start values may make of it. */
+/* True if the penetration of a contact may come from rounded start values. */
 static bool is_rounded(const struct Settlement *settlement, size_t contact) {
   double gap = contact_value(settlement, contact, CONTACT_GAP);
   return gap < -largest_penetration && gap >= -rounded_start * largest_scale(settlement->state, 0);
 }
 
-/* Moves apart the contacts that rounded start values penetrate. Whether there were any that can be moved. */
+/*
+ * Projects out penetrations by rounded start values; takes_part keeps the most negative gap of each contact. True if
+ * there are any, and they can be moved.
+ */
 static bool part_at_start(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool parts = false;
@@ -382,7 +412,10 @@ static bool lift_start(struct Settlement *settlement) {
   return count == 0 || settlement_push(settlement);
 }
 
-/* The closed contact that pulls most, or whose force has just gone; contact_count for none. */
+/*
+ * Returns the closed contact that pulls most; else one whose force has just reached 0, once an event; contact_count for
+ * none.
+ */
 static size_t find_pulling(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t found = switches->contact_count;
@@ -390,7 +423,7 @@ static size_t find_pulling(const struct Settlement *settlement) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!contact_is_closed(settlement, i)) continue;
     double force = contact_force(settlement, i);
-    /* An importer comes to a zero or past it, and does not tell whose. */
+    /* An importer stops at a zero or beyond it, and does not say of which indicator. */
     bool is_reached = is_hit(settlement, contact_indicator(settlement->switches, i)) ||
                       (settlement->occasion == IN_EXCHANGE && force <= 0.0);
     bool parts = is_reached && settlement->was_opened[i] == 0.0 && !settlement->jumped;
@@ -402,7 +435,10 @@ static size_t find_pulling(const struct Settlement *settlement) {
   return found;
 }
 
-/* Logs a contact whose gap, or its rate where it touches, is not finite; NULL where there is none, else the reason to refuse it. */
+/*
+ * Logs a contact whose gap, or whose rate where it touches, is not finite. Returns NULL if there is none, else the
+ * reason to stop.
+ */
 static const char *check_values(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->contact_count; i++) {

@@ -1,6 +1,11 @@
 /*
- * Dry friction: which slides, which sticks. Of frictions the first that cannot stay as it is switches, by Murty's least-index
- * method: it comes to an end, but the first ones may switch often where many act on one another.
+ * Modes of dry friction along lines: 0 if it sticks, else the sign of its velocity. By Coulomb's law a friction sticks
+ * while the force of its constraint is within the stiction. It slides while its velocity, or at rest its acceleration,
+ * has the sign of its mode. The accelerations for given modes make this a complementarity problem, which is solved by
+ * Murty's least-index method: each round switches the first friction that disagrees, and the accelerations are
+ * evaluated anew. For linear complementarity problems with a P-matrix it ends (Cottle, Pang and Stone, The Linear
+ * Complementarity Problem, chapter 4). Beyond FRICTION_FLIP_LIMIT switches of one friction jams.c tries all modes; if
+ * that fails too, the motion ends with a message.
  */
 #include "contacts/frictions.h"
 
@@ -16,35 +21,35 @@
 #include "evaluation/services.h"
 #include "events/continuity.h"
 
-/* In s: a rate that does not show in the velocity within this time may be rounding, where another constraint holds too. */
+/* In s: a rate that would change the velocity by less than its rounding error within this time may be rounding. */
 static const double shortest_slip = 1e-4;
 
-/* In units of what rounding makes of it: a force below it is told by rounding alone. */
+/* In rounding error bounds: the sign of a smaller force is not determined. */
 static const double least_certainty = 4.0;
 
 const double friction_held_share = 1e-6;
 
-/* Less of the largest force is rounding. */
+/* Relative to the largest constraint force: smaller forces may be left by cancellation. */
 static const double negligible_force = 1e-12;
 
-/* In units of the forces while a friction sticks: larger ones while it slides are those of a jam. */
+/* Relative to the forces while the friction sticks: larger forces while it slides are those of a jam. */
 static const double jammed_force = 1e6;
 
 static const char neither[] = "a friction chatters";
 
-/* What decides on the mode of a friction. */
+/* What determines the mode of a friction. began: its mode before the event. */
 struct FrictionState {
   double mode, began, velocity, rate;
-  double force;                                /* of its constraint, where it sticks: towards the nearer limit */
+  double force;                                /* of its constraint, if it sticks: towards the nearer limit */
   double direction;                            /* -1 or 1: in which it slides, or would slide beyond that limit */
   double stiction;                             /* in this direction */
-  double noise, noise_of_rate, noise_of_force; /* what rounding may make of them */
+  double noise, noise_of_rate, noise_of_force; /* rounding error bounds */
   double largest_rate;                         /* since the start of the event */
-  bool is_hit;                                 /* its zero was found, or its limit reached */
-  bool is_first;                               /* it has not switched in this settlement */
-  bool may_jump;                               /* velocities have jumped, or the simulation starts */
-  bool is_moving;                              /* by more than rounding */
-  bool has_no_force;                           /* as of mu = 0: on which side it would stick is rounding */
+  bool is_hit;                                 /* the zero of its velocity was located, or its limit was reached */
+  bool is_first;                               /* it has not switched in this event resolution */
+  bool may_jump;                               /* its velocity may have jumped, or the simulation starts */
+  bool is_moving;                              /* faster than rounding errors */
+  bool has_no_force;                           /* as with mu = 0: rounding would decide on sticking */
 };
 
 static void take_direction(const struct Settlement *settlement, size_t friction, struct FrictionState *state) {
@@ -55,13 +60,13 @@ static void take_direction(const struct Settlement *settlement, size_t friction,
   double middle = 0.5 * (value[FRICTION_STICTION] - value[FRICTION_STICTION_BACK]);
   state->direction = state->mode != 0.0 ? state->mode : force > middle ? 1.0 : -1.0;
   size_t stiction = state->direction < 0.0 ? FRICTION_STICTION_BACK : FRICTION_STICTION;
-  state->stiction = fmax(value[stiction], 0.0); /* where mu |N| passes through 0 it may be less by rounding */
+  state->stiction = fmax(value[stiction], 0.0); /* may be negative by rounding where mu |N| passes through 0 */
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
   state->noise_of_force = settlement->force_noise[friction] + noise[stiction];
 }
 
-/* True if a velocity is further from 0 than a kink in it, or an error of a method, takes it. */
+/* True if a velocity is larger than a kink of the constraints or an error of the method may make it. */
 static bool is_off_zero(const struct Settlement *settlement, double velocity) {
   double scale = largest_scale(settlement->state, lagrangian.coordinate_count);
   return fabs(velocity) > continuity_allowed_share(settlement) * scale;
@@ -85,19 +90,19 @@ static struct FrictionState friction_state(const struct Settlement *settlement, 
                                     settlement->jumped || settlement->occasion == AT_START ||
                                     (may_turn_gaps(settlement) && is_off_zero(settlement, value[FRICTION_VELOCITY]))};
   take_direction(settlement, friction, &state);
-  /* Of what passes through 0 the next moment has a force. */
+  /* A friction force that varies passes through 0 and is nonzero the next moment. */
   bool may_stay = settlement->switches->rests_on != NULL || !settlement->switches->friction_varies;
   state.has_no_force = may_stay && value[FRICTION_STICTION] == 0.0 && value[FRICTION_FORCE] == 0.0 &&
                        value[FRICTION_STICTION_BACK] == 0.0 && value[FRICTION_FORCE_BACK] == 0.0;
-  /* Of a velocity that is 0 the same is rounding, whether it sticks or slides. */
+  /* Rounding of the time, at the largest rate of this velocity. */
   double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
-  /* Where it has come to 0, what is left of it by rounding does not count, until velocities jump. */
+  /* Once the velocity has reached 0, its rest counts as rounding, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
   state.is_moving = fabs(state.velocity) > state.noise + noise_in_time && (state.may_jump || !is_at_zero);
   return state;
 }
 
-/* Of one without force: nothing sticks. */
+/* Returns the mode of a friction without force, which never sticks. */
 static double mode_without_force(const struct FrictionState *state) {
   double next = state->is_moving                           ? state->velocity
                 : fabs(state->rate) > state->noise_of_rate ? state->rate
@@ -107,8 +112,9 @@ static double mode_without_force(const struct FrictionState *state) {
 }
 
 /*
- * Of one that passes through 0 where it has no hold of what moves, as that of a slider at the dead centre of its crank: no force
- * stops it there, and one that would is rounding. 0 of others.
+ * Returns the mode of a friction that passes through 0 because it cannot stop the motion, such as a slider at the dead
+ * centre of its crank: its rate is the same while it sticks, and its constraint force is a rounding error. 0 for
+ * others.
  */
 static double mode_without_hold(const struct FrictionState *state) {
   bool goes_on = fabs(state->rate) > friction_held_share * state->largest_rate,
@@ -120,17 +126,17 @@ static double mode_without_hold(const struct FrictionState *state) {
   return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
-/* Of one that sticks. */
+/* Returns the mode of a friction that sticks: 0, or the direction in which it begins to slide. */
 static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
   double passing = mode_without_hold(state);
   if (passing != 0.0) return passing;
-  /* An importer comes past the limit: at the limit itself it sticks; so does what has just come to rest at it by rounding. */
+  /* At the limit a friction sticks; an importer stops beyond it. After coming to rest there rounding may exceed it. */
   double limit = state->stiction + (state->is_hit && !state->is_first ? state->noise_of_force : 0.0);
   bool slips = state->force > limit || (state->is_hit && state->is_first && !settlement->jumped);
   return slips ? state->direction : 0.0;
 }
 
-/* Of one that slides, at a velocity that has not jumped. */
+/* Returns the mode of a friction that slides at a velocity that has not jumped. */
 static double mode_from_sliding(const struct Settlement *settlement, const struct FrictionState *state) {
   bool turns = (state->is_moving && state->mode * state->velocity < 0.0) || state->is_hit;
   if (state->is_moving && !turns) return state->mode;
@@ -140,14 +146,14 @@ static double mode_from_sliding(const struct Settlement *settlement, const struc
   return leaves ? state->mode : 0.0;
 }
 
-/* The mode in which a friction goes on; it is the present one where nothing speaks against it. */
+/* Returns the mode that agrees with Coulomb's law; the present one if nothing contradicts it. */
 static double friction_mode(const struct Settlement *settlement, const struct FrictionState *state) {
   if (state->has_no_force) return mode_without_force(state);
   if (state->is_moving && state->may_jump) return state->velocity > 0.0 ? 1.0 : -1.0;
   return state->mode == 0.0 ? mode_from_rest(settlement, state) : mode_from_sliding(settlement, state);
 }
 
-/* By how many times rounding it leaves its mode. */
+/* Returns by how many rounding error bounds a friction leaves its mode. */
 static double certainty_of(const struct FrictionState *state) {
   if (state->is_moving) return INFINITY;
   double excess = state->force - state->stiction;
@@ -155,8 +161,9 @@ static double certainty_of(const struct FrictionState *state) {
 }
 
 /*
- * Whether it would go back to the mode that it has just left, which it left more clearly: what a contact holds slides without moving
- * where that and its friction would share more than this can carry, and a rate is rounding there.
+ * True if the friction would return to the mode that it has just left, by a larger margin. A friction on a contact that
+ * constrains its velocity slides without moving if both could not carry their common load; its rate is a rounding
+ * error.
  */
 static bool would_go_back(const struct Settlement *settlement, size_t friction, double mode, double certainty) {
   return settlement->last.friction == friction && settlement->last.mode == mode &&
@@ -219,7 +226,7 @@ void frictions_release(struct Settlement *settlement) {
   }
 }
 
-/* How many of the constraints that hold follow from others; SIZE_MAX where that cannot be told. */
+/* Returns the number of active constraints that depend on others; SIZE_MAX if that cannot be determined. */
 static size_t count_redundant(struct Settlement *settlement) {
   struct Instance *instance = settlement->instance;
   if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
@@ -243,19 +250,19 @@ bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *h
   *mode = kept;
   settlement->instance->prepared_is_stale = true;
   *held = with >= without + velocities;
-  /* What follows, as the way back to the constraints, is to find the values of the modes as they are. */
+  /* Later steps, such as projections, need the values for the restored modes. */
   bool is_restored = evaluate_prepare(settlement->instance) == STATUS_DONE;
   return is_restored && with != SIZE_MAX && without != SIZE_MAX;
 }
 
-/* Whether the velocity of one that slides only passes through 0. */
+/* True if the velocity of a sliding friction only passes through 0. */
 static bool leaves_rest(const struct Settlement *settlement, size_t friction) {
   size_t rate = friction_place(settlement->switches, friction, FRICTION_RATE);
   double least = fmax(settlement->noise[rate], friction_held_share * settlement->largest[rate]);
   return fabs(settlement->value[rate]) > least;
 }
 
-/* Of frictions whose forces are not determined, one that pushes as it would sliding may be at rest. */
+/* Reports as sticking what slides without moving: others constrain its velocity, and forces are not unique. */
 bool frictions_tell(struct Settlement *settlement, bool *again) {
   const struct SwitchTable *switches = settlement->switches;
   double slowest = resting_speed(settlement);
@@ -270,7 +277,7 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
          may_rest = mode != 0.0 && !facts->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
     if (!is_planar) may_rest &= !leaves_rest(settlement, i);
     if (may_rest && !frictions_find_held(settlement, i, &held)) return false;
-    if (is_planar) i++; /* the one across is told with it */
+    if (is_planar) i++; /* the friction across has the same mode */
     if (held) mode = 0.0;
     if (mode == mode_of(settlement, facts->told)) continue;
     settlement_set_mode(settlement, facts->told, mode);
@@ -279,7 +286,7 @@ bool frictions_tell(struct Settlement *settlement, bool *again) {
   return true;
 }
 
-/* What rounding makes of forces that the largest one cancels in. */
+/* Returns the rounding error of forces in which the largest one cancels. */
 static double rounding_left_of_forces(const struct Settlement *settlement) {
   double largest = 0.0;
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
@@ -287,7 +294,7 @@ static double rounding_left_of_forces(const struct Settlement *settlement) {
   return negligible_force * largest;
 }
 
-/* The part of value[] with the force in the direction in which it slides; at rest the smaller of both. */
+/* Returns the part of value[] with the force in the direction of sliding; at rest that of the smaller force. */
 static size_t weaker_force(const struct Settlement *settlement, size_t friction) {
   const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
   double mode = mode_of(settlement, settlement->switches->frictions[friction].mode);
@@ -295,7 +302,7 @@ static size_t weaker_force(const struct Settlement *settlement, size_t friction)
   return is_back ? FRICTION_FORCE_BACK : FRICTION_FORCE;
 }
 
-/* Moves all of the state by the tolerance, in one of two patterns. */
+/* Perturbs all of the state by the tolerance, in one of two patterns. */
 static void err_by_tolerance(const struct Settlement *settlement, bool otherwise, double *state) {
   double share = settlement->instance->situation->tolerance;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
@@ -305,8 +312,8 @@ static void err_by_tolerance(const struct Settlement *settlement, bool otherwise
 }
 
 /*
- * Whether a value differs from 0 by no more than an error of the tolerance in the state makes of it, as mu |N| does where N
- * passes through 0: its piece ends there up to such an error.
+ * True if errors of the tolerance in the state can make this value 0, such as mu |N| where N passes through 0 and its
+ * branch has not switched yet.
  */
 static bool is_within_error(struct Settlement *settlement, size_t place) {
   double most = 0.0, *value = settlement->other_noise;
@@ -318,7 +325,7 @@ static bool is_within_error(struct Settlement *settlement, size_t place) {
   return fabs(settlement->value[place]) <= least_certainty * most;
 }
 
-/* Friction that would push along the velocity is a mistake, as of the sign of a force that it follows from. */
+/* A negative friction force is a mistake of the model, such as a wrong sign of a force in it. */
 const char *frictions_check(struct Settlement *settlement) {
   double rounding = rounding_left_of_forces(settlement);
   for (size_t i = 0; i < settlement->switches->friction_count; i++) {
@@ -333,7 +340,9 @@ const char *frictions_check(struct Settlement *settlement) {
   return NULL;
 }
 
-/* True if the force of a friction, and the indicator of a branch if there is one, depend on the force of a constraint. */
+/*
+ * True if the force of a friction, and the indicator of a branch if there is one, depend on the force of a constraint.
+ */
 static bool follows_from(struct Settlement *settlement, size_t friction, size_t branch, size_t constraint) {
   const double *without = settlement->value, *with = settlement->other_noise;
   size_t place = friction_place(settlement->switches, friction, weaker_force(settlement, friction));
@@ -344,7 +353,7 @@ static bool follows_from(struct Settlement *settlement, size_t friction, size_t 
   return turns && with[place] != without[place];
 }
 
-/* The largest force of a constraint; INFINITY where there are no accelerations. */
+/* Returns the largest constraint force; INFINITY if accelerations do not exist. */
 static double largest_force(struct Settlement *settlement) {
   double largest = 0.0;
   if (evaluate_prepare(settlement->instance) != STATUS_DONE) return INFINITY;
@@ -354,7 +363,7 @@ static double largest_force(struct Settlement *settlement) {
   return largest;
 }
 
-/* True if forces are bounded once the friction sticks, and are not, or hardly, while it slides. */
+/* True if forces are finite while the friction sticks, and infinite or much larger while it slides. */
 static bool is_freed_by_sticking(struct Settlement *settlement, size_t friction) {
   double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
   double sliding = largest_force(settlement);

@@ -1,4 +1,4 @@
-/* Dry friction: stick and slip, for struct FrictionLaws. Frictions in a plane are only reported and checked here. */
+/* Dry friction: stick and slip, for struct FrictionLaws. Frictions in planes are only reported and checked here. */
 #ifndef FRICTIONS_H
 #define FRICTIONS_H
 

@@ -1,7 +1,10 @@
 /*
- * Each contact leaves or presses, and each friction sticks or slides one way or the other. For each such combination the impulses
- * of what presses and of what sticks follow from linear equations; it is an outcome where they and the rates fulfil the law. Of
- * impulses that are shared in many ways some share has a friction at its limit, and is found as one that slides at a rate of 0.
+ * Enumerates the outcomes of an impact with frictions along lines, as active sets of its complementarity conditions:
+ * each contact opens or presses, each friction sticks or slides either way. In each of the 2^contacts 3^frictions
+ * combinations the impulses of what presses and of what sticks follow from rates of 0, by elimination; the others
+ * follow from Coulomb's law. The combination is an outcome if impulses and rates have the signs that it assumes; a
+ * singular one is skipped. If impulses are not unique, one of the solutions has a friction at its limit, and the
+ * combination finds it in which this friction slides at a rate of 0.
  */
 #include "contacts/impact_outcomes.h"
 
@@ -11,19 +14,19 @@
 #include "contacts/elimination.h"
 #include "contacts/impacts.h"
 
+/* Impulses up to which all combinations are tried: at most 3^8 = 6561. */
 enum { MOST_PUSHES = 8 };
 
-/* In units of the largest impulse: less is rounding. */
+/* Relative to the largest impulse, but at least to 1: violations below this are rounding errors. */
 static const double rounded_impulse = 1e-9;
 
-/* In units in which the mobility of each push by itself is 1. */
+/* Scaled such that W_ii = 1 for each impulse, and to a largest rate of 1. */
 struct Combination {
   const struct Pushes *pushes;
   double unit[MOST_PUSHES], rate[MOST_PUSHES], impulse[MOST_PUSHES];
-  double scale[MOST_PUSHES]; /* what makes impulses of these */
-  int way
-      [MOST_PUSHES]; /* of a contact: 1 where it presses; of a friction: 0 where it sticks, else the sign of its sliding */
-  size_t sought[MOST_PUSHES], sought_count; /* the pushes whose rates are to be 0 */
+  double scale[MOST_PUSHES]; /* factor from scaled to physical impulses */
+  int way[MOST_PUSHES];      /* contact: 1 if it presses, else 0; friction: sign of its sliding, 0 if it sticks */
+  size_t sought[MOST_PUSHES], sought_count; /* rows with a rate of 0, whose impulses are unknown */
   double equations[MOST_PUSHES * (MOST_PUSHES + 1)];
 };
 
@@ -36,7 +39,7 @@ static double mobility_between(const struct Combination *combination, size_t i, 
   return pushes->mobility[i * pushes->count + j] * combination->unit[i] * combination->unit[j];
 }
 
-/* What a contact's impulse of 1 lets a friction push. */
+/* Returns the friction limit by a unit impulse of a contact. */
 static double coefficient_of(const struct Combination *combination, size_t friction, size_t contact) {
   size_t contacts = combination->pushes->contact_count;
   double unit = combination->unit[friction];
@@ -59,7 +62,7 @@ static double rate_behind_in(const struct Combination *combination, size_t row) 
   return rate;
 }
 
-/* How the impulse of a push that is sought, with those of what slides on it, changes a rate. */
+/* Returns the change of a rate by a unit impulse that is sought, with the sliding frictions on it. */
 static double effect_in(const struct Combination *combination, size_t row, size_t push) {
   double sum = mobility_between(combination, row, push);
   for (size_t f = combination->pushes->contact_count;
@@ -99,7 +102,7 @@ static bool fulfils_law(const struct Combination *combination) {
   return is_fine;
 }
 
-/* Counts the ways like the digits of a number; false behind the last. */
+/* Advances to the next combination, as digits of a number; false after the last. */
 static bool next_ways(struct Combination *combination) {
   for (size_t i = 0; i < combination->pushes->count; i++) {
     if (combination->way[i]++ < 1) return true;

@@ -5,9 +5,9 @@
 #include "contacts/pushes.h"
 
 /*
- * True if other impulses also fulfil the law of impacts, as has_other_impulses of struct FrictionLaws. Tries all
- * combinations of contacts that open or press and frictions that stick or slide. False for more than eight impulses,
- * whose combinations are too many.
+ * True if other impulses also fulfil the complementarity conditions of the impact, as has_other_impulses of struct
+ * FrictionLaws. Tries all combinations of contacts that open or press and frictions that stick or slide. False for more
+ * than eight impulses, which have too many combinations.
  */
 bool impact_has_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                        const double *impulse);

@@ -1,12 +1,19 @@
 /*
- * The law of impacts. Of each contact that is hit, the impulse p and the rate of the gap behind it, u, fulfil
+ * Impulses of an impact, by Newton's law of restitution and Coulomb's law. The impulse p of each contact that is hit,
+ * and the rates of its gap before (u-) and after the impact (u+), fulfil
  *
- *   p >= 0,   u + e (rate before) >= 0,   p (u + e (rate before)) = 0,
+ *   p >= 0,   u+ + e u- >= 0,   p (u+ + e u-) = 0.
  *
- * and of each friction that rests on such contacts the impulse is at most mu p, is that where it slides behind the impact,
- * against the velocity, and what it takes to stick where it does not: one linear complementarity problem for all. Without
- * restitution it has a solution, which never gains energy; with e it may gain some (Kane's paradox). Then all
- * restitutions are lessened by one factor, as little as keeps the energy from growing.
+ * The impulse of a friction is within the limit mu p; it is at the limit, against the velocity, if it slides after the
+ * impact, and else what makes it stick. Frictions along lines are split into impulses along and against the velocity,
+ * with the sliding speed as a slack. This gives one linear complementarity problem (Anitescu and Potra, Nonlinear
+ * Dynamics 14, 1997), which Lemke's method solves. It is regularized and iterated by the proximal point method, so that
+ * impulses that are not unique stay small. Frictions in planes have cones, and need find_impulses of struct
+ * FrictionLaws instead (planes/cone_impulses.c).
+ *
+ * Without restitution there is a solution, and it gains no energy. With e it may gain some (Kane's paradox); then all
+ * restitutions are multiplied by the largest factor, found by bisection, that gains none. If no impulses are found, the
+ * step ends with a message.
  */
 #include "contacts/impacts.h"
 
@@ -21,34 +28,37 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
+/*
+ * Bisection steps for the factor of the restitutions, as many as digits of a double; iterations of the proximal method.
+ */
 enum { HALVINGS = 52, SOLUTIONS = 50 };
 
-/* Less energy than this share may be gained by rounding. */
+/* Energy gains below this fraction of the terms of the work are rounding errors. */
 static const double least_gain = 1e-13;
 
-/* Outcomes differ where what their impulses differ by makes more than this share of the energy that they make. */
+/* Outcomes differ if the difference of their impulses makes more than this fraction of their energies, from rest. */
 static const double differing_share = 1e-8;
 
-/* In units of the largest velocity: what moves less rests, but for rounding. */
+/* Relative to the largest velocity: impacts at lower rates are rounding errors at rest. */
 static const double resting_share = 1e-9;
 
 /*
- * What is added to the mobilities keeps impulses small where they are not determined; further solutions remove what it does
- * to them. Where rounding leads the way of the first astray, the next is tried.
+ * Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried: the next
+ * is used if Lemke's method fails with the one before because of rounding. Iterations remove their effect.
  */
 static const double regularizations[] = {1e-8, 1e-6, 1e-10, 1e-7};
 
 /*
- * In units in which the mobility of each push by itself is 1. Rows of the problem: the impulses of contacts, those of
- * frictions along their velocities, those against them, and how fast these slide.
+ * The linear complementarity problem, scaled such that W_ii = 1 for each impulse. Rows: impulses of contacts; those of
+ * frictions along their velocities; those against them; sliding speeds.
  */
 struct ImpactProblem {
   const struct Pushes *pushes;
   size_t count;
-  double *unit; /* of the impulse of each push */
+  double *unit; /* unit of each impulse: 1 / sqrt(W_ii), 0 if W_ii is 0 */
   double *matrix, *rate, *q, *z, *next, *work;
-  double *impulse; /* of each push */
-  double share;    /* of the restitutions, with which the impulses were sought last */
+  double *impulse; /* of each contact, then each friction */
+  double share;    /* factor of the restitutions of the last solution */
   void *block;
 };
 
@@ -57,7 +67,7 @@ static size_t first_row(const struct ImpactProblem *problem, size_t part) {
   return part == 0 ? 0 : pushes->contact_count + (part - 1) * pushes->friction_count;
 }
 
-/* The rows of a push, of which frictions have two. */
+/* Fills the elements of a pair of impulses; a friction has two rows, along and against its velocity. */
 static void fill_mobility(struct ImpactProblem *problem, size_t i, size_t j) {
   const struct Pushes *pushes = problem->pushes;
   size_t contacts = pushes->contact_count, frictions = pushes->friction_count, n = problem->count;
@@ -79,7 +89,7 @@ static void fill_friction(struct ImpactProblem *problem, size_t friction) {
     problem->matrix[slides * n + i] = pushes->coefficient[friction * contacts + i] * problem->unit[i] / unit;
 }
 
-/* False where a contact cannot be moved, or there is no memory. */
+/* Sets up the matrix. False if a contact cannot be moved, or memory is missing. */
 static bool create_problem(struct Settlement *settlement, const struct Pushes *pushes, struct ImpactProblem *problem) {
   size_t n = pushes->contact_count + 3 * pushes->friction_count, count = pushes->count;
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
@@ -110,8 +120,8 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
 }
 
 /*
- * The restitution of a contact; 0 where what bounces would be lost. The friction of a bounce that is cut short is then that
- * of the rest: together they push as much as all bounces to come.
+ * Returns the restitution of a contact; 0 if the bounce would be lost in errors. The friction of a bounce that is cut
+ * short is then that of rest, whose impulse equals the sum of all further bounces.
  */
 static double restitution_of(const struct Settlement *settlement, size_t contact) {
   double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
@@ -119,14 +129,14 @@ static double restitution_of(const struct Settlement *settlement, size_t contact
   return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;
 }
 
-/* What a share of the restitution makes of the rate of a push that is to be kept from falling below 0. */
+/* Returns the factor of a rate before the impact in its complementarity condition: 1 + share e if the gap closes. */
 static double rise_by_restitution(const struct Settlement *settlement, const struct Pushes *pushes, size_t push,
                                   double share) {
   double bounce = push < pushes->contact_count ? restitution_of(settlement, pushes->member[push]) : 0.0;
   return 1.0 + (pushes->rate[push] < 0.0 ? share * bounce : 0.0);
 }
 
-/* Rates that are to be kept from falling below 0, as shares of the largest. Returns this. */
+/* Fills the constant terms of the conditions, relative to the largest one. Returns this. */
 static double fill_rates(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
   double largest = 0.0;
@@ -142,7 +152,7 @@ static double fill_rates(const struct Settlement *settlement, struct ImpactProbl
   return largest;
 }
 
-/* Whether the next solution differs from the one before by more than rounding. */
+/* Stores the next iterate. True if the proximal term still changes it beyond rounding. */
 static bool take_next(struct ImpactProblem *problem, double regularization) {
   double change = 0.0, size = 0.0;
   for (size_t i = 0; i < problem->count; i++) {
@@ -153,7 +163,11 @@ static bool take_next(struct ImpactProblem *problem, double regularization) {
   return regularization * change > 0.1 * DBL_EPSILON * size;
 }
 
-/* Solves the problem until the regularization has no part in it any more. False where that cannot be. */
+/*
+ * Solves the problem by the proximal point method: Lemke's method for the matrix plus regularization, with q less
+ * regularization times the last iterate. Ends when that changes nothing, after SOLUTIONS at the latest. False if
+ * Lemke's method fails.
+ */
 static bool solve_regularized(struct ImpactProblem *problem, double regularization) {
   size_t n = problem->count, regular = first_row(problem, 3);
   bool is_solved = true, changes = true;
@@ -169,28 +183,28 @@ static bool solve_regularized(struct ImpactProblem *problem, double regularizati
   return is_solved;
 }
 
-/* The first friction among them that acts in a plane, as a row of the pushes; their number for none. */
+/* Returns the row of the first friction that acts in a plane; their number if there is none. */
 static size_t find_plane(const struct Settlement *settlement, const struct Pushes *pushes) {
   size_t row = pushes->contact_count;
   while (row < pushes->count && !is_in_plane(settlement->switches, pushes->member[row])) row++;
   return row;
 }
 
-/* The rates that are to be kept from falling below 0. */
+/* Fills the constant terms of the conditions, unscaled, for the contacts and frictions. */
 static void fill_plain_rates(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   for (size_t i = 0; i < pushes->count; i++)
     problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, problem->share);
 }
 
-/* The impulses where frictions act in planes, whose cones are no linear problem. */
+/* Finds the impulses with frictions in planes. Their conditions are not linear. */
 static bool find_impulses_in_planes(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   fill_plain_rates(settlement, problem);
   return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, problem->impulse);
 }
 
-/* The impulses with a share of the restitutions. False where there are none. */
+/* Finds the impulses with a factor of the restitutions. False if none are found. */
 static bool find_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
   problem->share = share;
@@ -206,7 +220,7 @@ static bool find_impulses(const struct Settlement *settlement, struct ImpactProb
   return is_solved;
 }
 
-/* Whether impulses do more work than rounding. */
+/* True if the work of the impulses is positive beyond rounding. */
 static bool gains_energy(const struct Pushes *pushes, const double *impulse) {
   double work = 0.0, size = 0.0;
   for (size_t i = 0; i < pushes->count; i++) {
@@ -218,7 +232,7 @@ static bool gains_energy(const struct Pushes *pushes, const double *impulse) {
   return work > least_gain * size;
 }
 
-/* Twice the energy of the motion that impulses, less a share of others, make of rest. */
+/* Returns p^T W p of p = impulse - share other: twice the energy of the motion that p makes from rest. */
 static double energy_made(const struct Pushes *pushes, const double *impulse, const double *other, double share) {
   double sum = 0.0;
   for (size_t i = 0; i < pushes->count; i++)
@@ -237,7 +251,7 @@ static bool is_fine(const struct Settlement *settlement, struct ImpactProblem *p
   return find_impulses(settlement, problem, share) && !gains_energy(problem->pushes, problem->impulse);
 }
 
-/* With the largest share of the restitutions that does not gain energy. */
+/* Finds the impulses with the largest factor of the restitutions that gains no energy, by bisection. */
 static bool find_fine_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, bool bounces) {
   if (!bounces) return find_impulses(settlement, problem, 0.0);
   if (is_fine(settlement, problem, 1.0)) return true;
@@ -257,7 +271,7 @@ static void add_impulses(struct Settlement *settlement, const struct Pushes *pus
       velocity[k] += impulse[i] * pushes->velocities[i * lagrangian.coordinate_count + k];
 }
 
-/* A contact that is hit alone, without friction. */
+/* Applies the impulse of one contact without friction: p = max(-(1 + e) u- / W, 0). */
 static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
   double bounce = bounces ? restitution_of(settlement, pushes->member[0]) : 0.0;
   double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
@@ -269,7 +283,7 @@ static bool take_one(struct Settlement *settlement, const struct Pushes *pushes,
   return true;
 }
 
-/* The first contact whose gap no impulse changes; their number for none. */
+/* Returns the first contact whose gap no impulse changes; their number if there is none. */
 static size_t find_fixed(const struct Pushes *pushes) {
   size_t row = 0;
   while (row < pushes->contact_count && pushes->mobility[row * pushes->count + row] > DBL_MIN) row++;
@@ -294,14 +308,14 @@ static void refuse_impact(const struct Settlement *settlement, const struct Push
                 settlement->time, switches->contacts[pushes->member[0]].name);
 }
 
-/* Whether all that is hit closes and slides as slowly as what rests: an impact by rounding alone. */
+/* True if all rates are those of rest: the impact is a rounding error. */
 static bool is_hit_at_rest(const struct Settlement *settlement, const struct Pushes *pushes) {
   double fastest = 0.0;
   for (size_t i = 0; i < pushes->count; i++) fastest = fmax(fastest, fabs(pushes->rate[i]));
   return fastest <= resting_share * largest_scale(settlement->state, lagrangian.coordinate_count);
 }
 
-/* Once, so that what bounces for long does not fill the log. */
+/* Warns at most once an instance that the impact has several outcomes. */
 static void tell_of_other_outcomes(const struct Settlement *settlement, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   const struct SwitchTable *switches = settlement->switches;

@@ -5,14 +5,14 @@
 #include "events/settlement.h"
 
 /*
- * Changes the velocities by the impulses of the contacts that take part; with their restitutions if bounces. False if
- * there are no such impulses.
+ * Changes the velocities by the impulses of the contacts that take part; by Newton's law of restitution if bounces,
+ * else without restitution. False, after logging the cause, if no impulses are found.
  */
 bool impacts_take(struct Settlement *settlement, bool bounces);
 
 struct Pushes;
 
-/* True if impulses make another motion than found, by more than rounding, and gain no energy. */
+/* True if impulses cause another motion than found, beyond rounding, and gain no energy. */
 bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const double *found);
 
 #endif

@@ -1,8 +1,11 @@
 /*
- * The friction of a worm follows from the size of the force of its gear, which follows from the friction: a complementarity
- * problem whose matrix need not be a P-matrix, so that switching one mode after another may go round without end (Painleve's
- * paradox). All combinations of the modes in question are tried: each friction at rest sticks or slides either way, each branch
- * has either sign. Combinations with the same accelerations are one motion.
+ * Finds the modes of frictions at rest by enumeration. The friction of a worm gear follows from the size of the tooth
+ * force, which follows from the friction: a complementarity problem whose matrix need not be a P-matrix, so that
+ * switching one mode after another may cycle (Painleve's paradox). This search follows such a cycle, once an event
+ * resolution. It tries all combinations of the modes in question: each friction at rest sticks or slides either way,
+ * each branch that forces decide on has either sign. Combinations with equal accelerations are one motion. The search
+ * ends at the second motion, and needs one evaluation of the accelerations for each of at most MOST_COMBINATIONS
+ * combinations.
  */
 #include "contacts/jams.h"
 
@@ -13,21 +16,22 @@
 #include "contacts/pushes.h"
 #include "evaluation/services.h"
 
+/* Combinations that are tried at most: those of six frictions. */
 enum { MOST_COMBINATIONS = 729 };
 
-/* Accelerations that differ by less of the largest are the same. */
+/* Accelerations that differ by less than this, relative to the largest, are equal. */
 static const double same_share = 1e-9;
 
 struct JamSearch {
   struct Settlement *settlement;
-  double *kept;        /* the accelerations of the motion that was found, in workspace */
-  size_t found;        /* the combination of that motion */
-  size_t combinations; /* how many there are */
-  int motions;         /* how many different ones were found: 2 for several */
+  double *kept;        /* accelerations of the motion that was found, in workspace */
+  size_t found;        /* combination of that motion */
+  size_t combinations; /* their number */
+  int motions;         /* different motions found; 2 for several */
   size_t friction;     /* the last one in question; friction_count for none */
 };
 
-/* The direction in which a friction along a line moves, by more than rounding; 0 of one at rest, NAN of others. */
+/* Returns the sign of the velocity of a friction along a line; 0 at rest within rounding, NAN for other frictions. */
 static double direction_of(const struct Settlement *settlement, size_t friction) {
   size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
   double velocity = settlement->value[place];
@@ -36,7 +40,10 @@ static double direction_of(const struct Settlement *settlement, size_t friction)
   return velocity < 0.0 ? -1.0 : 1.0;
 }
 
-/* Before the start all slide forwards: lets those that move slide as they do. The last of them; friction_count for none. */
+/*
+ * At the start, where all frictions slide forwards, sets moving frictions to the sign of their velocities. Returns the
+ * last one that changed; friction_count for none.
+ */
 static size_t turn_moving(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t turned = switches->friction_count;
@@ -53,16 +60,19 @@ static bool is_tried_branch(const struct Settlement *settlement, size_t branch) 
   return !settlement->switches->branches[branch].is_side && settlement->flips[branch] > 0.0;
 }
 
-/* Marks the branches that forces or accelerations decide on, which need not have switched yet. */
+/* Counts a switch of each branch whose indicator depends on forces or accelerations, so that it is tried. */
 static void mark_branches(struct Settlement *settlement) {
-  double *value = settlement->noise; /* found anew with each combination */
+  double *value = settlement->noise; /* recomputed for each combination */
   struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
   settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, value);
   for (size_t i = 0; i < settlement->switches->branch_count; i++)
     if (value[i] != settlement->value[i]) settlement->flips[i] = fmax(settlement->flips[i], 1.0);
 }
 
-/* Counts the combinations, and marks the frictions in takes_part. False where there are too many, or no friction is in question. */
+/*
+ * Counts the combinations, and marks the frictions in question in takes_part. False if there are too many combinations,
+ * or no friction is in question.
+ */
 static bool begin_search(struct JamSearch *search) {
   struct Settlement *settlement = search->settlement;
   const struct SwitchTable *switches = settlement->switches;
@@ -84,7 +94,7 @@ static bool begin_search(struct JamSearch *search) {
   return search->friction < switches->friction_count;
 }
 
-/* Sets the modes of a combination, whose digits they are. */
+/* Sets the modes of a combination: its digits, base 3 for frictions, then base 2 for branches. */
 static void set_combination(struct Settlement *settlement, size_t combination) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -110,7 +120,7 @@ static bool friction_agrees(const struct Settlement *settlement, size_t friction
          -force <= value[FRICTION_STICTION_BACK] + noise[FRICTION_STICTION_BACK] + rounding;
 }
 
-/* True if accelerations and forces are what the modes say. */
+/* True if accelerations and forces agree with the modes. */
 static bool combination_agrees(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool agrees = settlement_evaluate(settlement);
@@ -122,7 +132,7 @@ static bool combination_agrees(struct Settlement *settlement) {
   return agrees;
 }
 
-/* Takes a combination that agrees into the search. */
+/* Records a combination that agrees, unless its motion is the one that was found before. */
 static void take_motion(struct JamSearch *search, size_t combination) {
   const double *present = search->settlement->acceleration;
   double largest = 0.0, difference = 0.0;
@@ -144,7 +154,7 @@ static void log_several(const struct JamSearch *search) {
               settlement->time, settlement->switches->frictions[search->friction].name);
 }
 
-/* Rounds that follow take what was found as their own. */
+/* Sets the switch counters of what was tried to 1: later rounds treat these modes as chosen in this event. */
 static void count_frictions(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->friction_count; i++)

@@ -1,12 +1,13 @@
-/* Frictions at rest whose forces follow from constraint forces: the only motion that Coulomb's law allows. */
+/* Modes of frictions at rest whose forces follow from constraint forces, by Coulomb's law. */
 #ifndef JAMS_H
 #define JAMS_H
 
 #include "events/settlement.h"
 
 /*
- * Sets the modes of frictions at rest, and of branches that have switched, to the only consistent ones. False if there
- * are none, too many to try, or several motions, which it logs.
+ * Sets the modes of frictions at rest, and of branches that have switched, to those of the only consistent motion; once
+ * an event resolution. False if there is none, if there are too many combinations, if no branch depends on a force, or
+ * if there are several motions, which it logs.
  */
 bool jams_resolve(struct Settlement *settlement);
 

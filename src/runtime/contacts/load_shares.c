@@ -1,6 +1,9 @@
 /*
- * A body on more contacts than it needs rests on any of them alike. Which of them an event leaves open depends on the order in
- * which they closed, pulled and opened; the forces are to depend on the load alone, and to be the ones of least norm.
+ * Closes redundant contacts at rest. A body on more contacts than it needs rests on any sufficient set of them, and the
+ * set that an event leaves closed depends on the order in which contacts closed and opened. To make the forces depend
+ * on the load alone, all that touch at rest are closed; the equations of motion then have the constraint forces of
+ * least norm. Contacts among them that pull, or carry nothing, are opened one by one, the most negative force first (an
+ * active set method). It ends since each round opens one. If a closed contact still pulls, the modes stay as they were.
  */
 #include "contacts/load_shares.h"
 
@@ -11,13 +14,13 @@
 #include "contacts/resting_forces.h"
 #include "evaluation/evaluate.h"
 
-/* Gaps up to this are left by the projection of what holds. */
+/* Returns the size of a gap that the projection leaves open at a closed contact; larger for importers. */
 static double narrowest(const struct Settlement *settlement) {
   double share = settlement->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
   return share * largest_scale(settlement->state, 0);
 }
 
-/* Whether nothing slides on it. */
+/* True if no friction on the contact slides. */
 static bool is_held_aside(const struct Settlement *settlement, size_t contact, double slowest) {
   const struct SwitchTable *switches = settlement->switches;
   bool slides = false;
@@ -26,7 +29,10 @@ static bool is_held_aside(const struct Settlement *settlement, size_t contact, d
   return !slides;
 }
 
-/* Notes in takes_part what touches at rest and is open. Whether there is any, and anything closed that holds it. */
+/*
+ * Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any, and a closed contact
+ * carries load beside them.
+ */
 static bool find_idle(struct Settlement *settlement) {
   double narrow = narrowest(settlement), slowest = resting_speed(settlement);
   bool is_held = false, is_idle = false;
@@ -52,7 +58,7 @@ static void close_idle(struct Settlement *settlement) {
   }
 }
 
-/* What pulls most of those that were closed, or carries nothing; contact_count where each presses. */
+/* Returns the contact with the least force, of those that were closed here and do not press; contact_count for none. */
 static size_t find_useless(const struct Settlement *settlement) {
   size_t count = settlement->switches->contact_count, found = count;
   double largest = 0.0, least = INFINITY;
@@ -80,7 +86,9 @@ static bool any_pulls(const struct Settlement *settlement) {
   return pulls;
 }
 
-/* Closes those that take part, but for the ones that are useless then. Whether all that is closed presses. */
+/*
+ * Closes the contacts that take part and press. True if all closed contacts press then; else the caller restores modes.
+ */
 static bool close_useful(struct Settlement *settlement) {
   size_t count = settlement->switches->contact_count, useless;
   do {

@@ -7,13 +7,15 @@
 #include "evaluation/evaluate.h"
 #include "events/settlement.h"
 
-/* Returns the speed up to which a friction is at rest; larger for importers, which keep constraints less well. */
+/*
+ * Returns the speed up to which a friction counts as at rest; larger for importers, which keep constraints less well.
+ */
 static inline double resting_speed(const struct Settlement *settlement) {
   double share = settlement->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
   return share * largest_scale(settlement->state, lagrangian.coordinate_count);
 }
 
-/* Returns the speed of a friction in a plane. along: its first one. */
+/* Returns the speed of a friction in a plane. along: index of the first of its two frictions. */
 static inline double speed_in_plane(const struct Settlement *settlement, size_t along) {
   const double *value = settlement->value;
   return hypot(value[friction_place(settlement->switches, along, FRICTION_VELOCITY)],

@@ -8,9 +8,9 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
-/* A contact comes to rest where its next flight is not longer than the time can tell, in units of its last place. */
+/* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
 static const double shortest_flight = 1000.0;
-/* Below this share of the tolerance bounces are as high as the errors of some methods, which would keep them up. */
+/* In units of the method's error: bounces lower than this are lost in it, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
 bool is_touching(const struct Settlement *settlement, size_t contact) {
@@ -25,7 +25,7 @@ bool contact_is_at_rest(const struct Settlement *settlement, size_t contact) {
   return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
 }
 
-/* How high a bounce may be that is lost in the errors of the method; 0 for one that errs by rounding alone. */
+/* Returns the height of bounces that the method's error hides; 0 if rounding is the only error. */
 static double lost_height(const struct Settlement *settlement) {
   return settlement->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(settlement->instance);
 }
@@ -36,7 +36,7 @@ bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double 
   double start = settlement->instance->situation->start_time;
   double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
   if (rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * resolution * fall) return true;
-  /* Roundings leave it a little below the ground, importers more, and no flight that ends there has a further zero. */
+  /* Rounding, and even more an importer, leaves the gap slightly negative: a flight that ends there has no zero. */
   double depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   double lost = fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * settlement->value[gap]);
   return rate * rate <= 2.0 * fall * fmax(lost, lost_height(settlement));
@@ -83,7 +83,10 @@ static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTabl
   return row < pushes->contact_count ? switches->contacts[member].constraint : switches->frictions[member].constraint;
 }
 
-/* lever: count rows with the push of 1 along the coordinates. */
+/*
+ * Computes the effect of each unit impulse: in lever (count rows) the generalized impulses, rows of J, and in
+ * pushes->velocities M^-1 J^T; then their products W. False if M is singular.
+ */
 static bool respond_to_pushes(struct Settlement *settlement, struct Pushes *pushes, double *lever, double *impulse,
                               double *response) {
   struct Instance *instance = settlement->instance;
@@ -108,7 +111,7 @@ static bool respond_to_pushes(struct Settlement *settlement, struct Pushes *push
   return true;
 }
 
-/* The force of each friction grows linearly with those of the contacts. */
+/* Computes the friction limits by unit contact forces: differences to the limits without force, as these are linear. */
 static void find_coefficients(struct Settlement *settlement, struct Pushes *pushes, double *force, double *value) {
   struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
   size_t contacts = pushes->contact_count, n = lagrangian.coordinate_count;
@@ -119,7 +122,7 @@ static void find_coefficients(struct Settlement *settlement, struct Pushes *push
     for (size_t f = 0; f < pushes->friction_count; f++) {
       double sliding = value[friction_place(settlement->switches, pushes->member[contacts + f], FRICTION_FORCE)];
       if (i < contacts) pushes->coefficient[f * contacts + i] = sliding;
-      else /* without any force */
+      else /* without any contact force */
         for (size_t k = 0; k < contacts; k++)
           pushes->coefficient[f * contacts + k] = fmax(pushes->coefficient[f * contacts + k] - sliding, 0.0);
     }

@@ -1,6 +1,6 @@
 /*
- * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix J M^-1
- * J^T. Contacts come first, then the frictions that rest on them.
+ * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix
+ * W = J M^-1 J^T. Contacts come first, then the frictions that rest on them.
  */
 #ifndef PUSHES_H
 #define PUSHES_H
@@ -57,13 +57,16 @@ double sliding_share(const struct Settlement *settlement, size_t friction);
 /* True if the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
 
-/* True if the gap is 0 within rounding. */
+/* True if the gap is at most 0 within rounding, or its zero has been located at this event. */
 bool is_touching(const struct Settlement *settlement, size_t contact);
 
-/* True if the contact is closed, or touches and neither approaches nor opens. */
+/* True if the contact is closed, or touches and does not open faster than rounding. */
 bool contact_is_at_rest(const struct Settlement *settlement, size_t contact);
 
-/* True if the bounce of a contact that opens at this rate is smaller than the errors of rounding and of the method. */
+/*
+ * True if the bounce of a contact that opens at this rate is smaller than the errors of rounding and of the method, in
+ * its height or its duration.
+ */
 bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate);
 
 #endif

@@ -1,3 +1,11 @@
+/*
+ * Solves a = free + S F, a >= 0, F >= 0, F^T a = 0, in groups of contacts that S couples. If the symmetric part of S is
+ * positive definite, which Cholesky's factorization shows, the solution exists and is unique (Cottle, Pang and Stone,
+ * The Linear Complementarity Problem, chapter 3). Else, in groups of n <= COMBINED_LIMIT contacts, all 2^n active sets
+ * are tried: F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n n^3). Active sets with a
+ * singular matrix are skipped. Solutions with equal accelerations count as one motion. In larger groups Lemke's method
+ * finds one solution, if any; whether there are others stays unknown.
+ */
 #include "contacts/resting_forces.h"
 
 #include <math.h>
@@ -6,13 +14,16 @@
 #include "contacts/complementarity.h"
 #include "contacts/elimination.h"
 
-/* Of so many contacts that act on one another all combinations are tried out. */
+/* Contacts of a group up to which all active sets are tried: at most 4096. */
 enum { COMBINED_LIMIT = 12 };
 
-/* A combination whose friction leaves less of its mobility is about to lock. */
+/*
+ * S counts as positive definite if the pivots of its symmetric part exceed the square of this; without friction S_ii is
+ * 1.
+ */
 static const double locking_share = 1e-3;
 
-/* What acts on another by less than this does so by rounding. */
+/* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
 static const double least_coupling = 1e-13;
 
 static size_t work_count(size_t count) {
@@ -51,7 +62,7 @@ static bool act_on_each_other(const struct RestingForces *resting, size_t i, siz
   return fmax(fabs(resting->s[i * n + j]), fabs(resting->s[j * n + i])) > least_coupling;
 }
 
-/* The contact and all that act on it or on which it acts, by others in between too, in their order. */
+/* Collects the contacts that S couples with the first one, directly or through others, in ascending order. */
 static void collect_group(struct RestingForces *resting, size_t first) {
   size_t n = resting->count;
   double *is_member = resting->force;
@@ -75,7 +86,7 @@ static void collect_all(struct RestingForces *resting) {
   for (size_t i = 0; i < resting->count; i++) resting->group[i] = i;
 }
 
-/* Whether the symmetric part of S is positive, so that there is one motion: by Cholesky's factors. */
+/* True if the symmetric part of S is positive definite in the group: then the solution is unique. */
 static bool is_surely_one(const struct RestingForces *resting) {
   size_t n = resting->group_count;
   double *l = resting->work;
@@ -89,7 +100,7 @@ static bool is_surely_one(const struct RestingForces *resting) {
   return true;
 }
 
-/* The forces that hold the contacts of a combination. False where S is singular. */
+/* Finds the forces that keep a = 0 on an active set, a bit for each contact. False if S is singular there. */
 static bool find_forces(const struct RestingForces *resting, unsigned combination) {
   size_t member[COMBINED_LIMIT], count = 0;
   double *a = resting->work;
@@ -106,7 +117,7 @@ static bool find_forces(const struct RestingForces *resting, unsigned combinatio
   return true;
 }
 
-/* Whether the forces press, and no gap closes. */
+/* True if no force is negative and no gap closes. Stores the accelerations in motion. */
 static bool is_solution(const struct RestingForces *resting, double size) {
   bool is_fine = true;
   for (size_t i = 0; i < resting->group_count; i++) {
@@ -140,7 +151,7 @@ static void note_solution(const struct RestingForces *resting) {
   }
 }
 
-/* Tries all combinations of a group out. */
+/* Counts the motions by trying all active sets, up to the second motion; stores the first one. */
 static enum RestingSolutions count_motions(const struct RestingForces *resting, double size) {
   int count = 0;
   for (unsigned combination = 0; combination < 1u << resting->group_count && count < 2; combination++) {
@@ -151,7 +162,7 @@ static enum RestingSolutions count_motions(const struct RestingForces *resting, 
   return count == 0 ? NO_MOTION : count == 1 ? ONE_MOTION : SEVERAL_MOTIONS;
 }
 
-/* The forces of a group by Lemke's method, at free accelerations as shares of the largest. */
+/* Finds the forces of a group by Lemke's method, at free accelerations scaled to a size of 1. False if it fails. */
 static bool find_by_pivoting(const struct RestingForces *resting, double size) {
   size_t n = resting->group_count;
   double *matrix = resting->work, *q = matrix + n * n, *z = q + n;
@@ -180,9 +191,11 @@ enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool i
   if (is_solved && is_surely_one(resting)) return worst;
   for (size_t i = 0; i < resting->count; i++) {
     collect_group(resting, i);
-    if (resting->group[0] != i) continue; /* a group that was there before */
+    if (resting->group[0] != i) continue; /* this group was handled before */
     enum RestingSolutions solutions = solve_group(resting, is_solved, size);
-    /* What neither sinks nor pulls is a solution, though others may share its forces in another way, and rounding hide it. */
+    /*
+     * The present forces are a solution, even if rounding hides it among active sets that share the load differently.
+     */
     if (is_solved && solutions == NO_MOTION) solutions = ONE_MOTION;
     if (solutions > worst) worst = solutions;
   }

@@ -5,17 +5,17 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The problem, with S by rows, scaled to a diagonal of 1. */
+/* The problem, with S by rows; it is scaled such that its diagonal is 1 without friction, and less with it. */
 struct RestingForces {
   size_t count;
   double *s, *free;
   double *found, *found_force; /* accelerations and forces of the first solution */
   double *force, *motion;      /* of the present trial: forces, accelerations */
   double *work;
-  size_t *group, group_count; /* contacts that act on each other, but not on those of other groups */
+  size_t *group, group_count; /* rows coupled by S with each other, but with no others */
 };
 
-/* Ordered from best to worst. */
+/* Ordered from best to worst. PERHAPS_OTHERS: one was found. PERHAPS_NONE: none was found, but may exist. */
 enum RestingSolutions { ONE_MOTION, PERHAPS_OTHERS, SEVERAL_MOTIONS, PERHAPS_NONE, NO_MOTION };
 
 /* Forces and accelerations below this fraction of the largest free acceleration may be rounding errors. */
@@ -29,9 +29,9 @@ struct RestingForces resting_forces_in(void *block, size_t count);
 double largest_free_acceleration(const struct RestingForces *resting);
 
 /*
- * Determines whether the motion exists and is unique; stores the first solution in found unless the present forces are
- * one (is_solved). Among up to 12 contacts of a group all solutions are found. Among more it is the one of Lemke's
- * method, and whether it certainly is the only one.
+ * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
+ * solution. Else the first solution is stored in found and found_force. Groups of up to 12 contacts are enumerated up
+ * to a second solution. In larger groups Lemke's method finds one, and a sufficient condition decides on uniqueness.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);
 

@@ -1,7 +1,16 @@
 /*
- * The law of impacts with Coulomb's cone: of each friction in a plane the impulse has at most the size mu p, has it where it
- * slides behind the impact, opposite to its velocity there, and is what it takes to stick where it does not. Sweeps, in which one
- * push after the other takes its part at the impulses of the others, come near to such impulses, and Newton's method to them.
+ * Impulses p of an impact with Coulomb friction cones, by Newton's law of restitution. With the rates u = rate + W p:
+ *
+ *   contact:   u >= 0,  p >= 0,  u p = 0,
+ *   friction:  |p| <= mu p_contact,  and  p = -mu p_contact u / |u|  where u is not 0.
+ *
+ * Projected block Gauss-Seidel sweeps (each impulse in turn is projected with the others fixed) come near a solution;
+ * from there a semismooth Newton method is tried (cone_newton.c). A trial that does not converge continues the sweeps,
+ * LAW_SWEEPS more than the last time, underrelaxed in the second half. The best trial counts. It ends when the residual
+ * is small enough, after LAW_TRIALS at the latest. A sweep costs O(n^2). With friction convergence is not guaranteed:
+ * the search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
+ *
+ * For plane_forces.c the same conditions hold between forces and accelerations at rest.
  */
 #include "planes/cone_impulses.h"
 
@@ -14,22 +23,24 @@
 #include "evaluation/services.h"
 #include "planes/cone_newton.h"
 
+/* Trials; those of them that must reach law_holds; those from each start in the search for other impulses. */
 enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, OTHER_LAW_TRIALS = 2 };
 
-/* In each trial so many more. */
+/* Sweeps of the first trial, and how many more each further trial makes. */
 enum { LAW_SWEEPS = 10 };
 
-/* What of its part each push takes: where friction presses a contact together, all of it would go to and fro without end. */
+/* Relaxation factors of both halves of the trials: where friction presses a contact, full steps may oscillate. */
 static const double parts[] = {1.0, 0.3};
 
 /*
- * In units of the largest impulse: what is left of the law's equations where they hold. Where what sticks is at its limit, or where
- * impulses are small beside velocities, rounding leaves more. Where all that could stick is at its limit and would also just slide,
- * the impulses that do so are approached ever more slowly.
+ * Residuals relative to the largest impulse, as rates. law_holds ends the first trials. Rounding leaves up to
+ * law_nearly_holds where sticking frictions are at their limits or impulses are small beside rates; it ends the later
+ * trials. law_roughly_holds is accepted after the last trial: convergence is slow where frictions at their limits are
+ * about to slide.
  */
 static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_holds = 1e-5;
 
-/* Where other impulses are looked for from. */
+/* Directions of the friction impulses at which the search for other impulses starts. */
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
@@ -58,7 +69,7 @@ double cones_largest(const struct Cones *cones) {
   return largest;
 }
 
-/* What is left of the law's equations, as a share of the largest impulse, without what rounding makes of the rates. */
+/* Returns the residual relative to the largest impulse; 0 if it is a rounding error of the rates. */
 static double share_of_miss(const struct Cones *cones, double miss) {
   double fastest = 0.0;
   for (size_t i = 0; i < cones->pushes->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
@@ -88,7 +99,7 @@ static void sweep_contacts(struct Cones *cones, double part) {
   }
 }
 
-/* Of a push by itself; in a plane the larger eigenvalue of the mobility along and across. */
+/* Returns W_ii of a row; in a plane the larger eigenvalue of its 2 x 2 block. */
 static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) {
   size_t n = cones->pushes->count;
   const double *m = &cones->pushes->mobility[row * n + row];
@@ -97,7 +108,7 @@ static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) 
   return scale > DBL_MIN ? scale : 0.0;
 }
 
-/* False where a contact cannot be moved. */
+/* Fills the scales. False if a contact cannot be moved. */
 static bool fill_scales(struct Cones *cones) {
   bool moves = true;
   for (size_t row = 0; row < cones->pushes->count;) {
@@ -109,7 +120,10 @@ static bool fill_scales(struct Cones *cones) {
   return moves;
 }
 
-/* Sweeps on from where the ones before came to, first from swept; what Newton's method makes of that is tried. Returns the miss. */
+/*
+ * Makes trials, each with sweeps from where the sweeps before ended (first from swept), then Newton's method. Leaves
+ * the best impulses in cones->impulse, and returns their relative residual.
+ */
 static double come_to_law(struct Cones *cones, int trials, double *best, double *swept, double *work) {
   size_t bytes = cones->pushes->count * sizeof(double);
   double least = INFINITY, enough = law_holds;
@@ -126,7 +140,7 @@ static double come_to_law(struct Cones *cones, int trials, double *best, double 
   return least;
 }
 
-/* Room for cones, and for what they work with behind it; impulses NULL for some inside it. NULL where there is no memory. */
+/* Takes workspace for cones and what solves them; impulses in it if impulse is NULL. NULL if memory is missing. */
 static double *create_cones(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                             double *impulse, struct Cones *cones) {
   struct Instance *instance = settlement->instance;
@@ -141,7 +155,7 @@ static double *create_cones(const struct Settlement *settlement, const struct Pu
   return block + 2 * n;
 }
 
-/* Impulses that fulfil the law, but for so much as rounding makes of velocities, which the slowest impacts do not exceed by far. */
+/* Finds impulses whose residual is small, or a rounding error of velocities, as in the slowest impacts. */
 static bool fulfil_law(struct Cones *cones, double *best, double *swept, double *work) {
   double miss = come_to_law(cones, LAW_TRIALS, best, swept, work);
   return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->pushes->rounding;
@@ -158,7 +172,9 @@ bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes
   return is_done;
 }
 
-/* One contact alone is hit, as hard as the hardest, and its frictions push as much as they can in one direction. */
+/*
+ * Fills a start: one contact has the largest impulse, others none, and its frictions push to the limit in a direction.
+ */
 static void fill_start(struct Cones *cones, const double *found, size_t hit, const double *direction, double *start) {
   size_t contacts = cones->pushes->contact_count;
   memset(cones->impulse, 0, cones->pushes->count * sizeof *cones->impulse);

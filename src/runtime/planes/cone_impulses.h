@@ -4,7 +4,10 @@
 
 #include "contacts/pushes.h"
 
-/* Implements find_impulses of struct FrictionLaws. */
+/*
+ * Implements find_impulses of struct FrictionLaws. impulse[] holds the last trial if none are found. False also if a
+ * contact cannot be moved, or memory is missing.
+ */
 bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
                         double *impulse);
 

@@ -1,7 +1,15 @@
 /*
- * The law as equations (Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991): each push is what its own part of a sweep
- * would make of it, at impulses that stay. Their pieces are linear but for the directions of what slides. Where impulses are not
- * determined, some of them stay as they are.
+ * Semismooth Newton method for the conditions of an impact, u = rate + W p, in the form of Alart and Curnier (Comput.
+ * Methods Appl. Mech. Eng. 92, 1991): each impulse is a projection,
+ *
+ *   contact:   p = max(p - u / w, 0),
+ *   friction:  p = projection of p - u / w onto the disk of radius mu p_contact, along a line onto the interval,
+ *
+ * where w is cones->scale. A row is scaled to a rate: it is u where the projection changes nothing, w p where a contact
+ * opens, and w (p - limit direction) where a friction slides. The pieces are linear but for the directions of slip. The
+ * derivative is factored by elimination with complete pivoting, O(n^3) a step. Impulses that it does not determine keep
+ * their values. There is no line search: the method ends at the first step that does not reduce the residual enough,
+ * and undoes that step.
  */
 #include "planes/cone_newton.h"
 
@@ -11,16 +19,19 @@
 
 #include "planes/pivoting.h"
 
+/* Steps at most; few suffice once the pieces are right. */
 enum { NEWTON_LIMIT = 60 };
 
-/* A step that leaves more of what is missing is none; less of a pivot is rounding; so is what is missing, of the largest impulse. */
+/*
+ * A step must reduce the residual to less than this fraction. Smaller pivots, relative to the largest, count as 0.
+ * Smaller residuals, relative to the largest impulse as a rate, are rounding errors.
+ */
 static const double least_gain_of_step = 0.9, least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
 
 struct ConeNewton {
   struct Cones *cones;
   size_t n;
-  double *miss,
-      *slope; /* what is missing at the impulses, in units of rates, and its derivatives by scaled impulses, by rows */
+  double *miss, *slope; /* residual, as rates, and its derivatives by scaled impulses, by rows */
   double *step, *before, *column;
 };
 
@@ -32,7 +43,7 @@ static double *slope_row(const struct ConeNewton *newton, size_t row) {
   return newton->slope + row * newton->n;
 }
 
-/* The derivatives of the rate of a push. */
+/* Fills a row with the rate after the impact and its derivatives. */
 static void fill_rate(const struct ConeNewton *newton, size_t row) {
   const struct Cones *cones = newton->cones;
   double *slope = slope_row(newton, row);
@@ -41,7 +52,7 @@ static void fill_rate(const struct ConeNewton *newton, size_t row) {
     slope[j] = cones->scale[j] > 0.0 ? cones->pushes->mobility[row * newton->n + j] / cones->scale[j] : 0.0;
 }
 
-/* An impulse that is to be 0, or cannot be told. */
+/* Fills a row for an impulse that is to be 0; with a scale of 0 the impulse is not determined. */
 static void fill_nothing(const struct ConeNewton *newton, size_t row) {
   memset(slope_row(newton, row), 0, newton->n * sizeof(double));
   slope_row(newton, row)[row] = 1.0;
@@ -55,8 +66,8 @@ static void fill_law_of_contact(const struct ConeNewton *newton, size_t row) {
 }
 
 /*
- * A friction that slides with the wish w, of which it gets as much as the limit: its rows, which hold the rates, become those of
- * impulse - limit w/|w|.
+ * Fills the rows of a sliding friction. wish: scaled impulse before its projection, of this size. The rows, which hold
+ * the rates, become those of impulse - limit wish / size.
  */
 static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t rows, const double *wish, double size,
                          double limit) {
@@ -91,7 +102,7 @@ static void fill_law_of_friction(const struct ConeNewton *newton, size_t row, si
   if (size > cones->scale[row] * limit) fill_sliding(newton, row, rows, wish, size, limit);
 }
 
-/* Returns the largest of what is missing, INFINITY where any is no number. */
+/* Fills all rows. Returns the largest residual; INFINITY if any is not finite. */
 static double fill_equations(const struct ConeNewton *newton) {
   double most = 0.0;
   for (size_t row = 0; row < newton->n;) {
@@ -105,7 +116,7 @@ static double fill_equations(const struct ConeNewton *newton) {
   return most;
 }
 
-/* The step that leaves nothing missing, by Gauss elimination with full pivoting; 0 where it is not determined. */
+/* Finds the Newton step by elimination with complete pivoting; components that are not determined are 0. */
 static void find_step(const struct ConeNewton *newton) {
   size_t n = newton->n, rank = 0;
   double largest = 0.0;

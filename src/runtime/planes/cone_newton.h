@@ -1,4 +1,4 @@
-/* Newton's method for the law of impacts with Coulomb's friction cone. */
+/* Semismooth Newton method for impulses with Coulomb friction cones. */
 #ifndef CONE_NEWTON_H
 #define CONE_NEWTON_H
 
@@ -7,7 +7,7 @@
 /* Returns the numbers of workspace for n rows. */
 size_t cone_newton_work_count(size_t n);
 
-/* Improves the impulses as long as the residual of the law decreases. Returns the residual, as a rate. */
+/* Improves the impulses while each step reduces the residual by at least 10 %. Returns the residual, as a rate. */
 double cone_newton(struct Cones *cones, double *work);
 
 #endif

@@ -1,4 +1,4 @@
-/* The law of impacts with Coulomb's friction cone (cone_impulses.c). */
+/* Impulses of an impact with Coulomb friction cones: the problem of cone_impulses.c. */
 #ifndef CONES_H
 #define CONES_H
 
@@ -7,15 +7,17 @@
 struct Cones {
   const struct Settlement *settlement;
   const struct Pushes *pushes;
-  const double *rate; /* of each impulse, before the impact */
+  const double *rate; /* of each row, before the impact; of contacts times 1 + e */
   double *impulse;
-  double *scale; /* change of the own rate by each unit impulse, in a plane the largest; 0 if there is none */
+  double *scale; /* change of the own rate by a unit impulse, in a plane the larger eigenvalue; 0 if there is none */
 };
 
-/* Returns the rate of an impulse after the impact. */
+/*
+ * Returns rate + W impulse of a row: what is complementary to the impulse, for contacts with e times the rate before.
+ */
 double cones_rate_behind(const struct Cones *cones, size_t row);
 
-/* Returns the friction limit, from the impulses of the contacts. */
+/* Returns the friction limit of a row by the impulses of the contacts. */
 double cones_limit(const struct Cones *cones, size_t row);
 
 /* Returns the number of rows of the impulse at a row: 2 for a friction in a plane. */

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-/* A matrix by rows, and the original index of each column, since columns are exchanged. */
+/* A matrix by rows; order: the original index of each column, since columns are exchanged. */
 struct Pivoting {
   size_t rows, columns;
   double *matrix, *order;

@@ -1,7 +1,10 @@
 /*
- * From rest, accelerations and forces fulfil the law of impacts, for accelerations in place of rates: a contact presses or parts,
- * and a friction pushes against its acceleration with all that it may, or has none. What slides faster pushes along its own
- * direction with the contacts that it rests on.
+ * Forces F of all contacts at rest, and of the frictions in planes at rest on them, at once. With the accelerations
+ * a = free + W F they fulfil the conditions of an impact in cone_impulses.c, for accelerations in place of rates: a
+ * contact presses or opens, and a friction sticks or is at its limit against its acceleration. Faster frictions slide
+ * along their velocities; their forces are proportional to those of the contacts, and are eliminated from W. The
+ * solution sets the modes. This is tried once an event resolution, if frictions that switch one after another do not
+ * come to an end, or if no directions of slip are found.
  */
 #include "planes/plane_forces.h"
 
@@ -12,23 +15,23 @@
 #include "evaluation/services.h"
 #include "planes/cone_impulses.h"
 
-/* In units of the largest: accelerations that are none, and forces. */
+/* Relative to the largest acceleration: accelerations, also of forces, below this are rounding errors. */
 static const double least_force_share = 1e-9;
 
-/* Rows as of the pushes: the accelerations without their forces, and these; then with them. */
+/* Rows as in pushes: accelerations without these forces, the forces, and the accelerations with them. */
 struct PlaneForces {
   struct Settlement *settlement;
   struct Pushes pushes;
   double *rate, *force, *behind;
 };
 
-/* Whether it is, or may be brought to rest. What rests on an open contact moves as it does. */
+/* True if it is at rest or may be brought to rest. A friction on an open contact moves with it. */
 static bool is_at_rest(const struct Settlement *settlement, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS || !plane_moves(state)) return true;
   return state->has_force && plane_is_slow(settlement, state);
 }
 
-/* False where that cannot be. */
+/* Lets slow frictions stick, and projects the velocities. False if that fails. */
 static bool stop_slow(struct Settlement *settlement) {
   bool moves = false;
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
@@ -40,7 +43,7 @@ static bool stop_slow(struct Settlement *settlement) {
   return !moves || settlement->occasion == AT_START || settlement_push(settlement);
 }
 
-/* All but frictions along lines that stick, which hold as they do. */
+/* Selects contacts at rest and frictions, but for frictions along lines that stick: those stay active constraints. */
 static void choose_pushes(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->contact_count; i++)
@@ -51,7 +54,7 @@ static void choose_pushes(struct Settlement *settlement) {
   }
 }
 
-/* The pushes, and the accelerations without them. */
+/* Computes the Delassus matrix, and the accelerations without the forces; restores the modes. */
 static bool find_free(struct PlaneForces *forces) {
   struct Settlement *settlement = forces->settlement;
   const struct SwitchTable *switches = settlement->switches;
@@ -75,7 +78,7 @@ static bool slides(const struct PlaneForces *forces, size_t row) {
   return !is_at_rest(forces->settlement, &state);
 }
 
-/* What slides pushes with each contact, and has no push of its own. */
+/* Eliminates sliding frictions: their forces are added to the effects of the contacts, and their rows become 0. */
 static void join_sliding(struct PlaneForces *forces) {
   const struct Pushes *pushes = &forces->pushes;
   size_t n = pushes->count, contacts = pushes->contact_count;
@@ -102,7 +105,7 @@ static void fill_rates_of_planes(struct PlaneForces *forces) {
   }
 }
 
-/* The accelerations with the forces. Returns the largest of all that they add up from. */
+/* Computes the accelerations with the forces. Returns the largest term in them. */
 static double fill_behind(struct PlaneForces *forces) {
   size_t n = forces->pushes.count;
   double largest = 0.0;
@@ -118,7 +121,7 @@ static double fill_behind(struct PlaneForces *forces) {
   return largest;
 }
 
-/* One that neither presses nor parts stays as it is: others may share its force. */
+/* Sets the contacts. One that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
   struct Settlement *settlement = forces->settlement;
   const struct Pushes *pushes = &forces->pushes;
@@ -147,7 +150,7 @@ static void set_planes(struct PlaneForces *forces, double none) {
     else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
       plane_head(settlement, &state, &forces->behind[row]);
     else plane_stick(settlement, &state);
-    row++; /* the one across goes with it */
+    row++; /* the friction across has the same mode */
   }
 }
 
@@ -164,7 +167,7 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   forces->behind = block + 2 * n;
   fill_rates_of_planes(forces);
   join_sliding(forces);
-  forces->pushes.rounding = 0.0; /* it is that of velocities */
+  forces->pushes.rounding = 0.0; /* its unit is that of velocities, not of accelerations */
   bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
   if (is_done) {
     double none = least_force_share * fill_behind(forces);

@@ -1,6 +1,13 @@
 /*
- * Coulomb's friction in a plane. While it slides, its force is opposite to the velocity; where this has become small, it is
- * asked whether it can stick. From rest it slides along a heading until the velocity turns away from it.
+ * Coulomb friction in planes. While it slides its force is kinetic, against the velocity u; while it sticks its force
+ * is |f| <= stiction. The zero u = 0 of a velocity in a plane cannot be located by a sign. Therefore a friction is
+ * tried to stick once its speed falls to a small value that depends on the tolerance (plane_stops.c). Beyond its
+ * stiction it slips along a direction d (plane_starts.c), with the force against d, until the velocity moves away from
+ * d; then it slides again. Sticking frictions share a load that does not determine their forces (plane_loads.c).
+ *
+ * Each round makes one change, or one to each of several frictions. If one switches more than TOGETHER_LIMIT times, or
+ * stops or directions are not found, all forces at rest are solved for at once (plane_forces.c), once an event
+ * resolution. Beyond FRICTION_FLIP_LIMIT switches the motion ends with a message.
  */
 #include <math.h>
 #include <string.h>
@@ -14,7 +21,7 @@
 #include "planes/plane_starts.h"
 #include "planes/plane_stops.h"
 
-/* So often may one switch before all are looked at together. */
+/* Switches of one friction after which all forces at rest are solved for at once. */
 enum { TOGETHER_LIMIT = 20 };
 
 static const char *refuse_directions(const struct Settlement *settlement) {
@@ -22,7 +29,7 @@ static const char *refuse_directions(const struct Settlement *settlement) {
   return "the slip directions of frictions in a plane cannot be found";
 }
 
-/* Whether one that slides has to be tried to stick. */
+/* True if a sliding friction has to be tried to stick. */
 static bool is_stopping(const struct Settlement *settlement, const struct PlaneState *state) {
   bool has_slowed = state->has_slowed && state->is_first;
   if (state->mode == PLANE_STICKS || !plane_is_slow(settlement, state)) return false;
@@ -31,7 +38,7 @@ static bool is_stopping(const struct Settlement *settlement, const struct PlaneS
   return state->mode == PLANE_HEADS && (state->ahead <= -state->lower || has_slowed);
 }
 
-/* Whether one that slides has to be followed in another way. */
+/* True if a sliding friction needs other bounds on its speed, or another slip direction. */
 static bool is_sliding_otherwise(const struct Settlement *settlement, const struct PlaneState *state) {
   double rising = state->mode == PLANE_HEADS ? state->aside : state->speed;
   if (settlement->occasion == AT_START && state->is_first) return true;
@@ -41,13 +48,13 @@ static bool is_sliding_otherwise(const struct Settlement *settlement, const stru
   return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
 }
 
-/* Whether one that sticks would need more than its stiction. */
+/* True if a sticking friction needs more than its stiction. */
 static bool is_overcome(const struct Settlement *settlement, const struct PlaneState *state) {
   bool is_reached = state->has_slowed && state->is_first && !settlement->jumped;
   return state->mode == PLANE_STICKS && (state->needed > state->stiction || is_reached);
 }
 
-/* One that sticks slides where it moves, as by an impact, or where it would need more than its stiction. Whether it does. */
+/* Lets a sticking friction slide if it moves, as after an impact, or if it needs more than its stiction. True if so. */
 static bool leave_rest(struct Settlement *settlement, const struct PlaneState *state) {
   if (!(state->speed > state->small || is_overcome(settlement, state))) return false;
   if (plane_moves(state)) plane_slide(settlement, state);
@@ -56,7 +63,7 @@ static bool leave_rest(struct Settlement *settlement, const struct PlaneState *s
   return true;
 }
 
-/* Whether a given velocity leaves rest, or goes on from there. */
+/* True if a prescribed velocity leaves rest, or passes through it. */
 static bool departs(const struct Settlement *settlement, const struct PlaneState *state) {
   const double *noise = &settlement->noise[friction_place(settlement->switches, state->facts->along, FRICTION_RATE)];
   bool speeds = state->velocity[0] * state->rate[0] + state->velocity[1] * state->rate[1] >= 0.0;
@@ -64,7 +71,7 @@ static bool departs(const struct Settlement *settlement, const struct PlaneState
   return (state->has_slowed && state->is_first) || state->speed > state->lower || (speeds && has_rate);
 }
 
-/* One whose velocity is given rests without force while this is none, and slides else. Whether its mode changes. */
+/* Handles a friction with a prescribed velocity: at rest it has no force, else it slides. True if its mode changes. */
 static bool follow_given(struct Settlement *settlement, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS) {
     if (!departs(settlement, state)) return false;
@@ -79,7 +86,7 @@ static bool follow_given(struct Settlement *settlement, const struct PlaneState 
   return true;
 }
 
-/* One that loses its force, or has one again. Whether it does. */
+/* Handles a friction that loses its force, or has one again. True if its mode changes. */
 static bool change_force(struct Settlement *settlement, const struct PlaneState *state) {
   if (state->is_free != state->has_force) return false;
   if (!state->has_force) plane_free(settlement, state);
@@ -89,7 +96,7 @@ static bool change_force(struct Settlement *settlement, const struct PlaneState 
   return true;
 }
 
-/* Whether one that slides changes in how it slides. */
+/* Updates the bounds and the direction of a sliding friction. True if it had to. */
 static bool change_slide(struct Settlement *settlement, const struct PlaneState *state) {
   if (!is_sliding_otherwise(settlement, state)) return false;
   plane_slide(settlement, state);
@@ -97,14 +104,19 @@ static bool change_slide(struct Settlement *settlement, const struct PlaneState 
   return true;
 }
 
-/* Once, where it does not come to an end one by one: by the forces of all. Whether there are such. */
+/*
+ * Sets modes from the forces of all at once, once an event resolution. False if there are none, or it was done before.
+ */
 static bool settle_together(struct Settlement *settlement) {
   if (settlement->has_found_forces) return false;
   settlement->has_found_forces = true;
   return plane_forces_settle(settlement);
 }
 
-/* Of those that slide along headings; *again where any turns, or sticks since it has no way to go. */
+/*
+ * Finds the slip directions of frictions that begin to slide; sets *again if any turns, or sticks because it
+ * accelerates along none. Returns NULL, or the reason why the motion cannot go on.
+ */
 static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   bool heads = false;
   size_t stays = settlement->switches->plane_count;
@@ -123,7 +135,7 @@ static const char *act_on_headings(struct Settlement *settlement, bool *again) {
   return NULL;
 }
 
-/* One of those that flip more often than that; friction_count for none. */
+/* Returns a friction in a plane that has switched more often than that; friction_count for none. */
 static size_t find_flipping(const struct Settlement *settlement, double often) {
   const struct SwitchTable *switches = settlement->switches;
   for (size_t i = 0; i < switches->plane_count; i++)
@@ -132,7 +144,7 @@ static size_t find_flipping(const struct Settlement *settlement, double often) {
   return switches->friction_count;
 }
 
-/* Lets those that are at rest share what is too much for one of them. Whether there is such a one. */
+/* Lets frictions at rest share the load of one that exceeds its stiction. True if there is such a one. */
 static bool share_loads(struct Settlement *settlement) {
   bool shares = false;
   for (size_t i = 0; i < settlement->switches->plane_count && !shares; i++) {
@@ -180,7 +192,7 @@ static void set_plane(struct Settlement *settlement, size_t plane, bool slides) 
   else plane_head(settlement, &state, heading);
 }
 
-/* They begin along the first velocity where they rest: there is no direction before the start. */
+/* Before the start they move freely or slide, with the direction along: there is no slip direction yet. */
 static void guess(struct Instance *instance) {
   struct Settlement settlement = settlement_of(instance);
   const struct SwitchTable *switches = settlement.switches;

@@ -1,7 +1,9 @@
 /*
- * A body that stands on more points than it needs sticks as long as any forces carry it within their limits: those of least norm
- * need not be among them. What the planes can hand over to one another are forces that balance each other along all
- * coordinates, so that contacts press as before.
+ * Distributes the load of sticking frictions in planes. A body that stands on more points than it needs sticks if any
+ * forces f with G f = load, |f_i| <= stiction_i, exist; those of least norm, which the equations of motion yield, may
+ * violate the limits. G holds the generalized forces of unit forces, columns of J^T; forces in its null space balance
+ * each other along all coordinates, so that the contact forces stay the same. The frictions that G couples with the one
+ * that exceeds its limit take part. shared_loads.c finds the forces.
  */
 #include "planes/plane_loads.h"
 
@@ -13,22 +15,22 @@
 #include "evaluation/services.h"
 #include "planes/shared_loads.h"
 
-/* So often one may let others share in a settlement: their limits may change as they do, where the contacts press otherwise. */
+/* Switches of a friction in an event up to which it may share: its limit may change with the contact forces. */
 enum { SHARE_LIMIT = 5 };
 
-/* What has less to spare, as a share of its limit, is at it, where all are that can be. */
+/* Relative to its limit: frictions within this of the limit begin to slide, if some must. */
 static const double share_at_limit = 1e-9;
 
-/* In units of the largest limit: what can take less can take little. */
+/* Relative to the largest limit: frictions with smaller limits are weak. */
 static const double weak_share = 0.01;
 
 struct PlaneLoads {
   struct Settlement *settlement;
-  size_t n;       /* coordinates */
-  size_t count;   /* of planes */
-  double *lever;  /* what a force of 1 does along the coordinates: 2 rows for each plane of the table */
-  double *buffer; /* for a response, and the impulse that makes it */
-  double *member; /* 1 of each plane of the table that carries with the first one, 0 of others */
+  size_t n;       /* number of coordinates */
+  size_t count;   /* number of planes that take part */
+  double *lever;  /* generalized forces of unit forces: 2 rows for each plane of the table */
+  double *buffer; /* for a response, and the impulse that causes it */
+  double *member; /* for each plane of the table: 1 if it takes part, else 0 */
 };
 
 static bool carries(const struct PlaneLoads *loads, size_t plane) {
@@ -44,7 +46,7 @@ static size_t count_carrying(const struct PlaneLoads *loads) {
   return count;
 }
 
-/* False where there are none, as M is singular. */
+/* Fills the generalized forces. False if M is singular. */
 static bool fill_levers(const struct PlaneLoads *loads) {
   struct Instance *instance = loads->settlement->instance;
   const struct SwitchTable *switches = loads->settlement->switches;
@@ -71,7 +73,7 @@ static bool push_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
   return same;
 }
 
-/* All that push coordinates which it pushes, or others of these do. */
+/* Collects the planes that act on the same coordinates as the first one, directly or through others. */
 static void collect_members(struct PlaneLoads *loads, size_t first) {
   size_t count = loads->settlement->switches->plane_count;
   loads->member[first] = 1.0;
@@ -103,7 +105,7 @@ static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
   }
 }
 
-/* They take the forces that were found; those that have nothing to spare begin to slide against them. */
+/* Applies the forces that were found. slides: those at their limits begin to slide against them. */
 static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad *load, bool slides) {
   size_t next = 0;
   for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
@@ -117,8 +119,8 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
 }
 
 /*
- * Those that can take little, as their contacts are about to part, push with a share of what presses, where others hold them: what
- * their constraints took of a load that changes would be too much again and again. False where that cannot be told.
+ * Weak frictions, whose contacts are about to open, get friction forces without constraints if others constrain their
+ * velocities: constraints would take too much of a changing load again and again. False if that cannot be determined.
  */
 static bool let_weak_push(const struct PlaneLoads *loads) {
   struct Settlement *settlement = loads->settlement;
@@ -137,7 +139,7 @@ static bool let_weak_push(const struct PlaneLoads *loads) {
   return is_told;
 }
 
-/* The members share what they carry. False where they cannot. */
+/* Distributes the load of the planes that take part. False if that is impossible. */
 static bool share_load(const struct PlaneLoads *loads) {
   struct Instance *instance = loads->settlement->instance;
   void *block = scratch_take(instance, SCRATCH_SHARES, shared_load_bytes(loads->n, loads->count));

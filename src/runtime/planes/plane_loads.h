@@ -5,8 +5,9 @@
 #include "planes/plane_state.h"
 
 /*
- * Handles a sticking friction that reaches its limit: the frictions that can take its load share it within their
- * limits, or begin to slide together. False if they cannot, or need not.
+ * Handles a sticking friction that exceeds its stiction: frictions that can take its load share it within their limits,
+ * or those at their limits begin to slide. False if it has no others, if every distribution exceeds the limits, or
+ * after SHARE_LIMIT switches of it in an event.
  */
 bool plane_loads_share(struct Settlement *settlement, size_t plane);
 

@@ -1,8 +1,12 @@
 /*
- * From rest, friction that has come to its stiction slides along the unit vector d for which the acceleration a(d) of its
- * velocity, with the friction against d, is a positive multiple of d. With the mobility K of the velocity by itself a is
- * b - S K d, and there is one d where K b/S is outside of the unit circle. The headings of several are found one after the other
- * until none changes.
+ * Slip directions at the onset of slip. A friction at its limit S slides from rest along the unit vector d for which
+ * its acceleration a(d), with the friction force -S d, is a nonnegative multiple of d. With the mobility K of its
+ * velocity, a(d) = b - S K d; for a symmetric positive definite K there is one d if |K^-1 b| >= S, else it sticks. The
+ * acceleration across d is a function of the angle of d. Where it changes from left to right, the angle is bracketed in
+ * one of SECTORS sectors, the nearest to the last direction first. It is located by false position with halved weights
+ * (a variant of the Illinois method) and a bisection every third step. The directions of several frictions are found
+ * one after another, in nonlinear Gauss-Seidel sweeps, until none rotates; after TURN_LIMIT sweeps the search fails.
+ * Each angle needs an evaluation of the accelerations.
  */
 #include "planes/plane_starts.h"
 
@@ -10,21 +14,22 @@
 
 #include "contacts/frictions.h"
 
+/* Sweeps over all frictions; sectors of the circle; steps within a sector. */
 enum { TURN_LIMIT = 200, SECTORS = 64, HEADING_STEPS = 200 };
 
-/* What rounding may make of accelerations, in units of what friction makes of them. */
+/* Rounding error of an acceleration, relative to its change by friction. */
 static const double rounding_share = 1e-11;
-/* In rad: headings that differ by less are the same, and one is found as well as that. */
+/* In rad: directions that differ by less are equal; the width to which a direction is located. */
 static const double same_heading = 1e-9, least_sector = 1e-15;
 
 struct Heading {
   struct Settlement *settlement;
   size_t plane;
-  bool is_known;       /* all accelerations were there */
-  double ahead, noise; /* the acceleration along the heading that was tried last, and what rounding may make of it */
+  bool is_known;       /* false once accelerations did not exist */
+  double ahead, noise; /* acceleration along the direction that was tried last; its rounding error */
 };
 
-/* The acceleration across a heading, to the left: it turns that way. */
+/* Returns the acceleration across a direction, positive to the left: the velocity turns that way. */
 static double turn_at(struct Heading *heading, double angle) {
   struct Settlement *settlement = heading->settlement;
   const struct PlaneFacts *facts = &settlement->switches->planes[heading->plane];
@@ -37,7 +42,7 @@ static double turn_at(struct Heading *heading, double angle) {
   return c * state.rate[1] - s * state.rate[0];
 }
 
-/* Where it turns neither way, between one at which it turns to the left and a further one at which to the right. */
+/* Returns the direction without acceleration across, between one with it to the left and a further one to the right. */
 static double refine_heading(struct Heading *heading, double from, double turn, double to, double turn_behind) {
   double weight = 1.0, weight_behind = 1.0;
   for (int i = 0; i < HEADING_STEPS && to - from > least_sector; i++) {
@@ -60,7 +65,7 @@ static double refine_heading(struct Heading *heading, double from, double turn, 
   return turn < -turn_behind ? from : to;
 }
 
-/* Whether it slides away along a heading between two; *found is this one. */
+/* True if it accelerates along a direction between two; *found is this one. */
 static bool leaves_between(struct Heading *heading, double from, double turn, double to, double turn_behind,
                            double *found) {
   if (!(turn > 0.0 && turn_behind <= 0.0)) return false;
@@ -69,7 +74,7 @@ static bool leaves_between(struct Heading *heading, double from, double turn, do
   return heading->ahead >= -heading->noise;
 }
 
-/* Friction the other way round changes the acceleration by as much as all that it makes, twice; along what others hold, by nothing. */
+/* Measures the effect of friction: half a turn changes the acceleration by twice as much; by 0 along constraints. */
 static void measure_friction(struct Heading *heading, double angle) {
   const double half_turn = acos(-1.0);
   heading->noise = 0.0;
@@ -79,7 +84,7 @@ static void measure_friction(struct Heading *heading, double angle) {
   }
 }
 
-/* The nearest heading to a first one along which it slides away; NAN for none. */
+/* Returns the direction nearest to the first one along which it accelerates; NAN for none. */
 static double nearest_heading(struct Heading *heading, double first) {
   measure_friction(heading, first);
   double sector = 2.0 * acos(-1.0) / SECTORS, turn = turn_at(heading, first), left = turn, right = turn, found = NAN;
@@ -96,14 +101,14 @@ static double nearest_heading(struct Heading *heading, double first) {
   return NAN;
 }
 
-/* One whose velocity others hold pushes along the heading that it has. */
+/* True if its direction is to be found; if others constrain its velocity, it keeps its direction. */
 static bool turns(struct Settlement *settlement, const struct PlaneState *state) {
   bool is_held = false;
   if (state->mode != PLANE_HEADS || state->is_given || state->speed > state->upper) return false;
   return !frictions_find_held(settlement, state->facts->along, &is_held) || !is_held;
 }
 
-/* One sweep over all: the largest turn of any, in rad; *stays as above. False where there are no accelerations. */
+/* Makes a sweep over all. *largest: largest rotation, in rad; *stays as above. False if accelerations do not exist. */
 static bool turn_all(struct Settlement *settlement, double *largest, size_t *stays) {
   const struct SwitchTable *switches = settlement->switches;
   *largest = 0.0;

@@ -6,8 +6,8 @@
 
 /*
  * Rotates the slip directions of all frictions that begin to slide until each accelerates along its own; sets *changed
- * if one did not. *stays: a friction that accelerates against every direction, and must stick; plane_count for none.
- * False if accelerations or directions do not exist.
+ * if one did not. *stays: a friction that accelerates along no direction, and must stick; plane_count for none.
+ * False if accelerations do not exist, or the directions do not converge.
  */
 bool plane_headings_find(struct Settlement *settlement, bool *changed, size_t *stays);
 

@@ -4,21 +4,27 @@
 
 #include "evaluation/evaluate.h"
 
-/* In units of the tolerance and the scale of the speed. */
+/* In units of the tolerance and the scale of the speed: speeds that count as small, and as 0. */
 static const double small_share = 10.0, no_share = 0.1;
-/* In units of the small speed: so fast may others be that come to rest with one that is slow. */
+/* In units of the small speed: frictions up to this speed come to rest together with a slow one. */
 static const double slow_share = 10.0;
-/* Less than this is asked of no method, and of no importer. */
+/* Least tolerances for these speeds, of methods and of importers, which do not reach smaller ones. */
 static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
-/* Where it is slow and cannot stick, this is tried again at this share of its speed. */
+/* A slow friction that cannot stick is tried again at this fraction of its speed. */
 static const double slower_share = 0.1;
 
-/* A heading that is shorter than 1 by less is so by rounding. */
+/* Slip directions whose length differs from 1 by less are unit vectors but for rounding. */
 static const double least_part = 1e-9;
 
-/* Speeds that are not reached, and where it turns from its heading to the side, which no importer passes over unseen. */
+/*
+ * Values of the mode upper. never: no velocity reaches it. turned_aside: the mode may change as the velocity turns by
+ * 90 degrees from the slip direction at which it began, so that an importer that steps over rest does not miss it.
+ */
 static const double never = -1e300, turned_aside = -1e-300;
-/* One that goes back in less than this slope to the heading, without an impact, was at rest in between. */
+/*
+ * Slope: a velocity that has turned back at less than this slope to the slip direction, without an impact, has passed
+ * rest.
+ */
 static const double slope_back = 0.5;
 
 static double tolerance_of(const struct Instance *instance) {
@@ -62,7 +68,7 @@ struct PlaneState plane_state(const struct Settlement *settlement, size_t plane)
   return state;
 }
 
-/* At the start velocities are as they were given: what slides, slides. */
+/* At the start velocities are given: what slides is not brought to rest. */
 bool plane_is_slow(const struct Settlement *settlement, const struct PlaneState *state) {
   if (settlement->occasion == AT_START) return state->speed <= state->none;
   return state->speed <= slow_share * state->small || state->has_turned_back;
@@ -110,7 +116,7 @@ bool plane_has_part(const struct Settlement *settlement, const struct PlaneState
   return share < 1.0 - least_part;
 }
 
-/* Where there is none, it keeps the one that it has, or takes any. */
+/* Sets the slip direction. A direction of 0 keeps the present one, or takes that along if there is none. */
 static void set_heading(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]) {
   const double any[] = {1.0, 0.0};
   const size_t *mode = state->facts->heading;

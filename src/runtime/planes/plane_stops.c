@@ -1,6 +1,9 @@
 /*
- * Several frictions of one body slow down together and come to rest at the same time, as those of a disk on many points, so that
- * none of them could stick by itself: all that are slow are tried together.
+ * Brings frictions in planes to rest together, by an active set method. Frictions of one body, such as those of a disk
+ * on many points, slow down and stop at the same time, so that none can stick by itself. All slow ones stick for a
+ * trial. While one exceeds its stiction, the one that exceeds it most shares its load or slides again. This ends
+ * because sliding frictions are not tried again, and sharing is limited (plane_loads.c). Each round needs an evaluation
+ * of the accelerations.
  */
 #include "planes/plane_stops.h"
 
@@ -9,13 +12,16 @@
 #include "contacts/frictions.h"
 #include "planes/plane_loads.h"
 
-/* In settlement->takes_part: it is tried; and found to have no hold of what moves, as a slider at the dead centre of its crank. */
+/*
+ * Values of settlement->takes_part for frictions; 0 for those that are not tried. is_tried: it sticks for a trial.
+ * has_no_hold: its constraint cannot stop the motion, as that of a slider at the dead centre of its crank.
+ */
 static const double is_tried = 1.0, has_no_hold = 2.0;
 
-/* So many times its stiction no friction is asked for that holds. */
+/* In units of its stiction: a friction that needs more cannot stop the motion. */
 static const double hopeless = 1e6;
 
-/* All that are slow stick for a try. */
+/* Lets all slow frictions stick for a trial. */
 static void try_all(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->plane_count; i++) {
     struct PlaneState state = plane_state(settlement, i);
@@ -26,7 +32,7 @@ static void try_all(struct Settlement *settlement) {
   }
 }
 
-/* Whether its velocity goes on though it sticks. */
+/* True if its velocity changes although it sticks. */
 static bool goes_on(const struct Settlement *settlement, const struct PlaneState *state) {
   double largest = 0.0;
   for (size_t i = 0; i < 2; i++) {
@@ -36,7 +42,7 @@ static bool goes_on(const struct Settlement *settlement, const struct PlaneState
   return hypot(state->rate[0], state->rate[1]) > friction_held_share * largest;
 }
 
-/* The one of those that are tried which goes furthest beyond its stiction; plane_count for none. */
+/* Returns the tried friction that exceeds its stiction most; plane_count for none. */
 static size_t find_overcome(const struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   size_t found = switches->plane_count;
@@ -52,13 +58,13 @@ static size_t find_overcome(const struct Settlement *settlement) {
   return found;
 }
 
-/* Whether others take what is too much for it. */
+/* True if others take what exceeds its stiction. */
 static bool shares_load(struct Settlement *settlement, size_t plane) {
   struct PlaneState state = plane_state(settlement, plane);
   return !goes_on(settlement, &state) && plane_loads_share(settlement, plane);
 }
 
-/* It slides on, or begins anew where its velocity is none. */
+/* Lets it slide on, or slip in a new direction from rest. */
 static void let_plane_slide(struct Settlement *settlement, size_t plane) {
   struct PlaneState state = plane_state(settlement, plane);
   bool passes = goes_on(settlement, &state);
@@ -68,7 +74,7 @@ static void let_plane_slide(struct Settlement *settlement, size_t plane) {
   else plane_head(settlement, &state, passes ? state.rate : state.force);
 }
 
-/* Brings what sticks to rest, and what begins anew. False where that cannot be. */
+/* Projects the velocities of what sticks, or slips from rest, to 0. False if that fails. */
 static bool bring_to_rest(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   bool moves = false;

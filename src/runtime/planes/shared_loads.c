@@ -1,8 +1,14 @@
 /*
- * The forces are f + N y for any y, where the columns of N are forces that balance each other. Newton's method finds the centre
- * of all whose shares are below a level, where the sum of -log(level^2 - share^2) is least, and the level falls to what is just
- * above these shares, until it is 1 or no lower one can be: a weighted mean of the shares at a centre is a bound for the largest
- * of any forces (Huard's method of centres).
+ * Finds f with G f = load and all |f_i| < 1, in units of the limits, with a margin; else with the least largest |f_i|.
+ * These forces are f + N y for any y, with the null space of G in the columns of N. For a level above the largest |f_i|
+ * Newton's method minimizes the barrier - sum log(level^2 - |f_i|^2) over y; its minimum is the analytic centre. Far
+ * from the centre steps are damped by 1 / (1 + decrement), so that |f_i| stays below the level (Nesterov and
+ * Nemirovskii, Interior-Point Polynomial Algorithms in Convex Programming, 1994). Near the centre the level falls
+ * towards the largest |f_i|, down to 1 (Huard's method of centres).
+ *
+ * At a centre a weighted mean of the |f_i| is a lower bound of the largest one of any distribution. The search ends at
+ * the centre of level 1, if this bound exceeds 1, if the level meets the bound, or after CENTRE_STEPS steps. A step
+ * costs O(m^3) for m columns of N, and O(m^2) for each plane.
  */
 #include "planes/shared_loads.h"
 
@@ -13,29 +19,30 @@
 #include "arithmetic.h"
 #include "planes/pivoting.h"
 
+/* Newton steps at most. */
 enum { CENTRE_STEPS = 1000 };
 
-/* Levers that differ by less of themselves are the same, as the constraints' are in saddle.h. */
+/* Relative to the largest pivot: smaller ones count as 0, as sines below 1e-6 do in saddle.h. */
 static const double least_lever_share = 1e-6;
 
-/* Less to spare is rounding; so much may rounding take. */
+/* In units of the limits: margins below the first are rounding errors, and forces exceed limits by up to the second. */
 static const double least_spare = 2e-12, rounded_spare = 1e-9;
 
-/* Steps as short as this, in units of the centre's width, have come near it, and to it. */
+/* Newton decrements at which the level falls, and at which the centre of level 1 is reached. */
 static const double near_centre = 0.1, at_centre = 1e-3;
 
-/* Of what is between the level and the largest share, the next level leaves so much. */
+/* The next level keeps this fraction of the distance from the largest force to the level. */
 static const double part_of_level = 0.25;
 
 struct Centre {
   struct SharedLoad *load;
-  size_t n, free_count;     /* forces, and columns of N */
+  size_t n, free_count;     /* number of forces, and of columns of N */
   double *balance;          /* N, by rows */
-  double *slope, *curve;    /* the derivatives of the sum of logarithms by y, and the second ones */
-  double *step, *order;     /* order: of the forces, in the elimination */
-  double level, largest;    /* share */
-  double weights, weighted; /* of the shares: the sum, and that of the shares by their weights */
-  double bound, distance;   /* of the largest share that any forces have; to the centre, in units of its width */
+  double *slope, *curve;    /* gradient and Hessian of the barrier by y */
+  double *step, *order;     /* order: of the forces, after column exchanges */
+  double level, largest;    /* level of the barrier, and the largest |f_i| */
+  double weights, weighted; /* weights of the |f_i| in the bound: their sum, and the weighted sum of the |f_i| */
+  double bound, distance;   /* lower bound of the largest |f_i| of any distribution; Newton decrement */
 };
 
 static size_t load_work_count(size_t n) {
@@ -57,7 +64,7 @@ double shared_load_size(const struct SharedLoad *load, size_t plane) {
   return hypot(load->share[2 * plane], load->share[2 * plane + 1]);
 }
 
-/* Gauss and Jordan's elimination of the levers, with full pivoting. Returns how many are independent. */
+/* Reduces G by Gauss-Jordan elimination with complete pivoting. Returns its rank. */
 static size_t eliminate_levers(const struct Centre *centre) {
   size_t n = centre->n, rows = centre->load->rows, rank = 0;
   double largest = 0.0, *a = centre->load->lever;
@@ -94,7 +101,7 @@ static double largest_share(const struct SharedLoad *load) {
   return largest;
 }
 
-/* What one plane adds to the derivatives, at the room level^2 - share^2; along: half the derivatives of this square by y. */
+/* Adds a plane's terms to gradient and Hessian. room: level^2 - |f_i|^2; along: half the gradient of |f_i|^2 by y. */
 static void add_plane(struct Centre *centre, size_t plane, double room, double *along) {
   size_t count = centre->free_count;
   const double *share = centre->load->share + 2 * plane, *row = centre->balance + 2 * plane * count;
@@ -121,7 +128,7 @@ static void fill_derivatives(struct Centre *centre) {
   }
 }
 
-/* By Cholesky's factors. */
+/* Finds the Newton step by Cholesky's factorization, and the Newton decrement. */
 static void step_to_centre(struct Centre *centre) {
   size_t n = centre->free_count;
   double *l = centre->curve, *step = centre->step, square = 0.0;
@@ -142,7 +149,7 @@ static void step_to_centre(struct Centre *centre) {
   }
 }
 
-/* A step of Newton's method, as long as the shares surely stay below the level. */
+/* Makes a damped Newton step, which keeps all |f_i| below the level; then updates largest and bound. */
 static void come_nearer(struct Centre *centre) {
   size_t count = centre->free_count;
   fill_derivatives(centre);
@@ -152,12 +159,12 @@ static void come_nearer(struct Centre *centre) {
     for (size_t j = 0; j < count; j++)
       centre->load->share[i] += part * centre->balance[i * count + j] * centre->step[j];
   centre->largest = largest_share(centre->load);
-  /* Beside the centre the mean errs by less than this distance times how wide it is where forces may be, in the same units. */
+  /* Off the centre the mean errs by at most the decrement times the width of the feasible set, in the local norm. */
   double pieces = 2.0 * (double)centre->load->count;
   centre->bound = (centre->weighted - centre->distance * (pieces + 2.0 * sqrt(pieces))) / centre->weights;
 }
 
-/* Whether the search has ended; else the level falls where the centre is near. */
+/* True if the search has ended; else lowers the level if the centre is near. */
 static bool has_ended(struct Centre *centre) {
   if (!isfinite(centre->distance) || !(centre->largest < centre->level)) return true;
   if (!(centre->level > 1.0)) return !(centre->distance > at_centre);

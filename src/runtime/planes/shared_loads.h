@@ -1,4 +1,4 @@
-/* Shares of frictions in planes in a load that does not determine their forces: within their limits, with a margin. */
+/* Distribution of a load among frictions in planes, within their limits and with a margin. */
 #ifndef SHARED_LOADS_H
 #define SHARED_LOADS_H
 
@@ -8,7 +8,7 @@
 /* Forces along and across for count planes, in units of their limits. */
 struct SharedLoad {
   size_t rows, count;
-  double *lever; /* rows x 2 count: effect of each unit force; overwritten */
+  double *lever; /* rows x 2 count: generalized forces of unit forces, G; overwritten */
   double *share; /* forces that carry the load: first any, then those found */
   double *work;
 };
@@ -18,7 +18,10 @@ size_t shared_load_bytes(size_t rows, size_t count);
 /* Divides a block of shared_load_bytes() among the parts. */
 struct SharedLoad shared_load_in(void *block, size_t rows, size_t count);
 
-/* LOAD_OVERCOMES: the forces are unique, or all exceed the limits. LOAD_IS_AT_LIMIT: equal to them within rounding. */
+/*
+ * LOAD_IS_SHARED: all forces are below their limits. LOAD_IS_AT_LIMIT: the largest equals its limit within rounding.
+ * LOAD_OVERCOMES: the forces are unique, or every distribution exceeds a limit.
+ */
 enum LoadSharing { LOAD_IS_SHARED, LOAD_IS_AT_LIMIT, LOAD_OVERCOMES };
 
 /* Finds forces within the limits that leave a large margin; if there are none, those whose largest is least. */
