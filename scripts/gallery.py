@@ -36,6 +36,9 @@ READ = {
         "1. Equations of motion": "fmu/theory/01-equations-of-motion.md",
         "2. Constraints": "fmu/theory/02-constraints.md",
         "3. Kinematic trees": "fmu/theory/03-kinematic-trees.md",
+        "4. Impacts": "fmu/theory/04-impacts.md",
+        "5. Contact and friction": "fmu/theory/05-contact-and-friction.md",
+        "6. Events": "fmu/theory/06-events.md",
         "Bibliography": "fmu/theory/BIBLIOGRAPHY.md",
     },
     "More": {
