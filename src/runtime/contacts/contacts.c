@@ -26,7 +26,10 @@
 #include "events/indicators.h"
 #include "events/settlement.h"
 
-/* In an event: impacts one after another; projections of penetrated contacts. At the start: projections. */
+/*
+ * IMPACT_LIMIT: impacts of an event that are taken one after another. LIFT_LIMIT: projections of penetrated contacts,
+ * in an event and at the start.
+ */
 enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
 
 /* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
@@ -43,9 +46,7 @@ static const double rounded_start = 1e-4;
 /* In rounding error bounds: a negative gap up to this is not located again, as the search allows FLOOR_IN_NOISE. */
 static const double found_again = 0.25 * FLOOR_IN_NOISE;
 
-/*
- * Relative to the largest rate of the gap in this event: closing rates below this may be errors of iterative impulses.
- */
+/* Relative to the largest rate of the gap in this event: impulses by iteration may leave smaller closing rates. */
 static const double unresolved_share = 1e-6;
 
 /* Smaller speeds have no direction: their squares are next to the smallest numbers. */
@@ -134,7 +135,10 @@ static void let_all_slide(struct Settlement *settlement) {
   for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
 }
 
-/* Lets frictions in planes that do not stick, and have stopped, slip along the last direction. False without values. */
+/*
+ * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
+ * be evaluated.
+ */
 static bool let_stopped_head(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
   if (switches->plane_count == 0) return true;
@@ -273,10 +277,7 @@ static const char *let_rest(struct Settlement *settlement) {
   return let_stopped_head(settlement) ? NULL : refuse_rest(settlement);
 }
 
-/*
- * Returns the gap beyond which a closed contact was moved apart; larger for importers, which keep constraints less
- * well.
- */
+/* Returns the gap beyond which a closed contact was moved apart; larger for importers, whose states drift more. */
 static double largest_drift(const struct Settlement *settlement) {
   return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(settlement->state, 0);
 }

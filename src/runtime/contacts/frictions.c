@@ -161,9 +161,9 @@ static double certainty_of(const struct FrictionState *state) {
 }
 
 /*
- * True if the friction would return to the mode that it has just left, by a larger margin. A friction on a contact that
- * constrains its velocity slides without moving if both could not carry their common load; its rate is a rounding
- * error.
+ * True if the friction would return to the mode that it has just left, by a larger margin. A friction whose velocity a
+ * contact constrains slides without moving if its share of their common load would exceed its limit; its rate is then a
+ * rounding error.
  */
 static bool would_go_back(const struct Settlement *settlement, size_t friction, double mode, double certainty) {
   return settlement->last.friction == friction && settlement->last.mode == mode &&

@@ -28,9 +28,7 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
-/*
- * Bisection steps for the factor of the restitutions, as many as digits of a double; iterations of the proximal method.
- */
+/* HALVINGS: bisections of the factor of the restitutions, to 2^-52. SOLUTIONS: iterations of the proximal method. */
 enum { HALVINGS = 52, SOLUTIONS = 50 };
 
 /* Energy gains below this fraction of the terms of the work are rounding errors. */

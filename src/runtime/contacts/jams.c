@@ -1,11 +1,11 @@
 /*
  * Finds the modes of frictions at rest by enumeration. The friction of a worm gear follows from the size of the tooth
  * force, which follows from the friction: a complementarity problem whose matrix need not be a P-matrix, so that
- * switching one mode after another may cycle (Painleve's paradox). This search follows such a cycle, once an event
+ * switching one mode after another may cycle (Painleve's paradox). This search is made if they do, once an event
  * resolution. It tries all combinations of the modes in question: each friction at rest sticks or slides either way,
- * each branch that forces decide on has either sign. Combinations with equal accelerations are one motion. The search
- * ends at the second motion, and needs one evaluation of the accelerations for each of at most MOST_COMBINATIONS
- * combinations.
+ * each branch that has switched or depends on forces has either sign. Combinations with equal accelerations are one
+ * motion. The search ends at the second motion, and needs one evaluation of the accelerations for each of at most
+ * MOST_COMBINATIONS combinations.
  */
 #include "contacts/jams.h"
 
@@ -16,7 +16,7 @@
 #include "contacts/pushes.h"
 #include "evaluation/services.h"
 
-/* Combinations that are tried at most: those of six frictions. */
+/* Combinations that are tried at most: 3^6, those of six frictions. */
 enum { MOST_COMBINATIONS = 729 };
 
 /* Accelerations that differ by less than this, relative to the largest, are equal. */

@@ -4,6 +4,7 @@
  * on the load alone, all that touch at rest are closed; the equations of motion then have the constraint forces of
  * least norm. Contacts among them that pull, or carry nothing, are opened one by one, the most negative force first (an
  * active set method). It ends since each round opens one. If a closed contact still pulls, the modes stay as they were.
+ * This is tried once an event resolution, after contact_forces.c.
  */
 #include "contacts/load_shares.h"
 
@@ -14,7 +15,7 @@
 #include "contacts/resting_forces.h"
 #include "evaluation/evaluate.h"
 
-/* Returns the size of a gap that the projection leaves open at a closed contact; larger for importers. */
+/* Returns the largest gap that the projection leaves at a contact that touches; larger for importers. */
 static double narrowest(const struct Settlement *settlement) {
   double share = settlement->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
   return share * largest_scale(settlement->state, 0);
@@ -29,10 +30,7 @@ static bool is_held_aside(const struct Settlement *settlement, size_t contact, d
   return !slides;
 }
 
-/*
- * Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any, and a closed contact
- * carries load beside them.
- */
+/* Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any beside a closed contact. */
 static bool find_idle(struct Settlement *settlement) {
   double narrow = narrowest(settlement), slowest = resting_speed(settlement);
   bool is_held = false, is_idle = false;

@@ -17,10 +17,7 @@
 /* Contacts of a group up to which all active sets are tried: at most 4096. */
 enum { COMBINED_LIMIT = 12 };
 
-/*
- * S counts as positive definite if the pivots of its symmetric part exceed the square of this; without friction S_ii is
- * 1.
- */
+/* S is positive definite if the pivots of its symmetric part exceed the square of this; S_ii = 1 without friction. */
 static const double locking_share = 1e-3;
 
 /* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
@@ -193,9 +190,7 @@ enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool i
     collect_group(resting, i);
     if (resting->group[0] != i) continue; /* this group was handled before */
     enum RestingSolutions solutions = solve_group(resting, is_solved, size);
-    /*
-     * The present forces are a solution, even if rounding hides it among active sets that share the load differently.
-     */
+    /* The present forces are a solution, even if rounding hides it among the active sets. */
     if (is_solved && solutions == NO_MOTION) solutions = ONE_MOTION;
     if (solutions > worst) worst = solutions;
   }

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The problem, with S by rows; it is scaled such that its diagonal is 1 without friction, and less with it. */
+/* The problem, with S by rows; it is scaled such that its diagonal is 1 without friction. */
 struct RestingForces {
   size_t count;
   double *s, *free;

@@ -12,9 +12,7 @@ struct Cones {
   double *scale; /* change of the own rate by a unit impulse, in a plane the larger eigenvalue; 0 if there is none */
 };
 
-/*
- * Returns rate + W impulse of a row: what is complementary to the impulse, for contacts with e times the rate before.
- */
+/* Returns rate + W impulse of a row, the quantity that is complementary to the impulse of a contact. */
 double cones_rate_behind(const struct Cones *cones, size_t row);
 
 /* Returns the friction limit of a row by the impulses of the contacts. */
