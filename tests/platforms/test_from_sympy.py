@@ -216,7 +216,7 @@ def test_units_names_and_outputs(tmp_path):
 
 
 @pytest.mark.parametrize("words, message", [
-    ({"units": {"q": "m"}}, "q is not a parameter, input, coordinate or output of this LagrangesMethod; expected"),
+    ({"units": {"q": "m"}}, "q is not a parameter, input, coordinate, state or output of this LagrangesMethod; expected"),
     ({"constraints": ["rod", "wire"]}, "there are 2 names and 1 constraints; expected one for each, holonomic ones first"),
     ({"points": {"bob": (1,)}}, "the point bob has 1 coordinates; expected two or three"),
     ({"points": {"height": (1, 2)}}, "height is a point and an output; expected two names"),
@@ -269,7 +269,7 @@ def test_other_mistakes(tmp_path):
     for words, message in (
         ({"path": "2.xml"}, "'2' cannot name a system; expected a file of letters"),
         ({"speeds": dynamicsymbols("u v")}, "there are 2 speeds and 1 coordinates; expected one for each"),
-        ({"start": {dynamicsymbols("y"): 1}}, r"y\(t\) is not a coordinate, velocity or input of this LagrangesMethod; expected x\(t\), Derivative"),
+        ({"start": {dynamicsymbols("y"): 1}}, r"y\(t\) is not a coordinate, velocity, state or input of this LagrangesMethod; expected x\(t\), Derivative"),
     ):
         with pytest.raises(Problem, match=message):
             from_sympy(method, **{"path": tmp_path / "Good.xml", "parameters": {}} | words)

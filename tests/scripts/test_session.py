@@ -225,3 +225,30 @@ def test_the_environment_for_learning(lagrange_fmu):  # noqa: F811
         steps += 1
     assert 10 < steps < 200  # it falls
     environment.close()
+
+
+def test_the_examples_of_rest_and_responses(lagrange_fmu, monkeypatch, tmp_path):  # noqa: F811
+    """A cart hangs its pendulum where its bob is at 0.3 m; m x'' is balanced, so x is there as well."""
+    monkeypatch.chdir(tmp_path)
+    variables = {"lagrange_fmu": lagrange_fmu}
+    exec(example("rest = "), variables)
+    rest, motion = variables["rest"], variables["motion"]
+    assert rest.point["theta"] == pytest.approx(np.pi, rel=1e-12) and rest.point["x"] == pytest.approx(0.3, rel=1e-12)
+    np.testing.assert_allclose(motion["xBob"], 0.3, rtol=1e-9)
+    exec(example("linear.poles()"), variables)
+    assert (tmp_path / "step.png").exists() and abs(variables["bode"]["theta", "F"]).max() > 0
+
+
+def test_the_example_of_states_in_sympy(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
+    """A cart of m on an actuator with lag: what lagc makes of it has four states."""
+    import sympy
+    from sympy.physics import mechanics
+
+    monkeypatch.chdir(tmp_path)
+    N, cart, x, F = mechanics.ReferenceFrame("N"), mechanics.Point("cart"), *mechanics.dynamicsymbols("x F")
+    cart.set_vel(N, x.diff() * N.x)
+    m, k, ki, T, x0 = sympy.symbols("m k ki T x0")
+    method = mechanics.LagrangesMethod(m * x.diff() ** 2 / 2, [x], forcelist=[(cart, F * N.x)], frame=N)
+    names = {"lagrange_fmu": lagrange_fmu, "dynamicsymbols": mechanics.dynamicsymbols, "method": method, "x": x, "m": m, "k": k, "ki": ki, "T": T, "x0": x0}
+    exec(example('"Servo.xml"'), names)
+    assert lagrange_fmu.check(tmp_path / "Servo.xml").startswith("Servo: 4 states, 0 inputs")

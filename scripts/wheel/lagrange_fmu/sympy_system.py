@@ -31,7 +31,7 @@ def _generalized_forces(method):
 class _Content:
     """The expressions of a LagrangesMethod, with plain symbols of valid names in place of its quantities."""
 
-    def __init__(self, method, speeds, watched):
+    def __init__(self, method, speeds, watched, states):
         self.time = dynamicsymbols._t
         self.coordinates = list(method.q)
         self.velocities = [q.diff(self.time) for q in self.coordinates]
@@ -42,36 +42,57 @@ class _Content:
             if not isinstance(speed, AppliedUndef):
                 raise Problem(f"{speed} is no speed; expected a dynamicsymbol or a name")
         self.velocity_of = dict(zip(speeds or [], self.velocities))
+        rates = self._rates(states)
         in_motion = self._prepared([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
         forces = self._prepared(_generalized_forces(method))
         watched = {name: self._prepared(expressions) for name, expressions in watched.items()}
         others = sum(watched.values(), forces)
 
-        self.inputs = self._derivatives_of_inputs(in_motion, others)
-        symbols = set().union(*(expression.free_symbols for expression in in_motion + others))
+        self.inputs = self._derivatives_of_inputs(in_motion, others, rates)
+        symbols = set().union(*(expression.free_symbols for expression in in_motion + others + rates))
         self.parameters = sorted(symbols - {self.time}, key=str)
         self.names = self._named(speeds)
         symbol_of = {quantity: sympy.Symbol(name) for quantity, name in self.names.items()}
         self.lagrangian, *self.constraints = [expression.xreplace(symbol_of) for expression in in_motion]
         self.forces = [expression.xreplace(symbol_of) for expression in forces]
+        self.states = {state: rate.xreplace(symbol_of) for state, rate in zip(self.rate_of, rates)}
         self.watched = {name: [expression.xreplace(symbol_of) for expression in expressions] for name, expressions in watched.items()}
 
     def _prepared(self, expressions):
-        return [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
+        """Return expressions with velocities in place of speeds, and with rates in place of the derivatives of states."""
+        derivatives = {state.diff(self.time): rate for state, rate in self.rate_of.items()}
+        found = [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
+        for _ in derivatives:
+            found = [expression.xreplace(derivatives) for expression in found]
+        return found
 
-    def _derivatives_of_inputs(self, in_motion, others):
+    def _rates(self, states):
+        """Keep the rate of each state of first order as it is given, and return it as prepared."""
+        self.rate_of = {}
+        for state, rate in states.items():
+            state = dynamicsymbols(state) if isinstance(state, str) else state
+            if not isinstance(state, AppliedUndef) or state in (*self.coordinates, *self.velocity_of):
+                raise Problem(f"{state} is no state; expected a dynamicsymbol or a name that is neither a coordinate nor a speed")
+            self.rate_of[state] = prepared(rate).xreplace(self.velocity_of)
+        rates = self._prepared(self.rate_of.values())
+        for state, rate in zip(self.rate_of, rates):
+            if any(derivative.expr in self.rate_of for derivative in rate.atoms(sympy.Derivative)):
+                raise Problem(f"the rate of {state} needs itself, or a second derivative of a state; expected rates by states, coordinates, velocities and inputs")
+        return rates
+
+    def _derivatives_of_inputs(self, in_motion, others, rates):
         """Return the order of the highest derivative that is needed of each input; inputs are functions of time that are not coordinates."""
         counts = {}
-        for expression in in_motion + others:
+        for expression in in_motion + others + rates:
             for function in expression.atoms(AppliedUndef):
                 if function.args != (self.time,):
                     raise Problem(f"{function} is a function that is not known; expected coordinates and inputs, which are functions of t alone")
-                if function not in self.coordinates:
+                if function not in self.coordinates and function not in self.rate_of:
                     # A prescribed motion needs the velocity and the acceleration of its input.
                     counts[function] = max(counts.get(function, 0), 2 if expression in in_motion else 0)
             for derivative in expression.atoms(sympy.Derivative):
                 function, count = derivative.expr, derivative.derivative_count
-                if function in self.coordinates and count > 1:
+                if function in self.coordinates and count > 1 and not (expression in rates and count == 2):
                     raise Problem(f"{derivative} is an acceleration; expected energies, forces and constraints without any")
                 if count > 2:
                     raise Problem(f"{derivative}: expected at most the second derivative of an input")
@@ -82,11 +103,12 @@ class _Content:
     def _named(self, speeds):
         """Return the name of each quantity, and of the inputs' derivatives, such as der(F)."""
         self.all_names = Names()
-        functions = [*self.coordinates, *self.inputs]
+        functions = [*self.coordinates, *self.rate_of, *self.inputs]
         names = {quantity: self.all_names.add(quantity.func.__name__) for quantity in functions}
         names |= {parameter: self.all_names.add(parameter) for parameter in self.parameters}
         for q, v, speed in zip(self.coordinates, self.velocities, speeds or self.coordinates):
             names[v] = self.all_names.add(speed.func.__name__ if speeds else f"{names[q]}_dot")
+            names[v.diff(self.time)] = f"der({names[v]})"
         for function, count in self.inputs.items():
             for i in range(1, count + 1):
                 names[function.diff(self.time, i)] = "der(" * i + names[function] + ")" * i
@@ -133,8 +155,8 @@ def _units(content, units, outputs):
     units = {key: {"unit": str(unit)} for key, unit in units.items()}
     of_outputs = {key: unit for key, unit in units.items() if key in outputs}
     of_quantities = {key: unit for key, unit in units.items() if key not in outputs}
-    known = [*content.parameters, *content.inputs, *content.coordinates]
-    return _by_quantity(of_quantities, known, "parameter, input, coordinate or output"), of_outputs
+    known = [*content.parameters, *content.inputs, *content.coordinates, *content.states]
+    return _by_quantity(of_quantities, known, "parameter, input, coordinate, state or output"), of_outputs
 
 
 def _variables(content, parameters, start, units):
@@ -145,7 +167,7 @@ def _variables(content, parameters, start, units):
         raise Problem(f"no value is given for {', '.join(missing)}; expected parameters={{{missing[0]}: 1.0, ...}}")
     speed_of = {str(speed): velocity for speed, velocity in content.velocity_of.items()} | {content.names[velocity]: velocity for velocity in content.velocities}
     start = {speed_of.get(str(key), key): value for key, value in start.items()} if isinstance(start, Mapping) else start
-    start = _values(start, [*content.coordinates, *content.velocities, *content.inputs], "coordinate, velocity or input")
+    start = _values(start, [*content.coordinates, *content.velocities, *content.states, *content.inputs], "coordinate, velocity, state or input")
     for symbol in content.parameters:
         yield "parameter", {"name": content.names[symbol], "start": values[symbol]} | units.get(symbol, {}), None
     for function, count in content.inputs.items():
@@ -154,6 +176,9 @@ def _variables(content, parameters, start, units):
     for q, v in zip(content.coordinates, content.velocities):
         names = {"name": content.names[q], "velocity": content.names[v]}
         yield "coordinate", names | {"start": start.get(q, "0"), "velocityStart": start.get(v, "0")} | units.get(q, {}), None
+    for state, rate in content.states.items():
+        names = {"name": content.names[state], "rate": text_of(rate, f"the rate of {state}"), "start": start.get(state, "0")}
+        yield "state", names | units.get(state, {}), None
 
 
 def _equations(content, constraint_names):
@@ -206,12 +231,12 @@ def _system_name(path):
 
 
 def from_sympy(
-    method, path, parameters, start=None, speeds=None, description="", stop_time=10.0, outputs=None, units=None, constraints=None, points=None
+    method, path, parameters, start=None, speeds=None, description="", stop_time=10.0, outputs=None, units=None, constraints=None, points=None, states=None
 ):
     """
     Write a LagrangesMethod as NAME.xml.
 
-    All dynamicsymbols that are neither coordinates nor speeds become inputs. Symbols may be given by their names in all dicts.
+    All dynamicsymbols that are neither coordinates, speeds nor states become inputs. Symbols may be given by their names in all dicts.
 
     Parameters
     ----------
@@ -222,7 +247,7 @@ def from_sympy(
     parameters : dict of float
         Values of all other symbols of the method.
     start : dict of float, optional
-        Start values of coordinates, velocities and inputs; 0 by default.
+        Start values of coordinates, velocities, states and inputs; 0 by default.
     speeds : sequence, optional
         A dynamicsymbol or name for the derivative of each coordinate; by default the velocity of x is x_dot.
     description : str
@@ -232,11 +257,14 @@ def from_sympy(
     outputs : dict, optional
         Expressions by name, which become outputs.
     units : dict of str, optional
-        Units of parameters, inputs, coordinates and outputs, such as "kg".
+        Units of parameters, inputs, coordinates, states and outputs, such as "kg".
     constraints : sequence of str, optional
         Names of the constraints, holonomic ones first.
     points : dict, optional
         Points that the animation shows, by name: vectors from the origin, such as P.pos_from(O), or tuples of two or three coordinates.
+    states : dict, optional
+        States of first order, such as a pressure or what a controller integrates: the time derivative of each dynamicsymbol or name, by all other
+        quantities and accelerations.
 
     Returns
     -------
@@ -262,7 +290,7 @@ def from_sympy(
     both = sorted(set(points) & set(outputs))
     if both:
         raise Problem(f"{both[0]} is a point and an output; expected two names")
-    content = _Content(method, speeds, points | {name: [expression] for name, expression in outputs.items()})
+    content = _Content(method, speeds, points | {name: [expression] for name, expression in outputs.items()}, states or {})
     units_of_quantities, units_of_outputs = _units(content, units or {}, outputs)
     root = ElementTree.Element("system", name=_system_name(path), description=description)
     for tag, attributes, text in [
