@@ -39,6 +39,10 @@ READ = {
         "4. Impacts": "fmu/theory/04-impacts.md",
         "5. Contact and friction": "fmu/theory/05-contact-and-friction.md",
         "6. Events": "fmu/theory/06-events.md",
+        "7. Taylor series": "fmu/theory/07-taylor-series.md",
+        "8. Stiff systems": "fmu/theory/08-stiff-systems.md",
+        "9. Derivatives": "fmu/theory/09-derivatives.md",
+        "10. Tolerances": "fmu/theory/10-tolerances.md",
         "Bibliography": "fmu/theory/BIBLIOGRAPHY.md",
     },
     "More": {
