@@ -68,5 +68,8 @@ class NamedValues:
     def __iter__(self):
         return iter(self.variables)
 
+    def keys(self):
+        return self.variables.keys()
+
     def _ipython_key_completions_(self):
         return list(self.variables)

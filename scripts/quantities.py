@@ -29,6 +29,7 @@ def number_of(name, value, unit, is_limit=False):
     """Return a value, a number or a text, as a number in the unit; raise Problem if it is not finite, unless `is_limit` allows infinity."""
     if not isinstance(value, str):
         return value
+    value = value.strip()
     try:
         number = float(value)
     except ValueError:

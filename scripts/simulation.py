@@ -89,7 +89,10 @@ def experiment_of(description, start_time=None, stop_time=None, output_interval=
 def tolerance_of(description, tolerance=None):
     """Return the relative tolerance, by default that of the FMU's experiment; None if there is neither."""
     tolerance = tolerance or getattr(description.defaultExperiment, "tolerance", None)
-    return tolerance and float(tolerance)
+    try:
+        return tolerance and float(tolerance)
+    except (TypeError, ValueError):
+        raise Problem(f"the tolerance is {tolerance!r}; expected a number between 0 and 1") from None
 
 
 def log_into(problems):

@@ -154,7 +154,7 @@ def test_the_command(lagrange_fmu, tmp_path):  # noqa: F811
     ("Falling", {"guess": {"h": 1}}, r"der\(v\) = -9.81 m/s2 where"),
     ("Repelled", {}, "Repelled does not come to rest near the guess: it only comes closer to rest further and further away"),
     ("Leaning", {"guess": {"thata": 1}}, "'thata' is not a variable of Leaning; did you mean 'theta'"),
-    ("Leaning", {"guess": {}, "hold": {"hight": 1}}, "'hight' is not a variable of Leaning; did you mean 'height'"),
+    ("Leaning", {"guess": {}, "hold": {"hight": 1}}, "'hight' is no state, output, input or parameter of Leaning; did you mean 'height'"),
     ("Leaning", {"guess": {}, "vary": ["theta"]}, "'theta' is no input or parameter of Leaning"),
     ("Leaning", {"guess": {}, "vary": ["tau"], "hold": {"tau": 1}}, "'tau' is held and varies"),
     ("Leaning", {"guess": {"theta": "1m"}}, "theta: '1m' is in m; expected a value in rad"),

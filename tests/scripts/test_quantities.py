@@ -25,7 +25,7 @@ def command(tmp_path_factory):
 
 @pytest.mark.parametrize("text, unit, number", [
     ("0.5", "rad", 0.5), ("-1e-3", "1", -1e-3), ("pi/2", "rad", math.pi / 2), ("2*sin(pi/6)^2", "1", 0.5),
-    ("30deg", "rad", math.pi / 6), ("-90 °", "rad", -math.pi / 2), ("180deg/s", "rad/s", math.pi), ("60rpm", "rad/s", 2 * math.pi),
+    (" 30 deg ", "rad", math.pi / 6), ("-90 °", "rad", -math.pi / 2), ("180deg/s", "rad/s", math.pi), ("60rpm", "rad/s", 2 * math.pi),
     ("20cm", "m", 0.2), ("1.5e3mm", "m", 1.5), ("1inch", "m", 0.0254), ("500g", "kg", 0.5), ("5min", "s", 300), ("36km/h", "m/s", 10),
     ("3l/min", "m3/s", 5e-5), ("2bar", "Pa", 2e5), ("20degC", "K", 293.15), ("10%", "1", 0.1), ("2N.mm", "N.m", 2e-3), ("7N", "kg.m/s2", 7), ("45deg", "deg", 45),
     ("pi/2", "furlong", math.pi / 2), ("3furlong", "furlong", 3),

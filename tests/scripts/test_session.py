@@ -1,5 +1,6 @@
 """Simulations by start and step of the package agree with closed forms, and restore saved states bit for bit."""
 
+import copy
 import gc
 import pickle
 import re
@@ -152,6 +153,10 @@ def test_mistakes(archive, lagrange_fmu):  # noqa: F811
             with pytest.raises(lagrange_fmu.Problem) as problem:
                 exec(code, {"sim": sim, "other": other, "np": np})
             assert str(problem.value).startswith(message), problem.value
+        for function in (copy.copy, copy.deepcopy, pickle.dumps):
+            with pytest.raises(lagrange_fmu.Problem, match="can be neither copied nor pickled; expected its save"):
+                function(sim)
+        assert dict(sim)["n"] == 2
         sim.step(0.1)
         with pytest.raises(lagrange_fmu.Problem, match="^PushedInSession does not take -1 for 'm': .*min"):
             other["m"] = -1
@@ -169,6 +174,8 @@ def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
         ({"q": 1}, "'q' is not a variable of PushedInSession"),
         ({"m": "2m"}, "m: '2m' is in m; expected a value in kg"),
         ({"m": -1}, "PushedInSession cannot start: .*'m'"),
+        ({"m": [1, 2]}, "'m' is set to .1, 2.; expected a finite number"),
+        ({"tolerance": "fine"}, "the tolerance is 'fine'; expected a number between 0 and 1"),
         ({"fmi": 3}, "is built already"),
     ):
         with pytest.raises(lagrange_fmu.Problem, match=message if "start_values" not in words else "'start_values' is not a variable"):

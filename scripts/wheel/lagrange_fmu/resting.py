@@ -210,8 +210,9 @@ class _Search:
 
 def equilibrium(system, guess, hold, vary):
     with opened(system, dict(guess), what="rest there") as point:
-        names = [*point.settable, *point.outputs]
-        hold = numbers_of({name: hold[name] for name in known(hold, names, point.description)}, point.units)
+        names = [*dict.fromkeys([*point.settable, *point.outputs])]
+        known(hold, names, point.description, "is no state, output, input or parameter")
+        hold = numbers_of(hold, point.units)
         known(vary, [name for name in point.settable if name not in point.states], point.description, "is no input or parameter")
         for name in vary:
             if name in hold:

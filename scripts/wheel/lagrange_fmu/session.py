@@ -46,7 +46,7 @@ class Simulation(NamedValues):
         self._begin, *_ = experiment_of(description)
         super().__init__(None, description, self._begin)
         self._tolerance, self._problems = tolerance_of(description, tolerance), []
-        self._start = checked_start(start_values, description, startable(description))
+        self._start = self._checked(start_values)
         self.inputs, self.outputs = ([v.name for v in description.modelVariables if v.causality == kind] for kind in ("input", "output"))
         self._is_third = description.fmiVersion.startswith("3")
         has_events = self._is_third and description.coSimulation.hasEventMode
@@ -59,6 +59,11 @@ class Simulation(NamedValues):
         except Problem:
             self.close()
             raise
+
+    def _checked(self, start_values):
+        """Return start values by name as numbers of their variables' types, lists for arrays."""
+        found = {name: numbers_for(self.variables[name], value) for name, value in checked_start(start_values, self.description, startable(self.description)).items()}
+        return {name: numbers if self.variables[name].shape else numbers[0] for name, numbers in found.items()}
 
     @contextmanager
     def _named(self, what):
@@ -128,7 +133,7 @@ class Simulation(NamedValues):
     def reset(self, start_values=None, /, **values):
         """Start again, with these start values in place of those of start()."""
         self._check_open()
-        start_values = checked_start(numbers_by_name(start_values) | numbers_by_name(values), self.description, startable(self.description))
+        start_values = self._checked(numbers_by_name(start_values) | numbers_by_name(values))
         with self._named("cannot start"):
             self.fmu.reset()
             self._initialize(self._start | start_values)
@@ -143,6 +148,9 @@ class Simulation(NamedValues):
 
     def __exit__(self, *problem):
         self.close()
+
+    def __reduce__(self):
+        raise Problem("a simulation can be neither copied nor pickled; expected its save(), and restore() in another simulation")
 
     def __repr__(self):
         return f"<{'closed simulation' if self.fmu is None else 'simulation'} of {self.description.modelName} at {self.time:.9g} s>"
