@@ -156,6 +156,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
 enum LimitRule {
   LIMIT_EXPONENTIAL,
   LIMIT_HYPERBOLIC,
+  LIMIT_BOUNDED,
   LIMIT_TANH,
   LIMIT_TANGENT,
   LIMIT_POSITIVE,

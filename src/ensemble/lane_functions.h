@@ -2,6 +2,7 @@
 #ifndef LANE_FUNCTIONS_H
 #define LANE_FUNCTIONS_H
 
+#include "bounded_functions.h"
 #include "lanes.h"
 #include "random_numbers.h"
 
@@ -36,6 +37,10 @@ LANE_FUNCTION(atanh)
 LANE_FUNCTION(exp)
 LANE_FUNCTION(log)
 LANE_FUNCTION(floor)
+LANE_FUNCTION(logistic)
+LANE_FUNCTION(softplus)
+LANE_FUNCTION(sech)
+LANE_FUNCTION(log_cosh)
 LANE_FUNCTION_OF_TWO(pow)
 LANE_FUNCTION_OF_TWO(atan2)
 LANE_FUNCTION_OF_TWO(random_uniform)

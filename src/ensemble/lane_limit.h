@@ -48,6 +48,11 @@ LANES_INLINE void series_limit_hyperbolic(struct SeriesLimit *limit, const Lanes
   lane_limit(limit, single_limit_hyperbolic, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
 }
 
+LANES_INLINE void series_limit_bounded(struct SeriesLimit *limit, const Lanes *u, const char *function) {
+  (void)function;
+  lane_limit(limit, single_limit_bounded, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
+}
+
 LANES_INLINE void series_limit_tanh(struct SeriesLimit *limit, const Lanes *u) {
   lane_limit(limit, single_limit_tanh, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
 }

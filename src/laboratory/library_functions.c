@@ -4,15 +4,17 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "bounded_functions.h"
 #include "random_numbers.h"
 
 static const struct {
   const char *name;
   FunctionOfOne *function;
-} functions_of_one[] = {{"sin", sin},     {"cos", cos},     {"tan", tan},   {"asin", asin},
-                        {"acos", acos},   {"atan", atan},   {"sinh", sinh}, {"cosh", cosh},
-                        {"tanh", tanh},   {"asinh", asinh}, {"exp", exp},   {"acosh", acosh},
-                        {"atanh", atanh}, {"fabs", fabs},   {"log", log},   {"floor", floor}};
+} functions_of_one[] = {{"sin", sin},           {"cos", cos},           {"tan", tan},   {"asin", asin},
+                        {"acos", acos},         {"atan", atan},         {"sinh", sinh}, {"cosh", cosh},
+                        {"tanh", tanh},         {"asinh", asinh},       {"exp", exp},   {"acosh", acosh},
+                        {"atanh", atanh},       {"fabs", fabs},         {"log", log},   {"floor", floor},
+                        {"logistic", logistic}, {"softplus", softplus}, {"sech", sech}, {"log_cosh", log_cosh}};
 
 static const struct {
   const char *name;

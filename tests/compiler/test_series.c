@@ -171,6 +171,12 @@ static void test_limits_of_functions(void **state) {
   series_limit_hyperbolic(&limit, LINE(3, 0.5), "cosh");
   assert_limited(&limit, 10, "cosh");
   limit = far_away;
+  series_limit_bounded(&limit, LINE(-0.3, 2), "1/cosh");
+  assert_limited(&limit, 2.5, "1/cosh");
+  limit = far_away;
+  series_limit_bounded(&limit, LINE(900, -2), "1/cosh"); /* below 1e-304 as far as |u| = 700 */
+  assert_limited(&limit, 100, "1/cosh");
+  limit = far_away;
   series_limit_tanh(&limit, LINE(0.3, 2));
   assert_limited(&limit, 2.5, "tanh");
   limit = far_away;

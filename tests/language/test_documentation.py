@@ -1,6 +1,7 @@
 """The documentation page is well-formed, and its typeset formulas agree with their text."""
 
 import html
+import math
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -32,6 +33,21 @@ def test_typeset_forms(tmp_path):
     assert (result.returncode, result.stderr) == (0, "")
     page = (tmp_path / "out" / "documentation" / "index.html").read_text()
     assert check(page) == 4 and "<msub><mi>θ</mi><mrow><mn>3</mn></mrow></msub>" in page and page.count("<details>") == 4
+
+
+def test_forms_of_exponentials(tmp_path):
+    """What is computed without overflow is shown as it is written."""
+    formulas = ["2/(1 + exp(a - b))", "b*exp(a)/(1 + exp(a))", "3/cosh(a + b)^2", "log(1 + exp(-a))*b", "log(cosh(2*a))", "b/(1 + exp(-a)/4)"]
+    values = {"a": 0.3, "b": 0.7}
+    outputs = "".join(f'<output name="y{i}">{formula}</output>' for i, formula in enumerate(formulas))
+    (tmp_path / "system.xml").write_text(f'<system name="Forms"><input name="a"/><input name="b"/>{outputs}</system>')
+    assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
+    page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    assert check(page) == len(formulas)
+    shown = dict(html.unescape(text).split(" = ") for text in re.findall("<code>(y.*?)</code>", page))
+    for i, formula in enumerate(formulas):
+        evaluated = (eval(text.replace("^", "**"), {"exp": math.exp, "cosh": math.cosh, "log": math.log, **values}) for text in (formula, shown[f"y{i}"]))
+        assert math.isclose(*evaluated, rel_tol=1e-14), (formula, shown[f"y{i}"])
 
 
 def test_a_formula_that_is_cut_off_is_shown_as_text(tmp_path):

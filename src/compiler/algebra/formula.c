@@ -142,6 +142,30 @@ static void print_term(struct Printer *printer, Node node, bool first) {
   else print_product(printer, fabs(coefficient), base);
 }
 
+/* What authors write as formulas; false for other functions. */
+static bool print_bounded(struct Printer *printer, const struct Vertex *vertex) {
+  Node base;
+  double coefficient = coefficient_of(printer->graph, vertex->left, &base);
+  switch (vertex->operation) {
+  case LOGISTIC:
+    fputs(coefficient < 0.0 ? "1/(1 + exp(" : "1/(1 + exp(-", printer->file);
+    print_product(printer, fabs(coefficient), base);
+    break;
+  case SOFTPLUS:
+    fputs("log(1 + exp(", printer->file);
+    print(printer, vertex->left, IN_SUM);
+    break;
+  case SECH:
+  case LOG_COSH:
+    fputs(vertex->operation == SECH ? "1/cosh(" : "log(cosh(", printer->file);
+    print(printer, vertex->left, IN_SUM);
+    break;
+  default: return false;
+  }
+  fputs(vertex->operation == SECH ? ")" : "))", printer->file);
+  return true;
+}
+
 static void print_function(struct Printer *printer, const struct Vertex *vertex) {
   if (vertex->operation == GATE) {
     fputs("if(", printer->file);
@@ -151,6 +175,7 @@ static void print_function(struct Printer *printer, const struct Vertex *vertex)
     fputs(", 0)", printer->file);
     return;
   }
+  if (print_bounded(printer, vertex)) return;
   fprintf(printer->file, "%s(", operation_name(vertex->operation));
   print(printer, vertex->left, IN_SUM);
   if (operation_arity(vertex->operation) == 2) {
@@ -173,7 +198,8 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
   bool sum = vertex->operation == ADD || coefficient_of(printer->graph, node, &base) < 0;
   bool product = vertex->operation == MULTIPLY || vertex->operation == POWER;
   bool variable_power = vertex->operation == POWER && !graph_is_constant(printer->graph, vertex->right);
-  bool parentheses = (sum && tightness > IN_SUM) || (product && tightness > IN_PRODUCT);
+  bool quotient = vertex->operation == LOGISTIC || vertex->operation == SECH;
+  bool parentheses = ((sum || quotient) && tightness > IN_SUM) || (product && tightness > IN_PRODUCT);
   if (parentheses) fputs("(", printer->file);
   if (variable_power) {
     print(printer, vertex->left, IN_POWER);

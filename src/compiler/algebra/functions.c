@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/simplify.h"
+#include "bounded_functions.h"
 #include "random_numbers.h"
 
 /* --- Values on numbers, if C's math library has no function or a less exact one --- */
@@ -74,6 +75,22 @@ static Node sinh_of_operand(struct Graph *graph, Node node) {
 
 static Node cosh_of_operand(struct Graph *graph, Node node) {
   return function(graph, COSH, operand(graph, node), ZERO);
+}
+
+static Node tanh_of_operand(struct Graph *graph, Node node) {
+  return function(graph, TANH, operand(graph, node), ZERO);
+}
+
+static Node logistic_of_operand(struct Graph *graph, Node node) {
+  return function(graph, LOGISTIC, operand(graph, node), ZERO);
+}
+
+static Node times_tanh_of_operand(struct Graph *graph, Node node) {
+  return multiply(graph, node, tanh_of_operand(graph, node));
+}
+
+static Node times_one_minus_itself(struct Graph *graph, Node node) {
+  return multiply(graph, node, subtract(graph, ONE, node));
 }
 
 /* Returns constant + factor node^2. */
@@ -333,6 +350,41 @@ const struct Function functions[OPERATION_COUNT] = {
                    .recurrence = RATIO,
                    .auxiliary = operand,
                    .auxiliary_limit = "positive"},
+    [LOGISTIC] = {.name = "1/(1 + exp)",
+                  .is_internal = true,
+                  .c_name = "logistic",
+                  .of_one = logistic,
+                  .is_never_negative = true,
+                  .recurrence = INTEGRAL,
+                  .auxiliary = times_one_minus_itself,
+                  .operand_limit = "bounded"},
+    [SOFTPLUS] = {.name = "log(1 + exp)",
+                  .is_internal = true,
+                  .c_name = "softplus",
+                  .of_one = softplus,
+                  .is_never_negative = true,
+                  .recurrence = INTEGRAL,
+                  .auxiliary = logistic_of_operand,
+                  .operand_limit = "bounded"},
+    [SECH] = {.name = "1/cosh",
+              .is_internal = true,
+              .c_name = "sech",
+              .of_one = sech,
+              .parity = EVEN,
+              .is_never_negative = true,
+              .recurrence = INTEGRAL,
+              .is_reversed = true,
+              .auxiliary = times_tanh_of_operand,
+              .operand_limit = "bounded"},
+    [LOG_COSH] = {.name = "log(cosh)",
+                  .is_internal = true,
+                  .c_name = "log_cosh",
+                  .of_one = log_cosh,
+                  .parity = EVEN,
+                  .is_never_negative = true,
+                  .recurrence = INTEGRAL,
+                  .auxiliary = tanh_of_operand,
+                  .operand_limit = "bounded"},
     [ABSOLUTE] = {.name = "abs",
                   .c_name = "fabs",
                   .of_one = fabs,

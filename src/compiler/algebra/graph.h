@@ -41,6 +41,10 @@ enum Operation {
   ARTANH,
   EXPONENTIAL,
   LOGARITHM,
+  LOGISTIC, /* include/bounded_functions.h has this one and the next three; growth.h makes them */
+  SOFTPLUS,
+  SECH,
+  LOG_COSH,
   ABSOLUTE,
   SIGN,
   FLOOR,

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/functions.h"
+#include "algebra/growth.h"
 
 static const struct Vertex *vertex_of(const struct Graph *graph, Node node) {
   return &graph->vertices[node];
@@ -106,6 +107,8 @@ static Node multiply_bases(struct Graph *graph, Node left, Node right) {
   if (right == ONE) return left;
   struct Factor a[FACTOR_LIMIT], b[FACTOR_LIMIT];
   int a_count = factors_of(graph, left, a), b_count = factors_of(graph, right, b);
+  Node bounded;
+  if (bounded_product(graph, a, a_count, b, b_count, &bounded)) return bounded;
   bool powers = a_count == 1 && b_count == 1 && a[0].base == b[0].base;
   if (a_count > 0 && b_count > 0 && (powers || cancels(a, a_count, b, b_count))) {
     int count = a_count;
@@ -174,6 +177,8 @@ Node power(struct Graph *graph, Node base, Node exponent) {
   if (n == 0.0) return ONE;
   if (n == 1.0) return base;
   if (graph_is_constant(graph, base)) return graph_constant(graph, pow(graph_value(graph, base), n));
+  Node bounded;
+  if (n < 0.0 && bounded_power(graph, base, n, &bounded)) return bounded;
   const struct Vertex vertex = *vertex_of(graph, base);
   if (is_whole(n)) {
     if (vertex.operation == POWER && !isnan(numeric_exponent(graph, &vertex)))
@@ -264,6 +269,12 @@ static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *res
     *result = scale(graph, a.coefficient + b.coefficient, rest);
     return true;
   }
+  bool is_one_each = a.factor_count == 1 && b.factor_count == 1 && a.coefficient == b.coefficient;
+  if (is_one_each && a.factors[0].exponent == 1.0 && b.factors[0].exponent == 1.0 &&
+      are_complements(graph, a.factors[0].base, b.factors[0].base)) {
+    *result = scale(graph, a.coefficient, product_of(graph, common, count));
+    return true;
+  }
   if (a_square && b_square && u == w && first != second && a.coefficient == b.coefficient) {
     *result = scale(graph, a.coefficient, product_of(graph, common, count));
     return true;
@@ -332,6 +343,7 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
   if (operation == ABSOLUTE && is_never_negative(graph, left)) return left;
   if (operation == GATE) return gate(graph, left, right);
   Node base;
+  if (operation == LOGARITHM && bounded_logarithm(graph, left, &base)) return base;
   if (coefficient_of(graph, left, &base) < 0) {
     enum Parity parity = functions[operation].parity;
     if (parity == ODD) return negate(graph, graph_node(graph, operation, negate(graph, left), right));

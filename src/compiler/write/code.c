@@ -85,11 +85,12 @@ static const char *optimization_of(const struct Program *program) {
   return program->derivatives_are_table ? NULL : "Os";
 }
 
-static bool has_random_numbers(const struct Program *program) {
+/* True if a node of the graph has an operation from the first to the last. */
+static bool has_operations(const struct Program *program, enum Operation first, enum Operation last) {
   const struct Graph *graph = program->model->graph;
   bool has = false;
   for (Node node = 0; node < graph->count && !has; node++)
-    has = graph->vertices[node].operation == UNIFORM || graph->vertices[node].operation == GAUSS;
+    has = graph->vertices[node].operation >= first && graph->vertices[node].operation <= last;
   return has;
 }
 
@@ -107,7 +108,8 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
   if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
-  if (has_random_numbers(program)) fputs("#include \"random_numbers.h\"\n", file);
+  if (has_operations(program, LOGISTIC, LOG_COSH)) fputs("#include \"bounded_functions.h\"\n", file);
+  if (has_operations(program, UNIFORM, GAUSS)) fputs("#include \"random_numbers.h\"\n", file);
   fputs("\n", file);
 }
 

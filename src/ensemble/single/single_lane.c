@@ -18,6 +18,7 @@ double single_power(int k, double n, const double *a, const double *c) {
 
 LIMIT(exponential, u, "")
 LIMIT(hyperbolic, u, "")
+LIMIT(bounded, u, "")
 LIMIT(tanh, u)
 LIMIT(tangent, u)
 LIMIT(positive, u, "")

@@ -448,7 +448,7 @@ static const char *check_values(const struct Settlement *settlement) {
     if (has_gap && (!needs_rate || isfinite(contact_value(settlement, i, CONTACT_RATE)))) continue;
     log_message(settlement->instance, settlement_status(settlement),
                 "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; "
-                "expected a gap that is finite, such as (1 + tanh(x/2))/2 in place of 1/(1 + exp(-x))",
+                "expected a gap that is finite",
                 settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");
     return "a contact has no finite gap";
   }

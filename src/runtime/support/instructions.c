@@ -192,6 +192,7 @@ static void check_limit(const struct Frame *frame, const struct LimitCheck *chec
   switch (check->rule) {
   case LIMIT_EXPONENTIAL: series_limit_exponential(limit, u, check->function); break;
   case LIMIT_HYPERBOLIC: series_limit_hyperbolic(limit, u, check->function); break;
+  case LIMIT_BOUNDED: series_limit_bounded(limit, u, check->function); break;
   case LIMIT_TANH: series_limit_tanh(limit, u); break;
   case LIMIT_TANGENT: series_limit_tangent(limit, u); break;
   case LIMIT_POSITIVE: series_limit_positive(limit, u, check->function); break;

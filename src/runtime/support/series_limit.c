@@ -85,6 +85,10 @@ void series_limit_hyperbolic(struct SeriesLimit *limit, const double *u, const c
   shorten(limit, u, excursion_fits, exponent_range, function);
 }
 
+void series_limit_bounded(struct SeriesLimit *limit, const double *u, const char *function) {
+  shorten(limit, u, excursion_fits, fmax(exponent_range, fabs(u[0]) + exponential_end), function);
+}
+
 void series_limit_tanh(struct SeriesLimit *limit, const double *u) {
   shorten(limit, u, excursion_fits, fmax(exponent_range, fabs(u[0]) - tanh_end), "tanh");
 }

@@ -24,6 +24,7 @@
 static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
     [LIMIT_EXPONENTIAL] = {.name = "exponential", .has_function = true},
     [LIMIT_HYPERBOLIC] = {.name = "hyperbolic", .has_function = true},
+    [LIMIT_BOUNDED] = {.name = "bounded", .has_function = true},
     [LIMIT_TANH] = {.name = "tanh"},
     [LIMIT_TANGENT] = {.name = "tangent"},
     [LIMIT_POSITIVE] = {.name = "positive", .has_function = true},
@@ -160,8 +161,13 @@ static void check_function(struct CheckList *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
   const struct Function *function = &functions[vertex->operation];
+<<<<<<< HEAD
   /* internal functions only occur in derivatives of min and max */
   const char *name = function->is_internal ? "min or max" : function->name;
+=======
+  /* What authors do not write comes from the derivatives of what they do. */
+  const char *name = vertex->operation == LESS ? "min or max" : function->name;
+>>>>>>> 7e9a695e (Rewrite quotients whose exponentials overflow)
   check_by_rule(list, function->operand_limit, vertex->left, name);
   check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
   bool is_angle =
