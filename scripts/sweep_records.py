@@ -42,8 +42,12 @@ def _check_switching(item, name, description):
     switching = [other for v in names for other, _ in [_split(v, {".closed": 1, ".sliding": 1})] if other]
     if name not in [COUNTER, *switching]:
         raise Problem(f"'{name}' of '{item}' is neither a contact nor a friction of {description.modelName}; {instead(name, [COUNTER, *switching])}")
-    if name != COUNTER and (len(switching) > 1 or description.numberOfEventIndicators > 1 and f"{name}.closed" in names):
-        raise Problem(f"the events of '{name}' are not known apart from others of {description.modelName}; expected {COUNTER}{item.removeprefix(name) if item.endswith('.first') else ''}, of them all")
+    others = [other for other in dict.fromkeys(switching) if other != name]
+    own = 2 if f"{name}.across.force" in names else 1  # indicators
+    if name != COUNTER and (others or description.numberOfEventIndicators > own):
+        those = " and ".join(f"'{other}'" for other in others) if 0 < len(others) <= 3 else f"{len(others)} others" if others else "conditions and other expressions"
+        total = COUNTER + (item.removeprefix(name) if item.endswith(".first") else "")
+        raise Problem(f"the events of '{name}' are not known apart from those of {those} of {description.modelName}; expected {total}, of them all")
 
 
 def _record(item, reals, counts, stop, description):

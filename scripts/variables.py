@@ -59,8 +59,9 @@ def nearest(word, words):
 
 def instead(word, words, what="these are"):
     """Return the end of a message: the most similar word, or the list of all words."""
+    words = list(words)
     near = nearest(word, words)
-    return f"did you mean '{near}'?" if near else f"{what}: {', '.join(map(str, words))}"
+    return f"did you mean '{near}'?" if near else f"{what}: {', '.join(map(str, words))}" if words else "there are none"
 
 
 def near_file(path):

@@ -147,7 +147,22 @@ def test_values_that_cannot_be_recorded(command, tmp_path, record, message):
 def test_events_of_several_contacts_cannot_be_distinguished(command, tmp_path):
     words = [*command[0], archive("NewtonsCradle"), "--vary", "g=9,10", "--record", "touch[2].events", "--output", tmp_path / "runs.parquet"]
     result = subprocess.run(list(map(str, words)), env=command[1], capture_output=True, text=True)
-    assert result.returncode == 1 and "the events of 'touch[2]' are not known apart from others of NewtonsCradle; expected events, of them all" in result.stderr
+    assert result.returncode == 1 and "the events of 'touch[2]' are not known apart from those of 'touch[3]' and 'touch[4]' and 'touch[5]' of NewtonsCradle; expected events, of them all" in result.stderr
+
+
+def test_events_of_a_friction_are_not_told_apart_from_a_condition(command, tmp_path):
+    block = '<coordinate name="x" velocity="v" velocityStart="1"/><particle mass="1" x="x"/><friction name="rub" coordinate="x" force="1"/>'
+    build_systems("recorded-frictions", {
+        "RubAlone": f'<system name="RubAlone">{block}</system>',
+        "RubBeside": f'<system name="RubBeside">{block}<force coordinate="x">if(time &lt; 0.1, 1, 0)</force></system>',
+    })  # fmt: skip
+    words = ["--vary", "v=1,2", "--stop", "3", "--record", "rub.events,rub.first", "--output", tmp_path / "runs.parquet"]
+    result = subprocess.run(list(map(str, [*command[0], archive("RubAlone"), *words])), env=command[1], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    table = pq.read_table(tmp_path / "runs.parquet").to_pydict()
+    assert table["rub.events"] == [1, 1] and table["rub.first"] == pytest.approx([1, 2])  # v/mu
+    result = subprocess.run(list(map(str, [*command[0], archive("RubBeside"), *words])), env=command[1], capture_output=True, text=True)
+    assert result.returncode == 1 and "the events of 'rub' are not known apart from those of conditions and other expressions of RubBeside; expected events" in result.stderr
 
 
 @pytest.mark.release

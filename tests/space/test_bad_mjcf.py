@@ -136,8 +136,12 @@ def test_mistakes_in_included_files(tmp_path):
     check(tmp_path, "\n".join(lines), 15, "more than 8 files include each other in a row")
     lines[14] = '<actuator><include file="motors.xml"/></actuator>'
     (tmp_path / "arm.xml").write_text("\n".join(lines))
-    result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 1 and re.search(r"^motors\.xml:3: there is no joint 'wrist' for an actuator.*\(included on line 15 of arm\.xml\)", result.stderr, re.MULTILINE), result.stderr
+    (tmp_path / "system.xml").write_text('<system name="S"><include file="arm.xml" as="arm"/></system>')
+    for file in ("arm.xml", "system.xml"):
+        result = lagc(file, "-o", "out", cwd=tmp_path)
+        assert result.returncode == 1 and re.search(r"^motors\.xml:3: there is no joint 'wrist' for an actuator.*\(included on line 15 of arm\.xml\)", result.stderr, re.MULTILINE), (
+            result.stderr
+        )
     lines[14] = '<include file="broken.xml"/>'
     (tmp_path / "arm.xml").write_text("\n".join(lines))
     result = lagc("arm.xml", "-o", "out", cwd=tmp_path)

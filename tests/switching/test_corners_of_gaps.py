@@ -3,9 +3,12 @@ One gap with several pieces, in whose corner a body comes to rest: the message n
 works.
 """
 
+import fmpy
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 
+import fmu
 from fmu import DISCARD, build_systems
 
 BODY = '<coordinate name="x" velocity="v" {0}/><coordinate name="y" velocity="w" {1}/><particle mass="1" x="x" y="y"/>'
@@ -22,6 +25,8 @@ CORNERS = {
     "Vee": (FALLS, "if(x &gt; 0, y - x, y + x)", "a condition", None),
 }
 METHODS = ["taylor", "radau"]
+# A body falls 1.5 m onto a slope of 45 degrees without friction, and bounces along it.
+SLOPE = BODY.format('start="0.5"', 'start="1"') + '<force coordinate="y">-9.81</force><contact name="slope" gap="y + x" {}/>'
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -31,6 +36,8 @@ def built():
              for name, (body, gap, _, _) in CORNERS.items() for method in METHODS}  # fmt: skip
     both = '<contact name="wall" gap="x" restitution="0"/><contact name="floor" gap="y" restitution="0"/>'
     texts["CornerBoth"] = f'<system name="CornerBoth">{SLIDES}{both}</system>'
+    bounces = SLOPE.format('restitution="0.5"')
+    texts["CornerSlope"] = f'<system name="CornerSlope">{bounces}</system>'
     build_systems("corners-of-gaps", texts)
 
 
@@ -43,6 +50,25 @@ def test_a_corner_asks_for_two_contacts(open_fmu, corner, method):
         instance.step(3.0)
     text = next(text for _, _, text in instance.messages if "has a corner" in text)
     assert reached is None or float(text.split()[1][:-1]) == pytest.approx(reached, abs=1e-5)
+
+
+@pytest.mark.parametrize("corner", CORNERS)
+def test_a_corner_asks_for_two_contacts_in_model_exchange(corner):
+    """What an integrator leaves of the body's position would take it from one piece to the other without end."""
+    messages, function = [], CORNERS[corner][2]
+    log = lambda *words: messages.append(words[-1].decode())
+    with pytest.raises(FMICallException):
+        fmpy.simulate_fmu(str(fmu.archive(f"Corner{corner}Taylor")), fmi_type="ModelExchange", stop_time=3, relative_tolerance=1e-6, logger=log)
+    assert any(f"the gap of the contact 'corner' has a corner there, by {function}" in message for message in messages), messages
+
+
+def test_bounces_along_a_slope_end_in_model_exchange():
+    """Behind low bounces an integrator's first step is longer than the next, and comes back to the slope while the body still parts."""
+    archive = str(fmu.archive("CornerSlope"))
+    rows = fmpy.simulate_fmu(archive, fmi_type="ModelExchange", stop_time=3, output_interval=0.1, relative_tolerance=1e-6, output=["x", "y", "v", "w"])
+    speed = 9.81 / np.sqrt(2) * (3 - np.sqrt(2 * 1.5 / 9.81)) + np.sqrt(9.81 * 1.5)  # along the slope, which takes nothing from it
+    x, y, v, w = (rows[-1][name] for name in "xyvw")
+    assert [x + y, v + w, (v - w) / np.sqrt(2)] == pytest.approx([0, 0, speed], abs=1e-3)
 
 
 def test_two_contacts_close_in_a_corner(open_fmu):

@@ -178,12 +178,30 @@ static const char *refuse_singular_impact(const struct Settlement *settlement, s
   return no_impact;
 }
 
+/* Largest error of an importer's integrator in one step, in units of the largest coordinate. */
+static const double largest_step_error = 1e-4;
+
+/*
+ * True if an importer reaches the ground while the contact still parts: the error of its first step after the last impact exceeds the
+ * height of the bounce, as that of the next first step would.
+ */
+static bool is_overtaken(const struct Settlement *settlement, size_t contact) {
+  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
+  const double *value = &settlement->value[gap], *noise = &settlement->noise[gap];
+  bool has_jumped = settlement->jumped || settlement->moved || settlement->switched != NULL || settlement->set_mode;
+  if (settlement->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -noise[CONTACT_GAP])) return false;
+  double height = 0.5 * value[CONTACT_RATE] * value[CONTACT_RATE] / -value[CONTACT_ACCELERATION];
+  return value[CONTACT_RATE] > noise[CONTACT_RATE] &&
+         height <= largest_step_error * largest_scale(settlement->state, 0);
+}
+
 /* True if an open contact touches, accelerates towards closing, and would only make bounces that errors hide. */
 static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
   size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
   if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
   if (!(-settlement->value[acceleration] > settlement->noise[acceleration])) return false;
-  return bounce_is_lost(settlement, contact, contact_value(settlement, contact, CONTACT_RATE));
+  return is_overtaken(settlement, contact) ||
+         bounce_is_lost(settlement, contact, contact_value(settlement, contact, CONTACT_RATE));
 }
 
 /* Lets frictions slide that stick at a velocity that an impact has set, before the velocities are projected. */

@@ -10,7 +10,13 @@
 /* In units of the scales of the state: a smaller change may be a rounding error. */
 static const double least_kink = 1e-6;
 
+const double crowding_share = 1e-6;
+
+/* Events at a corner that follow one another within this share of the time, before they count as Zeno behaviour. */
+enum { CORNER_LIMIT = 30 };
+
 const char constraints_not_kept[] = "the constraints cannot be fulfilled after an event";
+const char touched_corner[] = "both sides of the corner of a gap touch";
 
 const char *continuity_begin(struct Settlement *settlement) {
   const struct SwitchTable *switches = settlement->switches;
@@ -115,6 +121,18 @@ bool continuity_explain_corner(struct Settlement *settlement, size_t branch) {
               settlement->time, settlement->switches->contacts[contact].name, facts->function, facts->line,
               facts->file);
   return true;
+}
+
+const char *continuity_check_corner(struct Settlement *settlement) {
+  struct Situation *situation = settlement->instance->situation;
+  if (settlement->occasion != IN_EXCHANGE || settlement->switched == NULL) return NULL;
+  bool is_crowded = settlement->time - situation->switched <= crowding_share * fabs(settlement->time);
+  situation->gathered = is_crowded ? situation->gathered + 1 : 0;
+  situation->switched = settlement->time;
+  if (situation->gathered < CORNER_LIMIT) return NULL;
+  situation->gathered = 0;
+  size_t branch = (size_t)(settlement->switched - settlement->switches->branches);
+  return continuity_explain_corner(settlement, branch) ? touched_corner : NULL;
 }
 
 /* Checks that the constraints hold after branches have switched. Returns NULL, or the reason. */

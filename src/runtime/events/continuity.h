@@ -19,6 +19,12 @@ void continuity_note(struct Settlement *settlement, size_t branch);
  */
 const char *continuity_check(struct Settlement *settlement);
 
+/*
+ * Refuses Zeno behaviour at the corner of a gap in model exchange: errors of an integrator take a body that rests in the corner from
+ * one piece to the other. Returns NULL, or the reason.
+ */
+const char *continuity_check_corner(struct Settlement *settlement);
+
 /* Returns the largest change of the state by a smooth branch, in units of the scales: an importer comes to it late. */
 double continuity_allowed_share(const struct Settlement *settlement);
 
@@ -28,7 +34,10 @@ double continuity_allowed_share(const struct Settlement *settlement);
  */
 bool continuity_explain_corner(struct Settlement *settlement, size_t branch);
 
-/* The reason if the constraints cannot be fulfilled. */
-extern const char constraints_not_kept[];
+/* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
+extern const double crowding_share;
+
+/* The reasons if the constraints cannot be fulfilled, and if both pieces of a gap are touched. */
+extern const char constraints_not_kept[], touched_corner[];
 
 #endif

@@ -32,9 +32,6 @@ enum { NAME_SIZE = 200 };
 /* Windows in a communication step that may hide something, after which the motion stops. */
 enum { UNSURE_LIMIT = 1000 };
 
-/* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
-static const double crowding_share = 1e-6;
-
 /* Divisor of the solver's step if events are too close together, and limit of such divisions in a row. */
 enum { NEARER = 64, NEARER_LIMIT = 8 };
 
@@ -50,7 +47,6 @@ static const double window_share = 1.25;
 
 static const char gathering[] =
     "events accumulate (Zeno behaviour), as bounces by an <event> do; a <contact> comes to rest";
-static const char corner[] = "both sides of the corner of a gap touch";
 static const char flutter[] = "a contact opens and closes without end (Zeno behaviour)";
 static const char too_close[] = "the events are too close together to be separated";
 static const char no_modes[] = "the accelerations do not exist with these parameters";
@@ -285,7 +281,7 @@ static const char *refuse_gathering(struct Instance *instance, const struct Comm
   const char *finer = lagrangian.solver->finer;
   progress->is_lost = true;
   if (instance->stops_at_events) progress->searched = step->start;
-  if (is_at_corner(instance, progress->searched, indicator)) return corner;
+  if (is_at_corner(instance, progress->searched, indicator)) return touched_corner;
   name_indicator(indicator, name, sizeof name);
   if (!is_of_contact(indicator)) {
     log_message(instance, STATUS_DISCARD, "time %.15g: %s switches without end (Zeno behaviour)", progress->searched,

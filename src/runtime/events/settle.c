@@ -176,6 +176,7 @@ const char *settle(struct Instance *instance, double time, double *state, enum O
   if (problem == NULL) problem = continuity_check(&settlement);
   if (problem == NULL) problem = check_laws(&settlement);
   if (problem == NULL) problem = keep_on_constraints(&settlement);
+  if (problem == NULL) problem = continuity_check_corner(&settlement);
   if (settlement.changed && occasion != AT_START) instance->situation->statistics[STATISTIC_EVENTS]++;
   *changed = settlement.changed;
   return problem;

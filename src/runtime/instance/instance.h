@@ -53,7 +53,7 @@ struct Situation {
   int32_t input_derivatives_set; /* for the next step */
   int32_t changed;               /* enum Change, since the last step */
   int32_t waiting_event;         /* 1 + the indicator that ended the last step, if stops_at_events; 0 for none */
-  int32_t gathered;              /* Zeno counter of such events */
+  int32_t gathered;              /* Zeno counter of such events; in model exchange, of those at corners of gaps */
   int64_t statistics[STATISTIC_COUNT];
   int64_t completed_steps;                      /* of an importer that integrates, since the start */
   int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode of a co-simulation */
@@ -62,6 +62,7 @@ struct Situation {
   double suggested_step; /* proposed by a solver that restarts at each step, in s; 0 for none */
   struct Span last_step; /* of the solver; may end after time */
   double searched;       /* all events before it are handled */
+  double switched;       /* in model exchange: time of the last event in which a branch switched */
   double values[];
 };
 

@@ -137,8 +137,9 @@ static bool could_solver_save(const struct Instance *instance, const struct Situ
  * infinite, at the end of a polynomial; results that depend on it are discarded.
  */
 static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
-  const double numbers[] = {fixed->time,           fixed->start_time,      fixed->stop_time,     fixed->tolerance,
-                            fixed->suggested_step, fixed->last_step.start, fixed->last_step.end, fixed->searched};
+  const double numbers[] = {fixed->time,          fixed->start_time,     fixed->stop_time,
+                            fixed->tolerance,     fixed->suggested_step, fixed->last_step.start,
+                            fixed->last_step.end, fixed->searched,       fixed->switched};
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
   size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);

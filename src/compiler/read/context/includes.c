@@ -118,7 +118,7 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
   }
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
-    struct Diagnostics local = {.file = source->file, .origin = source->origin};
+    struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
     known = allocate(1, sizeof *known);
     const char *ground = attribute(source->include, "ground");
     struct RobotOptions options = {.floats = attribute_is(source->include, "base", "floating"),
