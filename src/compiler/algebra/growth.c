@@ -101,14 +101,20 @@ static bool take_term(const struct Graph *graph, Node term, struct Rates *rates)
   return true;
 }
 
-/* The decay that bounds the growth of a sum, or of one factor; false for none. */
-static bool decay_of(struct Graph *graph, Node node, struct Decay *decay) {
+/* How fast the terms of a node grow; false where they have no common decay. */
+static bool rates_of(const struct Graph *graph, Node node, struct Rates *rates) {
   Node terms[TERM_LIMIT];
-  struct Rates rates = {.base = ZERO};
+  *rates = (struct Rates){.base = ZERO};
   int count = terms_of(graph, node, terms, TERM_LIMIT);
   for (int i = 0; i < count; i++)
-    if (!take_term(graph, terms[i], &rates)) return false;
-  if (rates.unit == 0.0) return false;
+    if (!take_term(graph, terms[i], rates)) return false;
+  return true;
+}
+
+/* The decay that bounds the growth of a sum, or of one factor; false for none. */
+static bool decay_of(struct Graph *graph, Node node, struct Decay *decay) {
+  struct Rates rates;
+  if (!rates_of(graph, node, &rates) || rates.unit == 0.0) return false;
   decay->power = rates.most / rates.unit;
   bool both = rates.up && rates.down;
   Node operand = scale(graph, both || rates.down ? rates.unit : -rates.unit, rates.base);
@@ -117,12 +123,8 @@ static bool decay_of(struct Graph *graph, Node node, struct Decay *decay) {
 }
 
 static bool is_bounded(const struct Graph *graph, Node sum) {
-  Node terms[TERM_LIMIT];
-  struct Rates rates = {.base = ZERO};
-  int count = terms_of(graph, sum, terms, TERM_LIMIT);
-  for (int i = 0; i < count; i++)
-    if (!take_term(graph, terms[i], &rates)) return false;
-  return rates.unit == 0.0;
+  struct Rates rates;
+  return rates_of(graph, sum, &rates) && rates.unit == 0.0;
 }
 
 /* The sum of the terms, each times a node. */

@@ -161,13 +161,8 @@ static void check_function(struct CheckList *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
   const struct Function *function = &functions[vertex->operation];
-<<<<<<< HEAD
-  /* internal functions only occur in derivatives of min and max */
-  const char *name = function->is_internal ? "min or max" : function->name;
-=======
-  /* What authors do not write comes from the derivatives of what they do. */
+  /* LESS only occurs in derivatives of min and max */
   const char *name = vertex->operation == LESS ? "min or max" : function->name;
->>>>>>> 7e9a695e (Rewrite quotients whose exponentials overflow)
   check_by_rule(list, function->operand_limit, vertex->left, name);
   check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
   bool is_angle =
