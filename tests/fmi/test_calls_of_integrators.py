@@ -45,6 +45,30 @@ def test_a_time_before_the_start(open_fmu):
         ball.fmu.setTime(1.5)
 
 
+def test_a_time_before_the_last_step(open_fmu):
+    """Within the last step values may be read; not beyond the second last call of fmi2CompletedIntegratorStep (FMI 2.0.4, section 3.2.1)."""
+    ball = falling_ball(open_fmu)
+    for time in (0.1, 0.2):
+        ball.fmu.setTime(time)
+        ball.fmu.completedIntegratorStep()
+    ball.fmu.setTime(0.15)
+    ball.fmu.setTime(0.1)
+    state = ball.fmu.getFMUstate()
+    with ball.fails(ERROR, "the time is 0.05; expected none before 0.1, that of the last event or of the second last completed step; restore a saved state"):
+        ball.fmu.setTime(0.05)
+    ball.fmu.setFMUstate(state)
+    ball.fmu.setTime(0.3)
+    ball.fmu.enterEventMode()
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
+    ball.fmu.setTime(0.3)
+    with ball.fails(ERROR, "the time is 0.25; expected none before 0.3"):
+        ball.fmu.setTime(0.25)
+    ball.fmu.setFMUstate(state)  # which goes back
+    ball.fmu.setTime(0.12)
+    ball.free_state(state)
+
+
 def test_a_due_event_cannot_be_skipped(open_fmu):
     """Event mode cannot end while a bounce is due for which the discrete states were not updated (FMI 2.0.4, section 3.2.2)."""
     ball = falling_ball(open_fmu)

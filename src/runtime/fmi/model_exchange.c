@@ -1,5 +1,6 @@
 #include "fmi/model_exchange.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,11 +11,20 @@
 #include "instance/time_laws.h"
 #include "stepping/reading.h"
 
+/*
+ * Sets the time, which may go back within the last step of the importer alone: not beyond the second last completed step
+ * or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
+ */
 enum Status exchange_set_time(struct Instance *instance, double time) {
-  double start = instance->situation->start_time;
+  double start = instance->situation->start_time, earliest = instance->situation->last_step.start;
   if (!isfinite(time)) return refuse_call(instance, "the time is %g; expected a finite number", time);
   if (time < start)
     return refuse_call(instance, "the time is %.15g; expected none before startTime %.15g", time, start);
+  if (time < earliest - 8.0 * DBL_EPSILON * fabs(earliest))
+    return refuse_call(instance,
+                       "the time is %.15g; expected none before %.15g, that of the last event or of the second last "
+                       "completed step; restore a saved state to go back further",
+                       time, earliest);
   instance->situation->time = time;
   return STATUS_DONE;
 }
@@ -76,9 +86,12 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 
 void exchange_enter_event_mode(struct Instance *instance) {
   struct Situation *situation = instance->situation;
-  if (situation->phase == PHASE_CONTINUOUS_TIME) instance->lacks_update = true;
-  /* States set from here on may jump; those set before follow the motion. */
-  if (situation->phase == PHASE_CONTINUOUS_TIME) situation->changed = CHANGED_NOTHING;
+  if (situation->phase == PHASE_CONTINUOUS_TIME) {
+    instance->lacks_update = true;
+    /* States set from here on may jump; those set before follow the motion. */
+    situation->changed = CHANGED_NOTHING;
+    situation_begin(situation, situation->time);
+  }
   situation->phase = PHASE_EVENT;
 }
 
@@ -120,7 +133,10 @@ static bool has_drifted(struct Instance *instance) {
 }
 
 bool exchange_complete_step(struct Instance *instance) {
-  instance->situation->completed_steps++;
+  struct Situation *situation = instance->situation;
+  situation->completed_steps++;
+  situation->last_step = (struct Span){fmin(situation->last_step.end, situation->time), situation->time};
+  situation->searched = situation->last_step.start;
   return has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
 }
 

@@ -25,6 +25,7 @@ enum Status simulation_start(struct Instance *instance) {
   if (start_find(instance) != STATUS_DONE) return STATUS_ERROR;
   instance->situation->phase = instance->kind == KIND_MODEL_EXCHANGE ? PHASE_EVENT : PHASE_STEP_COMPLETE;
   instance->situation->changed = CHANGED_COURSE;
+  situation_begin(instance->situation, instance->situation->time);
   memcpy(instance->situation->reported_statistics, instance->situation->statistics,
          sizeof instance->situation->statistics);
   instance->lacks_update = true;

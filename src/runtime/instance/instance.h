@@ -60,13 +60,13 @@ struct Situation {
   double time, start_time, stop_time;
   double tolerance;
   double suggested_step; /* proposed by a solver that restarts at each step, in s; 0 for none */
-  struct Span last_step; /* of the solver; may end after time */
+  struct Span last_step; /* of the solver, which may end after time; in model exchange, of the importer */
   double searched;       /* all events before it are handled */
   double switched;       /* in model exchange: time of the last event in which a branch switched */
   double values[];
 };
 
-/* Sets the time at which the solver is to start. */
+/* Sets the time at which the solver or the importer is to start. */
 static inline void situation_begin(struct Situation *situation, double time) {
   situation->last_step = (struct Span){time, time};
   situation->searched = time;
