@@ -82,6 +82,18 @@ def test_directional_derivatives_by_differences(name, open_fmu):
         np.testing.assert_allclose(exact, quotient, rtol=1e-4, atol=1e-5 * (1 + np.max(np.abs(quotient))))
 
 
+def test_long_lists(open_fmu):
+    """4000 unknowns along 4000 knowns, each of which stands 200 times: the seeds of one known add up."""
+    chain = open_fmu("ChainPendulum", kind=FMU2Model).initialize()
+    states = fmu.states_of("ChainPendulum")
+    unknowns, knowns = chain.vr(*[f"der({name})" for name in states]), chain.vr(*states)
+    seeds = np.random.default_rng(1).uniform(-1, 1, 200 * len(knowns))
+    single = [chain.fmu.getDirectionalDerivative(unknowns, [known], [1.0]) for known in knowns]
+    expected = np.array(single).T @ seeds.reshape(200, -1).sum(axis=0)
+    found = chain.fmu.getDirectionalDerivative(unknowns * 200, knowns * 200, list(seeds))
+    np.testing.assert_allclose(np.reshape(found, (200, -1)), np.tile(expected, (200, 1)), rtol=1e-10, atol=1e-10)
+
+
 def test_errors_of_directional_derivatives(open_fmu):
     instance = open_fmu("DampedPendulum").initialize()
     for unknown, known, seed, message in (

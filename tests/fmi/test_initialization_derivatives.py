@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
@@ -9,6 +10,37 @@ import fmi3
 import fmu
 
 STEP = 1e-4
+
+
+HANGING = """
+<system name="HangingAndStop">
+  <parameter name="l" start="1" unit="m" min="0.1"/>
+  <coordinate name="x" velocity="vx" unit="m" start="-0.9"/>
+  <coordinate name="y" velocity="vy" unit="m" start="0.2"/>
+  <coordinate name="s" velocity="u" unit="m"/>
+  <particle name="bob" mass="1" x="x" y="y"/>
+  <particle name="block" mass="2" x="s"/>
+  <potential>9.81*bob.y</potential>
+  <constraint name="rod" unit="m2">x^2 + y^2 - l^2</constraint>
+  <contact name="ground" gap="y + 2" restitution="0.5"/>
+  <friction name="rub" velocity="u" force="1"/>
+</system>
+"""
+HIT = """
+<system name="HitAtTheStart">
+  <parameter name="e" start="0.5" min="0" max="1"/>
+  <coordinate name="h" velocity="v" unit="m" velocityStart="-2"/>
+  <particle mass="1" x="h"/>
+  <potential>9.81*h</potential>
+  <contact name="ground" gap="h" restitution="e"/>
+  <output name="twice">2*v</output>
+</system>
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_systems():
+    fmu.build_systems("initialization-derivatives", {"HangingAndStop": HANGING, "HitAtTheStart": HIT}, versions=[2, 3])
 
 
 @pytest.fixture(params=[(fmu, FMU2Slave), (fmu, FMU2Model), (fmi3, FMU3Slave), (fmi3, FMU3Model)], ids=["CS2", "ME2", "CS3", "ME3"])
@@ -78,3 +110,35 @@ def test_a_radial_displacement_of_the_start(open_in_initialization):
     if isinstance(instance, fmi3.Instance):
         np.testing.assert_allclose(instance.partial("Adjoint", ["x", "y"], ["x", "y"], [2.0, 3.0]),
                                    np.array([[y * y, -x * y], [-x * y, x * x]]) @ [2.0, 3.0] / r**3, atol=1e-9)  # fmt: skip
+
+
+def test_constraints_beside_what_switches(open_in_initialization):
+    """The same circle, in a system with a contact that is open and a friction that sticks."""
+    instance = open_in_initialization("HangingAndStop")
+    x, y = -0.9, 0.2
+    r = np.hypot(x, y)
+    np.testing.assert_allclose(directional(instance, ["x", "y"], "x"), [y * y / r**3, -x * y / r**3], atol=1e-9)
+    np.testing.assert_allclose(directional(instance, ["x", "y"], "l"), [x / r, y / r], atol=1e-9)
+    unknowns = ["x", "y", "vx", "der(vx)", "der(vy)"]
+    for known, value in {"x": x, "y": y, "vx": 0.0, "l": 1.0}.items():
+        instance.start_of = {known: value}
+        np.testing.assert_allclose(directional(instance, unknowns, known), difference(instance, unknowns, known), rtol=1e-7, atol=1e-7)
+    if isinstance(instance, fmi3.Instance):
+        np.testing.assert_allclose(instance.partial("Adjoint", ["x", "y"], ["x", "y"], [2.0, 3.0]),
+                                   np.array([[y * y, -x * y], [-x * y, x * x]]) @ [2.0, 3.0] / r**3, atol=1e-9)  # fmt: skip
+
+
+def test_an_impact_at_the_start(open_in_initialization):
+    """It starts with -e v."""
+    instance = open_in_initialization("HitAtTheStart")
+    assert instance.get("v") == pytest.approx(1.0)
+    np.testing.assert_allclose(directional(instance, ["v", "twice"], "v"), [-0.5, -1.0], atol=1e-9)
+    np.testing.assert_allclose(directional(instance, ["v", "twice"], "e"), [2.0, 4.0], atol=1e-9)
+
+
+def test_no_derivative_by_the_height_of_an_impact(open_in_initialization):
+    """From a little higher it starts with v, before the impact; from lower not at all."""
+    instance = open_in_initialization("HitAtTheStart")
+    with pytest.raises(FMICallException):
+        directional(instance, ["v"], "h")
+    assert any("there is no derivative at these start values: beside them an impact or event leads to other states" in message[-1] for message in instance.messages)

@@ -81,7 +81,7 @@ def read_all(version, kind, instance):
     derivatives = [unknown.variable for unknown in instance.description.derivatives]
     inputs = [v for v in instance.description.modelVariables if v.causality == "input"]
     outputs = [unknown.variable for unknown in instance.description.outputs]
-    if derivatives:
+    if derivatives and instance.description.modelName not in WITHOUT_START_BESIDE:
         result.append(read_directional(version, instance, derivatives + outputs, states_of(instance) + inputs))
     if kind in (FMU2Model, FMU3Model) and derivatives:
         count = sum(size_of(v) for v in derivatives)

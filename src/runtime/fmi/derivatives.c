@@ -41,15 +41,16 @@ static enum Status follow(struct Instance *instance, const struct Point *point, 
   return instance->singular == 0 ? STATUS_DONE : STATUS_DISCARD;
 }
 
-static enum Status set_seed(struct Instance *instance, struct Direction *direction,
+/* Adds to the seed: a known may stand more than once in a list. */
+static enum Status add_seed(struct Instance *instance, struct Direction *direction,
                             const struct ScalarVariable *variable, double value) {
   if (!isfinite(value))
     return refuse_call(instance, "the seed of '%s' is %g; expected a finite number", variable->name, value);
   switch (variable->kind) {
-  case VARIABLE_TIME: direction->seed.time = value; return STATUS_DONE;
-  case VARIABLE_STATE: direction->state[variable->index] = value; return STATUS_DONE;
-  case VARIABLE_INPUT: direction->input[variable->index] = value; return STATUS_DONE;
-  case VARIABLE_PARAMETER: direction->parameter[variable->index] = value; return STATUS_DONE;
+  case VARIABLE_TIME: direction->seed.time += value; return STATUS_DONE;
+  case VARIABLE_STATE: direction->state[variable->index] += value; return STATUS_DONE;
+  case VARIABLE_INPUT: direction->input[variable->index] += value; return STATUS_DONE;
+  case VARIABLE_PARAMETER: direction->parameter[variable->index] += value; return STATUS_DONE;
   default:
     return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
@@ -78,7 +79,7 @@ static enum Status derivative_along_seed(struct Instance *instance, const unsign
   struct Direction direction = direction_create(instance);
   for (size_t i = 0; i < known_count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, known[i], TYPE_REAL);
-    if (variable == NULL || set_seed(instance, &direction, variable, seed[i]) != STATUS_DONE) return STATUS_ERROR;
+    if (variable == NULL || add_seed(instance, &direction, variable, seed[i]) != STATUS_DONE) return STATUS_ERROR;
   }
   for (size_t i = 0; i < unknown_count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL);

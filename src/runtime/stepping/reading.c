@@ -1,6 +1,7 @@
 #include "stepping/reading.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
@@ -74,8 +75,14 @@ void reading_end(struct Instance *instance) {
   instance->situation->phase = PHASE_ERROR;
 }
 
-/* Displacement of the difference quotients, in units of the scales. The relative truncation error is about 1e-12. */
-static const double displacement = 1e-3;
+/*
+ * Displacements of the difference quotients, in units of the scales. The relative truncation error of the first is about
+ * 1e-12. The others serve where the displaced starts are not smooth.
+ */
+static const double displacement[] = {1e-3, 1e-5, 1e-7};
+
+/* Second difference over displacement that is no kink, in units of the scales. */
+static const double straight = 1e-2;
 
 /* Returns the largest of count values relative to the variables that they change, at least 1. */
 static double relative_size(const double *value, const double *of, size_t count) {
@@ -92,55 +99,124 @@ static double size_of_seed(const struct Instance *instance, const struct Seed *s
   return fmax(size, relative_size(seed->parameter, instance->parameter, lagrangian.parameter_count));
 }
 
-/* Computes the start from the values that were set, displaced by step along the seed. False if there is none. */
-static bool find_displaced(struct Instance *instance, const struct Seed *seed, double step) {
+/*
+ * Computes the start from the values that were set, displaced by step along the seed. False if there is none. set:
+ * workspace of state_count numbers. Sets *is_moved if the start moves the states.
+ */
+static bool find_displaced(struct Instance *instance, const struct Seed *seed, double step, double *set,
+                           bool *is_moved) {
   memcpy(instance->situation, instance->given, situation_size());
   instance->situation->time += step * seed->time;
   for (size_t i = 0; i < lagrangian.state_count; i++) instance->state[i] += step * seed->state[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) instance->input[i] += step * seed->input[i];
   for (size_t i = 0; i < lagrangian.parameter_count; i++) instance->parameter[i] += step * seed->parameter[i];
-  return start_find(instance) == STATUS_DONE;
+  size_t size = lagrangian.state_count * sizeof *set;
+  memcpy(set, instance->state, size);
+  bool is_found = start_find(instance) == STATUS_DONE;
+  *is_moved |= memcmp(set, instance->state, size) != 0;
+  return is_found;
 }
 
-/* Adds the central difference quotient of fourth order to along[state_count]; the state is then undefined. */
-static bool add_differences(struct Instance *instance, const struct Seed *seed, double step, double *along) {
+/* The derivative of the start along a seed, by differences. */
+struct Slope {
+  double *along;              /* state_count */
+  double *bend;               /* state_count: the second difference */
+  double *set;                /* state_count: workspace */
+  bool is_moved;              /* a start differs from the states that were set */
+  bool exists;                /* all displaced starts exist */
+  char other[MESSAGE_LENGTH]; /* the element that has another mode in a displaced start; empty for none */
+};
+
+/* Names an element whose mode differs from that in another situation. Leaves the name as it is if there is none. */
+static void name_other_mode(const struct Instance *instance, const struct Situation *situation, char *name) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches == NULL) return;
+  const double *mode = instance->parameter;
+  const double *other = situation->values + (instance->parameter - instance->situation->values);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (mode[switches->contacts[i].mode] != other[switches->contacts[i].mode])
+      snprintf(name, MESSAGE_LENGTH, "'%s'", switches->contacts[i].name);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (mode[switches->frictions[i].mode] != other[switches->frictions[i].mode])
+      snprintf(name, MESSAGE_LENGTH, "'%s'", switches->frictions[i].name);
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (mode[switches->branches[i].mode] != other[switches->branches[i].mode])
+      snprintf(name, MESSAGE_LENGTH, "%s on line %ld of %s", switches->branches[i].function, switches->branches[i].line,
+               switches->branches[i].file);
+}
+
+/* Computes central difference quotients of fourth order about the start; the situation is then undefined. */
+static bool find_differences(struct Instance *instance, const struct Seed *seed, double step,
+                             const struct Situation *start, struct Slope *slope) {
   static const double weight[] = {1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0};
+  static const double bending[] = {0.0, 1.0, 1.0, 0.0};
   static const double at[] = {-2.0, -1.0, 1.0, 2.0};
+  memset(slope->along, 0, lagrangian.state_count * sizeof *slope->along);
+  memset(slope->bend, 0, lagrangian.state_count * sizeof *slope->bend);
+  slope->other[0] = '\0';
+  slope->is_moved = memcmp(start->values, instance->given->values, lagrangian.state_count * sizeof *slope->set) != 0;
   for (size_t j = 0; j < sizeof at / sizeof *at; j++) {
-    if (!find_displaced(instance, seed, at[j] * step)) return false;
-    for (size_t i = 0; i < lagrangian.state_count; i++) along[i] += weight[j] * instance->state[i] / step;
+    if (!find_displaced(instance, seed, at[j] * step, slope->set, &slope->is_moved)) return false;
+    name_other_mode(instance, start, slope->other);
+    for (size_t i = 0; i < lagrangian.state_count; i++) {
+      slope->along[i] += weight[j] * instance->state[i] / step;
+      slope->bend[i] += bending[j] * (instance->state[i] - start->values[i]) / step;
+    }
   }
   return true;
 }
 
-/* Computes the directional derivative of the start. Workspace: kept of situation_size() bytes, along of zeros. */
+/* True if no state has a kink or a jump at the start. */
+static bool is_smooth(const struct Slope *slope, const double *state, double size) {
+  bool is = true;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    is &= fabs(slope->bend[i]) <= straight * size * scale_of(state, i);
+  return is;
+}
+
+/*
+ * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of situation_size() bytes. False if the
+ * start has none; slope->other then names the cause, if it is known.
+ */
 static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct Situation *kept,
-                       double *along) {
+                       struct Slope *slope) {
   struct Log log = instance->log;
   double size = size_of_seed(instance, seed);
-  if (size == 0.0) return true;
+  bool is_found = size == 0.0;
   memcpy(kept, instance->situation, situation_size());
   instance->log.wanted = 0;
-  bool is_found = add_differences(instance, seed, displacement / size, along);
+  for (size_t k = 0; k < sizeof displacement / sizeof *displacement && !is_found; k++) {
+    slope->exists = find_differences(instance, seed, displacement[k] / size, kept, slope);
+    is_found = slope->exists && is_smooth(slope, kept->values, size);
+    if (is_found && slope->is_moved) memcpy(state, slope->along, lagrangian.state_count * sizeof *state);
+  }
   instance->log = log;
   memcpy(instance->situation, kept, situation_size());
-  instance->prepared_is_stale = true;
-  if (is_found) memcpy(state, along, lagrangian.state_count * sizeof *state);
+  instance->prepared_is_stale = instance->modes_stay = true;
   return is_found;
 }
 
-/* Excludes systems with events: the modes of displaced starts may differ. */
+static enum Status discard_kink(struct Instance *instance, const struct Slope *slope) {
+  if (!slope->exists)
+    return discard_call(instance, "the simulation cannot start near these start values; expected others");
+  bool is_known = slope->other[0] != '\0';
+  return discard_call(instance, "there is no derivative at these start values: beside them %s%s; expected others",
+                      is_known ? slope->other : "an impact or event leads to other states",
+                      is_known ? " starts in another mode" : "");
+}
+
 enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state) {
-  bool is_moved = instance->is_reading && instance->shown_is_found && lagrangian.constraints.projection != NULL &&
-                  lagrangian.event_laws == NULL && instance->situation->phase == PHASE_INITIALIZATION;
+  bool is_moved =
+      instance->is_reading && instance->shown_is_found && instance->situation->phase == PHASE_INITIALIZATION;
   if (!is_moved) return STATUS_DONE;
-  double *along = instance->memory.allocate(lagrangian.state_count, sizeof *along);
+  struct Slope slope = {.along = instance->memory.allocate(3 * lagrangian.state_count, sizeof *slope.along)};
   struct Situation *kept = instance->memory.allocate(1, situation_size());
-  bool has_memory = along != NULL && kept != NULL;
-  bool is_found = has_memory && find_along(instance, seed, state, kept, along);
-  if (along != NULL) instance->memory.free(along);
+  bool has_memory = slope.along != NULL && kept != NULL;
+  if (has_memory) slope.bend = slope.along + lagrangian.state_count;
+  if (has_memory) slope.set = slope.bend + lagrangian.state_count;
+  bool is_found = has_memory && find_along(instance, seed, state, kept, &slope);
+  if (slope.along != NULL) instance->memory.free(slope.along);
   if (kept != NULL) instance->memory.free(kept);
   if (!has_memory) return refuse_call(instance, "out of memory for the derivatives");
-  if (is_found) return STATUS_DONE;
-  return discard_call(instance, "the simulation cannot start near these start values; expected others");
+  return is_found ? STATUS_DONE : discard_kink(instance, &slope);
 }
