@@ -1,8 +1,8 @@
 """
 Run a co-simulation of FMI 2.0 or 3.0, with rows at communication points and at events, and piecewise polynomial inputs.
 
-An FMU of FMI 2.0 follows inputs by their derivatives. Otherwise, as in FMI 3.0, the two halves of a smooth piece get constant inputs u1, u2 with
-the mean and the first moment of the polynomial. This is of fourth order if the rates are linear in the input (commutator-free Magnus integrator
+An FMU of FMI 2.0 follows inputs by their derivatives, and one of FMI 3.0 by their values in intermediate update, if it asks for them there. Otherwise
+the two halves of a smooth piece get constant inputs u1, u2 with the mean and the first moment of the polynomial. This is of fourth order if the rates are linear in the input (commutator-free Magnus integrator
 with two exponentials, S. Blanes and P. Moan 2006).
 
 An event has two rows of one time: before it and after it. FMI 3.0 ends its steps at events. In FMI 2.0 the FMU's counter of events shows that a
@@ -188,14 +188,27 @@ class Slave2(Slave):
             self.fmu.doStep(begin, end - begin)
 
 
-class Slave3(Slave):
-    is_looking = False
+class Supplier:
+    """A callback for intermediate update, which sets the inputs at the times at which the FMU asks for them."""
 
-    def __init__(self, fmu, description, signals):
+    def __init__(self):
+        self.slave = self.piece = None
+        self.begin, self.count = 0.0, 0
+
+    def __call__(self, environment, time, is_asked, *flags):
+        if is_asked:
+            self.count += 1
+            self.slave.set(value(self.piece, time - self.begin))
+
+
+class Slave3(Slave):
+    def __init__(self, fmu, description, signals, supplier=None):
         super().__init__(fmu, description, signals)
         self.has_events = description.coSimulation.hasEventMode
-        if signals and signals.moving:
-            warnings.warn(f"FMI 3.0 holds '{signals.moving[0]}' over each step, as an input that moves something; expected FMI 2.0, which follows it", stacklevel=2)
+        self.is_looking = False  # True while a step is tried; no messages are logged then
+        self.supplier, self.is_asked = supplier, None  # until it is known
+        if supplier:
+            supplier.slave = self
 
     def enter_initialization(self, start, stop, tolerance):
         self.fmu.enterInitializationMode(tolerance=tolerance, startTime=start, stopTime=stop)
@@ -220,8 +233,33 @@ class Slave3(Slave):
         if self.has_events:
             self.update()
 
+    def follows(self, begin, end, piece):
+        """Return True if the FMU asks for inputs within a step; the first one is tried."""
+        if self.supplier:
+            self.supplier.begin, self.supplier.piece = begin, piece
+        if self.is_asked is None:
+            self.is_asked = bool(self.supplier) and self._is_asked(begin, end)
+            if not self.is_asked and self.signals.moving:
+                warnings.warn(f"the FMU holds '{self.signals.moving[0]}' over each step, as an input that moves something; expected FMI 2.0, which follows it", stacklevel=2)
+        return self.is_asked
+
+    def _is_asked(self, begin, end):
+        state, self.is_looking = self.fmu.getFMUState(), True
+        try:
+            self.reach(begin, end, None, lambda time: None, None)
+        except (FMICallException, Problem):  # is reported if the step fails again
+            pass
+        finally:
+            self.fmu.setFMUState(state)
+            self.fmu.freeFMUState(state)
+            self.is_looking = False
+        return self.supplier.count > 0
+
     def step(self, begin, end, piece, record):
-        parts = [(begin, end, None)] if piece is None else [(begin, end, piece[0])] if self.signals.moving else self.held_halves(piece, begin, end)
+        if piece is None or self.follows(begin, end, piece):
+            parts = [(begin, end, None)]
+        else:
+            parts = [(begin, end, piece[0])] if self.signals.moving else self.held_halves(piece, begin, end)
         for low, high, held in parts:
             if held is not None:
                 self.set(held)
@@ -322,10 +360,13 @@ def co_simulate(archive, description, start_values, signals, output, interval, s
     try:
         is_third = description.fmiVersion.startswith("3")
         has_events = is_third and description.coSimulation.hasEventMode
-        fmu = instantiate_fmu(folder, description, "CoSimulation", visible, debug_logging, log, fmi_call_logger, None, has_events, has_events)
+        abilities = description.coSimulation
+        supplier = Supplier() if is_third and signals and abilities.providesIntermediateUpdate and abilities.canGetAndSetFMUstate else None
+        within = {"intermediate_update": supplier, "required_intermediate_variables": [v.valueReference for v in signals.variables]} if supplier else {}
+        fmu = instantiate_fmu(folder, description, "CoSimulation", visible, debug_logging, log, fmi_call_logger, None, has_events, has_events, **within)
         recorder = None
         try:
-            slave = (Slave3 if is_third else Slave2)(fmu, description, signals)
+            slave = Slave3(fmu, description, signals, supplier) if is_third else Slave2(fmu, description, signals)
             steps = ((begin, end, signals and signals.over(begin, end), is_point) for begin, end, is_point in _steps(signals, start, stop, interval))
             first = next(steps)
             slave.initialize(start_values, first[2], start, stop, tolerance)
