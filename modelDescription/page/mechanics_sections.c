@@ -13,14 +13,14 @@ static const char *balance_of(const struct Model *model, bool autonomous) {
     return "L depends on time explicitly: the derivative of totalEnergy is the power of the non-conservative forces "
            "less the partial derivative dL/dt, so that totalEnergy is not constant even without forces.";
   if (autonomous)
-    return "Masses are moved in a given way: totalEnergy is the energy K + U that they have. What moves them does "
-           "work, so that totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv "
-           "less L, is another quantity here: its derivative is the sum of the generalized forces times the "
-           "velocities v, so that it is constant without forces.";
-  return "Masses are moved in a given way: totalEnergy is the energy K + U that they have. What moves them does work, "
-         "so that totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv less L, is "
-         "another quantity here: its derivative is the sum of the generalized forces times the velocities v, less the "
-         "partial derivative dL/dt, so that it is not constant either.";
+    return "Masses have prescribed motions: totalEnergy is their energy K + U. The prescribed motions do work, so that "
+           "totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv less L, is another "
+           "quantity here: its derivative is the sum of the generalized forces times the velocities v, so that it is "
+           "constant without forces.";
+  return "Masses have prescribed motions: totalEnergy is their energy K + U. The prescribed motions do work, so that "
+         "totalEnergy is not constant even without forces. Jacobi's integral, the sum of v dL/dv less L, is another "
+         "quantity here: its derivative is the sum of the generalized forces times the velocities v, less the partial "
+         "derivative dL/dt, so that it is not constant either.";
 }
 
 static void write_energies(struct Page *page) {

@@ -43,7 +43,7 @@ static void make(const struct Program *program, const struct Summary *summary, s
   else if (!described) report_error(diagnostics, 0, "the system cannot be described; expected more memory");
   else if (missing != NULL)
     report_error(diagnostics, 0,
-                 "the method '%s' is not to be had here; expected <solver method=\"auto\"/>, or taylor or radau",
+                 "the method '%s' is not available here; expected <solver method=\"auto\"/>, or taylor or radau",
                  missing);
 }
 

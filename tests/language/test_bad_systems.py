@@ -94,7 +94,7 @@ CASES = [
     ("strange character", 8, "<potential>m*g*l#2</potential>", 8, "found '#'"),
     ("letter of another alphabet", 8, "<potential>m*g*l*cos(θ)</potential>", 8, "found 'θ'"),
     ("units of a sum", 8, "<potential>m*g*(l + m)</potential>", 8, "unit mismatch: m and kg in one sum"),
-    ("unit of a function", 8, "<potential>m*g*(l + cos(theta))</potential>", 8, "m and 1 in one sum; .*; multiply what has the unit 1 by a <constant>"),
+    ("unit of a function", 8, "<potential>m*g*(l + cos(theta))</potential>", 8, "m and 1 in one sum; .*; multiply terms of the unit 1 by a <constant>"),
     ("unit that no number mends", 8, "<potential>m*g*l + m*omega</potential>", 8, r"kg.m2/s2 and kg\.rad/s in one sum; expected the same unit$"),
     ("unit that a number in one term mends not", 8, "<potential>m*(0.3*l + l)</potential>", 8, r"the potential has the unit kg\.m, expected kg.m2/s2$"),
     ("unit of a constant", 8, '<constant name="r" value="0.3" unit="kg"/><potential>m*g*(l + r)</potential>', 8, "m and kg in one sum; expected the same unit$"),
@@ -233,7 +233,7 @@ CASES = [
     ("solver in upper case", 11, '<solver method="Taylor"/>', 11, "is not known; did you mean 'taylor'"),
     ("time with its unit", 12, '<experiment stopTime="10 s"/>', 12, 'stopTime="10 s" of <experiment> is not a number; expected one such as'),
     ("name of a system with a dash", 1, '<system name="my-system">', 1, 'name="my-system" of <system> is not a name; expected letters a to z, digits and _, with no digit first$'),
-    ("another root", 1, "<model/>", 2, "the file goes on after the end of its first element"),
+    ("another root", 1, "<model/>", 2, "the file has text after the end of its first element"),
     ("namespace", 1, '<system name="Broken" xmlns="urn:mine">', 1, "<system> belongs to the namespace 'urn:mine'; expected no xmlns"),
     ("quote missing", 2, '<parameter name="m start="1"/>', 2, "attributes do not follow each other; expected .*both quotes and a blank"),
     ("attribute without a value", 2, '<parameter name="m" start/>', 2, "the attribute 'start' has no value"),
@@ -254,10 +254,10 @@ CASES = [
      "max - min of the <stop> of 'theta' is -1.5 at the start values; expected none below 0"),
     ("stop whose ends are exchanged by a parameter", 10, '<parameter name="w" start="-1" unit="rad"/><stop coordinate="theta" min="-w" max="w"/>', 10,
      "max - min of the <stop> of 'theta' is -2 at the start values"),
-    ("contact that nothing moves", 10, '<contact name="c" gap="1"/>', 10, "the gap of the contact 'c' holds no coordinate; expected an expression such as y - r"),
+    ("contact that nothing moves", 10, '<contact name="c" gap="1"/>', 10, "the gap of the contact 'c' contains no coordinate; expected an expression such as y - r"),
     ("stop of what is not a name yet", 10, '<coordinate name="x[2]" velocity="v[2]"/>\n<stop coordinate="x[N]" min="0"/>\n<constant name="N" value="2"/>', 11,
-     "coordinate: unknown name 'N'; expected a number, or a constant that stands further up"),
-    ("unknown name in a number", 2, '<parameter name="m" start="mass"/>', 2, "unknown name 'mass'; expected a number, or a constant that stands further up"),
+     "coordinate: unknown name 'N'; expected a number, or a constant that is defined above"),
+    ("unknown name in a number", 2, '<parameter name="m" start="mass"/>', 2, "unknown name 'mass'; expected a number, or a constant that is defined above"),
     ("time of other languages", 9, '<force coordinate="theta">tau*sin(t)</force>', 9, "unknown name 't'; write time"),
     ("velocity of other languages", 10, '<output name="a">theta_dot</output>', 10, r"unknown name 'theta_dot'; write der\(...\)"),
     ("component that is not there", 10, '<output name="a">bob.z</output>', 10, r"unknown name 'bob\.z'; expected bob\.x or bob\.y"),
@@ -349,7 +349,7 @@ WARNINGS = [
      '<parameter name="b" start="3" unit="N.m.s"/><coordinate name="x" velocity="v" unit="rad"/><kinetic>m*l^2*v^2/2</kinetic>\n'
      '<dissipation>-b*(v - omega)^2/2</dissipation>', 12, "the dissipation is -6 for velocities"),
     ("dissipation without velocities", 11, "<dissipation>m*g*l*theta/time</dissipation>", 11, "the dissipation has no velocities, and makes no force"),
-    ("tolerance below all numbers", 11, '<solver method="erk" tolerance="1e-20"/>', 11, "tolerance 1e-20 is below what doubles can hold"),
+    ("tolerance below all numbers", 11, '<solver method="erk" tolerance="1e-20"/>', 11, "tolerance 1e-20 is below the rounding error of doubles"),
     ("loop that runs backwards", 11, '<for index="i" from="3" to="1"><potential>m*g*l</potential></for>', 11,
      "<for> from 3 to 1 runs backwards"),
 ]
@@ -399,7 +399,7 @@ def test_no_warning(what, line, text, tmp_path):
     (bytes(range(256)), "1: the file does not begin with an element"),
     (RIGHT.replace("Pendulum", "P\u00e9ndulum").encode("latin-1"), "1: .*an encoding other than UTF-8; save it in UTF-8"),
     (RIGHT.replace("system", "System").encode(), "1: the file begins with <System>; expected <system name="),
-    ((RIGHT + RIGHT).encode(), "14: the file goes on after the end of its first element"),
+    ((RIGHT + RIGHT).encode(), "14: the file has text after the end of its first element"),
 ])  # fmt: skip
 def test_files_without_a_system(text, message, tmp_path):
     (tmp_path / "system.xml").write_bytes(text)

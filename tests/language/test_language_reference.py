@@ -345,7 +345,7 @@ def compile_with(line, folder):
     return lagc("system.xml", "-o", "out", cwd=folder)
 
 
-@pytest.mark.parametrize("line, message", rows("## What is refused"))
+@pytest.mark.parametrize("line, message", rows("## Error messages"))
 def test_errors_are_those_of_the_reference(line, message, tmp_path):
     result = compile_with(line, tmp_path)
     assert result.returncode == 1 and message in result.stderr, result.stderr

@@ -93,7 +93,7 @@ def test_it_is_the_fmu(name, tmp_path):
     laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
     if method_of(name) in ("erk", "bdf"):
         assert not laboratory.derive(f"{name}/system.xml")
-        assert f"the method '{method_of(name)}' is not to be had here; expected <solver method=\"auto\"/>" in (tmp_path / "errors").read_text()
+        assert f"the method '{method_of(name)}' is not available here; expected <solver method=\"auto\"/>" in (tmp_path / "errors").read_text()
         return
     assert laboratory.derive(f"{name}/system.xml"), (tmp_path / "errors").read_text()
     step, states = float(fmu.description(name).defaultExperiment.stepSize), fmu.states_of(name)

@@ -59,8 +59,8 @@ CASES = [
      "there is no link 'hand' for the child of the joint 'elbow'; expected one of the file"),
     ("two parents", 13, elbow('<parent link="lower"/><child link="upper"/>'), 12,
      "the link 'upper' is the child of the joint 'elbow' and of 'shoulder' on line 9; expected a tree"),
-    ("loop", 10, '<parent link="lower"/><child link="upper"/><axis xyz="0 1 0"/>', 9, "the link 'upper' is its own ancestor, or hangs on one"),
-    ("own parent", 13, elbow('<parent link="lower"/><child link="lower"/>'), 12, "the link 'lower' is its own ancestor"),
+    ("loop", 10, '<parent link="lower"/><child link="upper"/><axis xyz="0 1 0"/>', 9, "the link 'upper' or a parent of it is its own ancestor"),
+    ("own parent", 13, elbow('<parent link="lower"/><child link="lower"/>'), 12, "the link 'lower' or a parent of it is its own ancestor"),
     ("two roots", 2, '<link name="stand"/><link name="other"/>', 2, "no joint has the link 'other' as its child, nor 'stand' on line 2"),
     ("axis of zero", 13, elbow(axis='<axis xyz="0 0 0"/>'), 13, "the <axis> of the joint 'elbow' has the length 0; expected a direction"),
     ("axis of two", 13, elbow(axis='<axis xyz="0 1"/>'), 13, 'xyz="0 1" of <axis>; expected three numbers such as 0 0.5 -1e-3'),
@@ -77,7 +77,7 @@ CASES = [
     ("tensor with a gap", 7, '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"/></inertial>', 7,
      "<inertia> needs the attribute 'iyz'"),
     ("negative mass", 7, inertial(mass="-2"), 7, "the mass -2 of the link 'lower' is negative; expected 0 or more"),
-    ("nothing to move", 7, "", 12, "the joint 'elbow' moves no inertia: neither the link 'lower' nor what hangs on it has a mass"),
+    ("nothing to move", 7, "", 12, "the joint 'elbow' moves no inertia: neither the link 'lower' nor a link behind it has a mass"),
     ("mimic of an unknown joint", 13, elbow(more='<mimic joint="sholder"/>'), 12, "there is no joint 'sholder' for a <mimic>; did you mean 'shoulder'"),
     ("mimic of itself", 13, elbow(more='<mimic joint="elbow"/>'), 12, "the joint 'elbow' mimics itself"),
     ("negative radius", 3, sole('<sphere radius="-1"/>'), 3, 'radius="-1" of <sphere>; expected a number above 0'),
@@ -128,7 +128,7 @@ def test_fixed_links_whose_sums_overflow(link, tmp_path):
     )
     result = compile_robot(RIGHT.replace("</robot>", parts + "</robot>"), tmp_path)
     assert result.returncode == 1 and len(result.stderr.splitlines()) == 1
-    assert re.search("robot.urdf:1[56]: the link '(weight|other)' is so far out, or so heavy", result.stderr), result.stderr
+    assert re.search("robot.urdf:1[56]: the position or inertia of the link '(weight|other)' as a part of", result.stderr), result.stderr
 
 
 def test_circle_of_mimics(tmp_path):
@@ -179,7 +179,7 @@ def test_left_out(tmp_path):
     assert result.stderr == (
         "robot.urdf: warning: left out, since the motion does not depend on them: collision, visual, velocity of limit, gazebo\n"
         f"{NO_STOPS}"
-        "robot.urdf:9: warning: motors may push with more than the effort of the joint 'shoulder'; expected effort=\"limited\", or \"unlimited\" if this is meant, in an <include>\n"
+        "robot.urdf:9: warning: motors may exceed the effort of the joint 'shoulder'; expected effort=\"limited\", or \"unlimited\" if this is meant, in an <include>\n"
     )
 
 

@@ -337,7 +337,7 @@ MESSAGES = [
     ('<particle name="b" mass="1" x="p*q"/><torque on="b" z="1"/>', "there is no frame or body 'b' for this torque"),
     ('<particle name="b" mass="1" in="base" x="p*q"/><torque on="b" z="1"/>', "there is no frame or body 'b' for this torque"),
     ('''<coordinate name="a" velocity="va"/><frame name="f"><rotate quaternion="a 0*q 0*q 0*q"/></frame>
-     <body name="b" in="f" mass="1" Ixx="1" Iyy="1" Izz="1"/>''', "the quaternion of f is 0 at the start values; expected one that turns, such as 1 0 0 0"),
+     <body name="b" in="f" mass="1" Ixx="1" Iyy="1" Izz="1"/>''', "the quaternion of f is 0 at the start values; expected a norm of 1"),
     ('<frame name="f"/><torque on="f" z="p"/>', "unit mismatch: z has the unit m, expected kg.m2/s2"),
     ('<frame name="f"/><output name="o">f.u</output>', "unknown name 'f.u'; expected f.x or f.y or f.z or f.R11"),
     ('<point name="t" x="p"/><output name="o">t.omegaX</output>', "unknown name 't.omegaX'; expected t.x or t.y"),

@@ -192,15 +192,15 @@ BYTES = stl_bytes(CUBE, triangles_of(CUBE))
 @pytest.mark.parametrize(
     "name, content, message",
     [
-        ("a.dae", "", "the mesh 'a.dae' is none that is read; expected STL or OBJ"),
+        ("a.dae", "", "the mesh 'a.dae' has an unknown format; expected STL or OBJ"),
         ("a.stl", "", "is too short for STL"),
         ("a.stl", "solid a\nendsolid a\n", "the mesh 'a.stl' is empty; expected triangles"),
         ("a.stl", STL[: STL.rindex("endfacet")], "is cut short in line 85; expected endsolid at its end"),
         ("a.stl", STL.replace("-0.5", "nan", 1), "has in line 4 'nan' as a coordinate; expected three finite numbers"),
         ("a.stl", STL.replace("endloop", "vertex 0 0 0\nendloop", 1), "has a facet of 4 corners, which ends in line 9; expected triangles"),
         ("a.stl", STL.replace("outer", "vortex", 1), "has 'vortex' in line 3; expected STL"),
-        ("a.stl", BYTES[:-1], "is cut short: it tells of 12 triangles, and has 11"),
-        ("a.stl", BYTES[:80] + b"\xff\xff\xff\xff" + BYTES[84:], "is cut short: it tells of 4294967295 triangles, and has 12"),
+        ("a.stl", BYTES[:-1], "is cut short: it has 12 triangles in its header, and 11 after it"),
+        ("a.stl", BYTES[:80] + b"\xff\xff\xff\xff" + BYTES[84:], "is cut short: it has 4294967295 triangles in its header, and 12 after it"),
         ("a.stl", BYTES[:96] + b"\x00\x00\xc0\x7f" + BYTES[100:], "has the coordinate nan in triangle 1; expected finite numbers"),
         ("a.obj", "v 0 0 0\n", "the mesh 'a.obj' is empty; expected triangles"),
         ("a.obj", OBJ.replace("f 1 ", "f 9 "), "has the corner '9' in line 9; expected the number of a point above it, from 1 to 8"),

@@ -92,7 +92,7 @@ def test_packages(tmp_path, folder):
     "mesh, problem",
     [
         ('<mesh filename="package://nowhere/cube.stl"/>', "the mesh 'package://nowhere/cube.stl' is not there; expected a path relative to this file, or"),
-        ('<mesh filename="arm.dae"/>', "the mesh 'arm.dae' is none that is read; expected STL or OBJ"),
+        ('<mesh filename="arm.dae"/>', "the mesh 'arm.dae' has an unknown format; expected STL or OBJ"),
         ('<mesh filename="short.stl"/>', "the mesh 'short.stl' is too short for STL"),
         ('<mesh filename="cube.obj" scale="1 2"/>', "the scale '1 2' of a <mesh>; expected three numbers other than 0"),
         ('<mesh filename="cube.obj" scale="1 0 1"/>', "the scale '1 0 1' of a <mesh>"),

@@ -63,7 +63,7 @@ IN_SYSTEM = "a <force> in a <system> that includes the robot"
 URDF_CASES = {
     "unknown effort": ("", "", 'limits="stops" effort="limited"', 5, f'effort="0" of <limit>, which stands for no limit, {UNREAD} the largest force or torque of the motor'),
     "limits": ("", "", "", 4, "motion is not stopped at the limits of the joint 'hinge'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>"),
-    "effort": ('effort="0"', 'effort="3"', 'limits="stops"', 4, "motors may push with more than the effort of the joint 'hinge'; expected effort=\"limited\""),
+    "effort": ('effort="0"', 'effort="3"', 'limits="stops"', 4, "motors may exceed the effort of the joint 'hinge'; expected effort=\"limited\""),
     "limits of a plane": ('"revolute"', '"planar"', QUIET, 5, f"<limit lower upper> of a floating or planar joint {UNREAD} a <stop> at each of its coordinates"),
     "spring in a plane": ('"revolute"', '"planar"', QUIET, 6, f"<dynamics> of a floating or planar joint {UNREAD} {IN_SYSTEM}"),
     "effort in a plane": ('"revolute"><parent', '"planar"><limit effort="4"/><parent', 'effort="limited"', 4, f"effort of a floating or planar joint {UNREAD}"),
@@ -96,7 +96,7 @@ MJCF_CASES = [
     ("geom", 'adhesion="1"', 'ground="true"', "a <force> that holds the shape to the ground"),
     ("geom", 'surfacevel="1 0 0 0 0 0"', 'ground="true"', "a <contact> with a shape that moves"),
     ("joint", 'margin="0.1"', 'limits="stops"', "a range that is smaller by it"),
-    ("joint", 'solreflimit="0.01 1"', 'limits="stops"', "a limit, friction or constraint that is exact"),
+    ("joint", 'solreflimit="0.01 1"', 'limits="stops"', "a rigid limit, friction or constraint without it"),
     ("joint", 'springyield="1"', "", "a <force> in a <system>"),
     ("joint", 'unheard="1"', "", "one of the attributes that the reference names"),
     ("motor", 'velrange="-1 1"', "", "an actuator at a joint or tendon, without it"),

@@ -35,7 +35,7 @@ void equations_check_finite(const struct Model *model, const struct Equations *e
   for (size_t i = 0; i < model->reactions.count; i++)
     if (!are_finite(model->graph, &equations->reactions[i], 1))
       report_error(diagnostics, model->reactions.items[i].line,
-                   "%s is not finite; expected positions that are smooth where the displacement is 0",
+                   "%s is not finite; expected positions that are smooth where the displacements are 0",
                    model->reactions.items[i].name);
   if (are_finite(model->graph, equations->residual, row_count(equations))) return;
   while (are_finite(model->graph, equations->residual + wrong, 1)) wrong++;

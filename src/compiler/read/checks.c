@@ -35,8 +35,8 @@ static void check_content(const struct Reader *reader) {
                  model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
   if (work != NULL && model->given.constraint != NULL)
     report_error(reader->diagnostics, work->line,
-                 "<work/> beside the constraint '%s', which moves in a given way and does work of its own; expected no "
-                 "<work/>, or a coordinate that is moved so in place of the constraint",
+                 "<work/> beside the constraint '%s', which depends on time and does work; expected no <work/>, or a "
+                 "driven coordinate in place of the constraint",
                  model->given.constraint->name);
 }
 
@@ -114,11 +114,10 @@ static void check_quaternions(const struct Reader *reader, const double *values)
     const struct Variable *constraint = &model->constraints.items[i];
     for (size_t k = 0; k < model->mechanism.stillness_count; k++)
       if (model->mechanism.stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
-        report_error(
-            reader->diagnostics, constraint->line,
-            "the quaternion of %.*s is 0 at the start values; expected one that turns, such as 1 0 0 0: start=\"1\" "
-            "of the first coordinate",
-            (int)(strrchr(constraint->name, '.') - constraint->name), constraint->name);
+        report_error(reader->diagnostics, constraint->line,
+                     "the quaternion of %.*s is 0 at the start values; expected a norm of 1, such as start=\"1\" of "
+                     "its first coordinate",
+                     (int)(strrchr(constraint->name, '.') - constraint->name), constraint->name);
   }
 }
 

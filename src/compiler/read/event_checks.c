@@ -53,11 +53,11 @@ static void warn_of_event(const struct Reader *reader, const struct Event *event
   bool looks_there = event->passage == PASSAGE_BOTH || (event->passage == PASSAGE_RISES) == rises;
   const char *course = rises ? "rises" : "falls";
   if (!comes_to_zero)
-    report_warning(reader->diagnostics, event->line,
-                   "the event never happens: when=\"%s\" is %g at the start and %s, away from 0; expected <sample "
-                   "every=\"...\"> for what happens at the start and then at equal distances, or an expression that "
-                   "comes to 0 later",
-                   event->text, value[0], course);
+    report_warning(
+        reader->diagnostics, event->line,
+        "the event never happens: when=\"%s\" is %g at the start and %s, away from 0; expected <sample every=\"...\"> "
+        "for an event at the start and then periodically, or an expression that crosses 0 later",
+        event->text, value[0], course);
   else if (!looks_there)
     report_warning(reader->diagnostics, event->line,
                    "the event never happens: when=\"%s\" only %s; expected direction=\"%s\"", event->text, course,

@@ -66,7 +66,7 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->coordinates.count; i++) {
     if (!model->given.drives[i].given) continue;
     model->given.drives[i].reaction = model->reactions.count;
-    append_reaction(model, scope, &model->coordinates.items[i], "force that drives");
+    append_reaction(model, scope, &model->coordinates.items[i], "force of the drive of");
   }
 }
 
@@ -97,7 +97,7 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
 static void check_definitions_used(struct Reader *reader) {
   for (size_t i = 0; i < reader->options->definition_count; i++)
     if (!reader->definition_used[i])
-      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name",
+      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name; expected one of the file",
                    reader->options->definitions[i]);
 }
 

@@ -59,7 +59,7 @@ bool dimension_agrees(struct Dimension first, struct Dimension second) {
 const char *unit_hint(struct Dimension dimension) {
   for (int i = 0; i < BASE_UNIT_COUNT; i++)
     if (!dimension.known || dimension.exponent[i] != 0.0) return "";
-  return "; multiply what has the unit 1 by a <constant> or <parameter> that has a unit";
+  return "; multiply terms of the unit 1 by a <constant> or <parameter> that has a unit";
 }
 
 bool dimension_is_whole(struct Dimension dimension) {

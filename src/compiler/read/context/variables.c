@@ -54,9 +54,11 @@ struct Variable common_attributes(struct Reader *reader, xmlNodePtr node) {
 
 void check_range(struct Reader *reader, const struct Variable *variable) {
   if (variable->minimum > variable->maximum)
-    report_error(reader->diagnostics, variable->line, "'%s': min %g is larger than max %g", variable->name,
+    report_error(reader->diagnostics, variable->line,
+                 "'%s': min %g is larger than max %g; expected the smaller number as min", variable->name,
                  variable->minimum, variable->maximum);
   else if (variable->start < variable->minimum || variable->start > variable->maximum)
-    report_error(reader->diagnostics, variable->line, "'%s': start %g is outside min and max", variable->name,
+    report_error(reader->diagnostics, variable->line,
+                 "'%s': start %g is outside min and max; expected a start between them", variable->name,
                  variable->start);
 }

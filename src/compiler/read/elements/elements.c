@@ -213,7 +213,7 @@ void read_solver(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "tolerance %g; expected a number between 0 and 1", *tolerance);
   if (*tolerance > 0 && *tolerance < 1e-14)
     report_warning(reader->diagnostics, line_of(node),
-                   "tolerance %g is below what doubles can hold; expected 1e-14 or more", *tolerance);
+                   "tolerance %g is below the rounding error of doubles; expected 1e-14 or more", *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->solver.max_step);
   double *steps = &reader->model->solver.max_steps;
   if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
@@ -230,7 +230,8 @@ void read_experiment(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "stepSize %g; expected a positive number", model->experiment.step_size);
   double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
   if (model->experiment.stop_time <= start)
-    report_at(reader, node, "stopTime %g is not after startTime %g", model->experiment.stop_time, start);
+    report_at(reader, node, "stopTime %g is not after startTime %g; expected a later one", model->experiment.stop_time,
+              start);
 }
 
 /* Appends inputs that are the time derivatives of the last input. */

@@ -28,8 +28,8 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
                 graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
     if (fits) symbol = quantity->node;
     else
-      report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name", targets[i].attribute,
-                name != NULL ? name : "", targets[i].attribute);
+      report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name; expected one of the file",
+                targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
   }
   if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate, state and mode");
   return symbol;

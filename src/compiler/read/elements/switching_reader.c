@@ -123,7 +123,7 @@ static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
   size_t count = count_shape_contacts(reader, node);
   if (is_compliant(node)) return;
   if (!has_attribute(node, "name")) {
-    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\", by which its force is known");
+    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\"");
     return;
   }
   struct Variable contact = common_attributes(reader, node);
@@ -173,11 +173,10 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
   contact->gap = gap;
   contact->restitution = restitution.node;
   if (!graph_depends_on(model->graph, gap, COORDINATE))
-    report_error(
-        reader->diagnostics, constraint->line,
-        "the gap of the contact '%s' holds no coordinate; expected an expression such as y - r, which is 0 where "
-        "it touches",
-        constraint->name);
+    report_error(reader->diagnostics, constraint->line,
+                 "the gap of the contact '%s' contains no coordinate; expected an expression such as y - r, which is 0 "
+                 "where it touches",
+                 constraint->name);
   constraint->node = function(model->graph, GATE, contact->mode, negate(model->graph, gap));
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }

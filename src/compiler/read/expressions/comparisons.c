@@ -98,7 +98,8 @@ static bool is_group(const struct Parser *parser) {
 static Node parse_group(struct Parser *parser) {
   if (*parser->next != '(' || !is_group(parser)) return parse_relation(parser);
   parser->next++;
-  if (++parser->nesting > 100) FAIL(parser, "%s: more than 100 nested conditions", parser->place.what);
+  if (++parser->nesting > 100)
+    FAIL(parser, "%s: more than 100 nested conditions; expected fewer, or a <define> for a part", parser->place.what);
   Node condition = parser->failed ? ZERO : parse_condition(parser);
   parser->nesting--;
   expect_character(parser, ')', "to close a condition");

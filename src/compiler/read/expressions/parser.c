@@ -91,7 +91,8 @@ long parse_whole(struct Parser *parser, const char *what) {
   if (parser->failed) return 0;
   double number = graph_is_constant(parser->graph, value.node) ? graph_value(parser->graph, value.node) : NAN;
   if (number == floor(number) && fabs(number) < 1e9) return (long)number;
-  FAIL(parser, "%s: %s is not a whole number that is known at build time", parser->place.what, what);
+  FAIL(parser, "%s: %s is not a whole number that is known at build time; expected numbers and constants",
+       parser->place.what, what);
   return 0;
 }
 
@@ -250,7 +251,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   if (head.first > head.last) skip_to_end(parser);
   for (long i = head.first; !parser->failed && i <= head.last; i++) {
     if (++parser->repetitions > REPETITION_LIMIT)
-      FAIL(parser, "%s: sum(...) has more than %d terms", parser->place.what, REPETITION_LIMIT);
+      FAIL(parser, "%s: sum(...) has more than %d terms; expected fewer", parser->place.what, REPETITION_LIMIT);
     parser->next = body;
     index.value = number_of(parser, (double)i);
     total = quantity_add(parser, total, parse_sum(parser));
@@ -529,6 +530,6 @@ char *parse_name(struct Scope *scope, const char *text, struct Place place, bool
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
   if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
     FAIL(&parser, "%s: '%s' is not a name; expected letters, digits and _, or name[index]%s", place.what, text,
-         parts ? ", also of what is included, as in motor.theta" : "");
+         parts ? ", also of an included system, as in motor.theta" : "");
   return parser.failed ? NULL : name;
 }

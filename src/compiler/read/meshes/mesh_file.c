@@ -86,7 +86,7 @@ static bool has_usual_size(const struct Mesh *mesh) {
 static bool read_bytes(const char *path, struct Mesh *mesh, char **problem) {
   bool is_stl = ends_with(path, ".stl");
   if (!is_stl && !ends_with(path, ".obj")) {
-    *problem = copy_text("is none that is read; expected STL or OBJ, as Blender or MeshLab write them");
+    *problem = copy_text("has an unknown format; expected STL or OBJ, as Blender or MeshLab write them");
     return false;
   }
   size_t length;

@@ -47,10 +47,12 @@ static bool read_record(const char *record, size_t number, struct Mesh *mesh, ch
 static bool read_binary(const char *bytes, size_t length, struct Mesh *mesh, char **problem) {
   size_t count = length >= HEADING ? word_at(bytes + COUNT_AT) : 0, there = length / RECORD;
   if (length < HEADING || count > there || HEADING + count * RECORD > length) {
-    *problem = length < HEADING ? copy_text("is too short for STL; expected 84 bytes and 50 for each triangle")
-                                : format_text("is cut short: it tells of %zu triangles, and has %zu; expected a whole "
-                                              "STL file",
-                                              count, (length - HEADING) / RECORD);
+    *problem =
+        length < HEADING
+            ? copy_text("is too short for STL; expected 84 bytes and 50 for each triangle")
+            : format_text(
+                  "is cut short: it has %zu triangles in its header, and %zu after it; expected a whole STL file",
+                  count, (length - HEADING) / RECORD);
     return false;
   }
   for (size_t i = 0; i < count; i++)

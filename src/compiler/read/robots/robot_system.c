@@ -230,7 +230,7 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
     if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
   warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
                  "limits=\"stops\", or \"outputs\" if this is meant,");
-  warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may push with more than the effort",
+  warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
                  "effort=\"limited\", or \"unlimited\" if this is meant,");
 }
 

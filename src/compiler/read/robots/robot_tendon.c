@@ -12,7 +12,7 @@ static void write_coefficients(const struct Writer *writer, const struct Tendon 
     const struct Pull *pull = &tendon->transmission.pulls[i];
     if (pull->symbol == NULL) continue;
     write_parameter(writer, copy_text(pull->symbol), pull->coefficient, joint_slides(pull->joint) ? "rad/m" : "m/rad",
-                    format_text("by how much the tendon '%s' follows the joint '%s'", tendon->name, pull->joint->name));
+                    format_text("coefficient in the tendon '%s' of the joint '%s'", tendon->name, pull->joint->name));
   }
 }
 
@@ -85,7 +85,7 @@ static char *coefficient_of(const struct Writer *writer, const struct Robot *rob
   char *name = format_text("%s_by_power_%d", robot_symbol(link->name), power);
   write_parameter(writer, name, link->coefficient[power],
                   power > 1 ? format_text("%s/%s%d", unit, other, power) : format_text("%s/%s", unit, other),
-                  format_text("by how much '%s' follows '%s'", first->name, second->name));
+                  format_text("coefficient in the length of '%s' of the length of '%s'", first->name, second->name));
   return name;
 }
 

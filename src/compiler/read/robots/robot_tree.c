@@ -183,7 +183,7 @@ static void order_links(struct Connection *connection) {
   for (size_t i = 0; i < robot->link_count; i++) {
     if (reached[i]) continue;
     report_error(connection->diagnostics, robot->links[i]->joint->line,
-                 "the link '%s' is its own ancestor, or hangs on one that is; expected a tree", robot->links[i]->name);
+                 "the link '%s' or a parent of it is its own ancestor; expected a tree", robot->links[i]->name);
     break;
   }
 }
@@ -191,11 +191,10 @@ static void order_links(struct Connection *connection) {
 /* Reports placements and inertias that overflowed. */
 static void check_numbers(struct Connection *connection, const struct Link *link) {
   if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
-  report_error(
-      connection->diagnostics, link->line,
-      "the link '%s' is so far out, or so heavy, that its place or inertia as a part of '%s' is not a finite number; "
-      "expected smaller numbers in the <origin> and <inertial> of it and of what is fixed to it",
-      link->name, link->carrier->name);
+  report_error(connection->diagnostics, link->line,
+               "the position or inertia of the link '%s' as a part of '%s' is not finite; expected smaller numbers in "
+               "its <origin> and <inertial> and in those of links fixed to it",
+               link->name, link->carrier->name);
 }
 
 /* Sets the carrier of each link and merges the bodies of links that are fixed to each other. */
@@ -243,11 +242,11 @@ static void find_leader(struct Connection *connection, struct Joint *joint) {
     leader = mimicked_by(connection, leader);
   }
   if (!isfinite(joint->ratio) || !isfinite(joint->shift))
-    report_error(
-        connection->diagnostics, joint->line,
-        "the joint '%s' follows '%s' by %g of its position and %g, which is more than a number can be; expected "
-        "smaller multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
-        joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift, joint->name);
+    report_error(connection->diagnostics, joint->line,
+                 "the joint '%s' follows '%s' by %g of its position and %g, which is not finite; expected smaller "
+                 "multipliers and offsets in the <mimic> of '%s' and of those that it mimics",
+                 joint->name, leader != NULL ? leader->name : joint->mimicked_name, joint->ratio, joint->shift,
+                 joint->name);
   joint->leader = leader;
   if (leader != NULL && leader != joint) leader->is_mimicked = true;
 }
@@ -317,7 +316,7 @@ static void check_inertia(struct Connection *connection) {
         joint->armature > 0)
       continue;
     report_error(connection->diagnostics, joint->line,
-                 "the joint '%s' moves no inertia: neither the link '%s' nor what hangs on it has a mass; expected an "
+                 "the joint '%s' moves no inertia: neither the link '%s' nor a link behind it has a mass; expected an "
                  "<inertial> there, or type=\"fixed\"",
                  joint->name, joint->child->name);
   }

@@ -60,7 +60,7 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
          is_needed = (measure->needing & TYPE(shape->type)) != 0;
     has_size |= is_given;
     if (is_given && !is_of_type)
-      report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
+      report_at(reader, node, "the shape '%s' is %s %s, which has no %s; expected none", shape->name, article_of(shape),
                 shape_type_names[shape->type], measure->name);
     if (!is_given && is_needed)
       report_at(reader, node, "the %s '%s' has no %s; expected %s=\"...\" in m", shape_type_names[shape->type],
@@ -68,13 +68,13 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
   }
   for (int i = 0; i < 2; i++)
     if (has_attribute(node, of_meshes[i]) && shape->type != SHAPE_MESH)
-      report_at(reader, node, "the shape '%s' is %s %s, which has no %s", shape->name, article_of(shape),
+      report_at(reader, node, "the shape '%s' is %s %s, which has no %s; expected none", shape->name, article_of(shape),
                 shape_type_names[shape->type], of_meshes[i]);
   if (shape->type == SHAPE_MESH && !has_attribute(node, "file"))
     report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
               shape->name);
   if (has_attribute(node, "axis") && (TYPE(shape->type) & without_axis) != 0)
-    report_at(reader, node, "the shape '%s' is %s %s, which has no axis", shape->name, article_of(shape),
+    report_at(reader, node, "the shape '%s' is %s %s, which has no axis; expected none", shape->name, article_of(shape),
               shape_type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
@@ -84,7 +84,8 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   struct Mechanism *mechanism = &reader->model->mechanism;
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
-  if (find_shape(reader, name) != NULL) report_at(reader, node, "a shape named '%s' is already there", name);
+  if (find_shape(reader, name) != NULL)
+    report_at(reader, node, "a shape named '%s' is already defined; expected another name", name);
   struct ContactShape shape = {
       .name = name, .type = type_of(node), .particle = NO_PARTICLE, .axis = 2, .offset = {{ZERO, ZERO, ZERO}}};
   check_measures(reader, node, &shape);

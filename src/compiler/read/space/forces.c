@@ -120,7 +120,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
     bool is_given = has_attribute(node, axes[axis]) && !has_attribute(node, "in");
     if (body != NULL && !body->has_position[axis] && is_given)
       report_error(reader->diagnostics, line,
-                   "a force along %s on '%s', which has no %s; expected a force along what it has", axes[axis], name,
+                   "a force along %s on '%s', which has no %s; expected a force along another axis", axes[axis], name,
                    axes[axis]);
     Node displaced = body != NULL ? body->displaced[axis] : point.position.along[axis];
     add_force_along(reader, line, name, displaced, force.along[axis]);

@@ -117,7 +117,7 @@ static void check_axis(struct Reader *reader, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof with_axis / sizeof *with_axis; i++)
     has_axis |= attribute_is(node, "type", with_axis[i]);
   if (!has_axis && has_attribute(node, "axis"))
-    report_at(reader, node, "<joint type=\"%s\"> has no axis; expected the attribute 'axis' of another type alone",
+    report_at(reader, node, "<joint type=\"%s\"> has no axis; expected it without the attribute 'axis'",
               attribute(node, "type"));
 }
 
@@ -125,9 +125,10 @@ static void check_axis(struct Reader *reader, xmlNodePtr node) {
 static void check_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *type,
                             bool is_needed) {
   if (attribute_is(node, "type", type) && is_needed && !has_attribute(node, name))
-    report_at(reader, node, "<joint type=\"%s\"> needs the attribute '%s'", type, name);
+    report_at(reader, node, "<joint type=\"%s\"> needs the attribute '%s'; expected a number for it", type, name);
   else if (!attribute_is(node, "type", type) && has_attribute(node, name))
-    report_at(reader, node, "<joint> has the attribute '%s' with type=\"%s\" alone", name, type);
+    report_at(reader, node, "<joint> has the attribute '%s' with type=\"%s\" alone; expected it without the attribute",
+              name, type);
 }
 
 void declare_joint(struct Reader *reader, xmlNodePtr node) {
@@ -261,8 +262,9 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
   }
   if (idle_count == count && reader->diagnostics->errors == 0)
     report_at(reader, node,
-              "nothing moves what the joint '%s' holds; expected '%s' and '%s' that move against one another", joint,
-              attribute(node, "from"), attribute(node, "to"));
+              "nothing moves along or about the axes that the joint '%s' constrains; expected '%s' and '%s' that move "
+              "against one another",
+              joint, attribute(node, "from"), attribute(node, "to"));
 }
 
 /*
@@ -275,8 +277,8 @@ static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Sid
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     Node cosines = add(graph, product_of_axes(graph, from, j, to, j), product_of_axes(graph, from, k, to, k));
-    char *what = format_text("the joint '%s' starts nearer to a half turn about %s than to its pose, which start "
-                             "values near that pose avoid: the sum of the cosines between its axes %s, and %s,",
+    char *what = format_text("the joint '%s' starts nearer to a half turn about %s than to its pose (set start values "
+                             "near it): the sum of the cosines between its axes %s, and %s,",
                              attribute(node, "name"), axes[i], axes[j], axes[k]);
     expect_not_negative(reader, node, what, cosines, false);
   }

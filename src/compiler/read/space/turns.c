@@ -80,7 +80,7 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
     if (strcmp(model->constraints.items[i].name, name) == 0) model->constraints.items[i].node = norm;
   if (!graph_depends_on(graph, norm, COORDINATE))
     report_at(reader, node,
-              "the quaternion of '%s' contains no coordinate; expected four coordinates, whose norm is held at 1",
+              "the quaternion of '%s' contains no coordinate; expected four coordinates, whose norm is kept at 1",
               frame);
 }
 

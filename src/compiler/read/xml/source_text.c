@@ -61,7 +61,7 @@ static bool pass_markup(struct Scan *scan, struct Diagnostics *diagnostics) {
   else if (begins(scan, "<?")) pass_behind(scan, "?>");
   else pass_tag(scan);
   if (scan->elements > ELEMENT_LIMIT)
-    report_error(diagnostics, line, "the file has more than %d elements; expected fewer, and <for> for what repeats",
+    report_error(diagnostics, line, "the file has more than %d elements; expected fewer, and <for> for repetitions",
                  ELEMENT_LIMIT);
   else if (scan->attributes > ATTRIBUTE_LIMIT)
     report_error(diagnostics, line, "an element has more than %d attributes; expected fewer", ATTRIBUTE_LIMIT);
@@ -84,7 +84,7 @@ char *source_text(const char *path, size_t *length, struct Diagnostics *diagnost
   bool is_right = ferror(file) == 0;
   fclose(file);
   if (is_right && *length > LENGTH_LIMIT)
-    report_error(diagnostics, 0, "the file is longer than %d bytes; expected a shorter one, and <for> for what repeats",
+    report_error(diagnostics, 0, "the file is longer than %d bytes; expected a shorter one, and <for> for repetitions",
                  LENGTH_LIMIT);
   if (is_right && *length <= LENGTH_LIMIT && is_readable(text, *length, diagnostics)) return text;
   release(text);

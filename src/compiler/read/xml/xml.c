@@ -40,9 +40,9 @@ static char *meaning_of(const xmlError *error) {
         "<%s>",
         other, name, error->int1, name, name);
   case XML_ERR_DOCUMENT_EMPTY:
-    return copy_text("the file does not begin with an element; expected <system name=\"...\"> and what is in it");
+    return copy_text("the file does not begin with an element; expected <system name=\"...\"> and its elements");
   case XML_ERR_DOCUMENT_END:
-    return copy_text("the file goes on after the end of its first element; expected one <system> around everything");
+    return copy_text("the file has text after the end of its first element; expected one <system> around everything");
   case XML_ERR_RESERVED_XML_NAME:
     return copy_text("<?xml ...?> stands further down; expected it at the very beginning of the file, or left out");
   case XML_ERR_INVALID_ENCODING:
@@ -81,7 +81,7 @@ static void refuse_document_type(void *context, const xmlChar *name, const xmlCh
   xmlParserCtxtPtr parser = context;
   report_error(parser->_private, parser->input->line,
                "<!DOCTYPE ...> and entities are not read; expected the file without them, and <constant>, <define> or "
-               "<for> for what repeats");
+               "<for> in place of entities");
   xmlStopParser(parser);
 }
 

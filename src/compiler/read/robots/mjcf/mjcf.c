@@ -84,7 +84,7 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (attribute_is(flag, flags[i], "disable"))
       report_error(mjcf->file.diagnostics, line_of(flag),
-                   "%s=\"disable\" of <flag> is not read; expected a file without what it disables", flags[i]);
+                   "%s=\"disable\" of <flag> is not read; expected a file without it", flags[i]);
 }
 
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {

@@ -2,7 +2,7 @@
 
 #include "read/xml/nodes.h"
 
-static const char rigid[] = "a limit, friction or constraint that is exact, as all are here";
+static const char rigid[] = "a rigid limit, friction or constraint without it";
 static const char ground_law[] = "ground_stiffness and ground_damping of the robot";
 static const char extended_shapes[] = "shapes that are larger by the difference of margin and gap";
 static const char smaller_range[] = "a range that is smaller by it";

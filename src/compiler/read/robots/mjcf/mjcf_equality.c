@@ -91,7 +91,7 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
   bool is_fixed = is_element(node, "weld");
   if (is_fixed && mjcf_number(mjcf, node, "torquescale", 1) == 0)
     report_error(mjcf->file.diagnostics, line_of(node),
-                 "torquescale=\"0\" of <weld> holds no rotation; expected a <connect>");
+                 "torquescale=\"0\" of <weld> constrains no rotation; expected a <connect>");
   if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
   else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
   robot->loops = make_room(robot->loops, robot->loop_count, sizeof *robot->loops);
@@ -109,8 +109,8 @@ static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   const char *names[2] = {required_attribute(&mjcf->file, node, "tendon1"), attribute(node, "tendon2")};
   if (*names[0] == '\0') return; /* the error has been reported */
   if (has_other && strcmp(names[0], names[1]) == 0) {
-    report_error(mjcf->file.diagnostics, link.line,
-                 "the tendon '%s' cannot be as long as itself; expected another one for tendon2", names[0]);
+    report_error(mjcf->file.diagnostics, link.line, "the tendon '%s' is its own tendon2; expected another one",
+                 names[0]);
     return;
   }
   for (int i = 0; i < (has_other ? 2 : 1); i++) {

@@ -33,8 +33,9 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   double length = make_unit(along);
   bool is_round = geom->type == CAPSULE || geom->type == CYLINDER;
   if (!(length > 0) || (!is_round && geom->type != BOX && geom->type != ELLIPSOID)) {
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "fromto of a <geom> gives no place; expected two points, of a capsule, cylinder, box or ellipsoid");
+    report_error(
+        mjcf->file.diagnostics, line_of(node),
+        "fromto of a <geom> is not valid; expected two different points, of a capsule, cylinder, box or ellipsoid");
     return;
   }
   geom->place.rotation = rotation_of_z(along);
