@@ -31,7 +31,7 @@ WORK = "nonConservativeWork"  # a state that nothing depends on
 SHOWN, NOTABLE = 3, 1e-3  # rates in a message, relative to the largest
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium:
     """
     Where a system rests. `point` has states, inputs and what varied by name, in SI units, and `outputs` the outputs there; `linearization` is that at the
@@ -49,7 +49,7 @@ class Equilibrium:
     def constraints(self):
         return self.linearization.constraints
 
-    def __str__(self):
+    def __repr__(self):
         lines = [f"{name} = {value:.9g}" for name, value in (self.point | self.outputs).items()]
         lines += [f"contacts that stay closed and frictions that stay stuck: {', '.join(self.constraints)}"] if self.constraints else []
         return "\n".join([*lines, f"{self.stability}; eigenvalues: {', '.join(f'{value:.6g}' for value in self.eigenvalues) or 'none'}"])
