@@ -240,7 +240,7 @@ class Slave3(Slave):
         if self.is_asked is None:
             self.is_asked = bool(self.supplier) and self._is_asked(begin, end)
             if not self.is_asked and self.signals.moving:
-                warnings.warn(f"the FMU holds '{self.signals.moving[0]}' over each step, as an input that moves something; expected FMI 2.0, which follows it", stacklevel=2)
+                warnings.warn(f"the FMU keeps '{self.signals.moving[0]}' constant over each step, although it moves positions; expected FMI 2.0, which follows its derivatives", stacklevel=2)
         return self.is_asked
 
     def _is_asked(self, begin, end):
@@ -274,7 +274,7 @@ class Slave3(Slave):
             if ends:
                 raise Problem(f"{self.description.modelName} ended the simulation at {last:.9g} s")
             if is_early and not is_event and last <= time:
-                raise Problem(f"{self.description.modelName} makes no steps from {time:.9g} s on")
+                raise Problem(f"{self.description.modelName} does not advance from {time:.9g} s")
             time = last if is_early else end
             if is_event:
                 self.show(time, inputs, record)

@@ -158,9 +158,9 @@ def compile_fmu(platform, system, binaries, name, fmi=2, source=ROOT, sundials=N
     if '#include "methods/sundials/' not in system.read_text():
         sundials = None
     elif platform == WEBASSEMBLY:
-        raise Failure(f"{system} needs SUNDIALS, which is not there for {platform}; expected another <solver> than erk and bdf")
+        raise Failure(f"{system} needs SUNDIALS, which is not available for {platform}; expected another <solver> than erk and bdf")
     elif sundials is None or not (Path(sundials) / "include").exists():
-        raise Failure(f"{system} needs SUNDIALS for {platform}; expected what scripts/sundials-all builds, or another <solver> than erk and bdf")
+        raise Failure(f"{system} needs SUNDIALS for {platform}; expected the libraries of scripts/sundials-all, or another <solver> than erk and bdf")
     else:
         sundials = Path(sundials).resolve()
     compiled = {}

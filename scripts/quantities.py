@@ -21,7 +21,7 @@ def _converted(name, text, unit):
         raise Problem(f"{name}: '{text}' is not a number; expected one in {unit}")
     result = subprocess.run([lagc, "--value", f"{name}={text}", "--unit", unit], capture_output=True, text=True)
     if result.returncode != 0:
-        raise Problem(result.stderr.strip() or f"{name}: '{text}' has no finite value")
+        raise Problem(result.stderr.strip() or f"{name}: '{text}' has no finite value; expected a number in {unit}")
     return float(result.stdout)
 
 

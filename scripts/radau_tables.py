@@ -88,7 +88,7 @@ def write(s):
 
 
 if __name__ == "__main__":
-    print("/* Coefficients of Radau IIA, written by scripts/radau_tables.py; what they mean stands in radau.c. */")
+    print("/* Coefficients of Radau IIA, written by scripts/radau_tables.py; radau.h explains them. */")
     print("static const struct RadauMethod methods[] = {")
     for stages in STAGES:
         write(stages)

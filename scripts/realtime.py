@@ -141,7 +141,7 @@ def all_names():
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 600.0
     names = sys.argv[2:] or all_names()
-    print("times in us; the longest leaves out what else the machine did: of each step the fastest of", RUNS, "runs counts")
+    print("times in us; of each step the fastest of", RUNS, "runs counts, so that other load of the machine is left out")
     show(dict(zip(COLUMNS, COLUMNS)))
     rows = []
     for row in rows_of(names, seconds):

@@ -55,7 +55,7 @@ def main():
     path = path if path.suffix == ".fmu" else ROOT / "build" / "fmu" / f"{arguments.system}.fmu"
     try:
         if not path.exists():
-            raise Problem(f"there is no {path}")
+            raise Problem(f"there is no {path}; expected the name of a system that is built, or an FMU")
         report(lambda: sweep(path, ROOT / "build" / "results", arguments, ROOT / "build" / "libsweep_runs.so", compile_ensemble))
     except Problem as problem:
         sys.exit(f"scripts/sweep: {problem}")

@@ -186,7 +186,7 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
     try:
         library = source and compile_ensemble(source, lanes_here(runner))
     except Problem as problem:  # the sources of an FMU of another version may not fit this runtime
-        print(f"{problem}\nThe runs follow one another.", file=sys.stderr)
+        print(f"{problem}\nRuns are computed one after another.", file=sys.stderr)
         return None
     if not library:
         return None
@@ -291,7 +291,7 @@ def report(run):
     try:
         output = run()
     except KeyboardInterrupt:
-        print("interrupted; finished runs are kept, and the same command goes on with them", file=sys.stderr)
+        print("interrupted; finished runs are kept, and the same command continues with them", file=sys.stderr)
         os._exit(130)  # does not wait for runs in progress, which may take long
     print_summary(output)
 
@@ -308,7 +308,7 @@ def sweep(path, folder, words, runner, compile_ensemble):
         raise Problem(f"{path} is of FMI {description.fmiVersion}; expected one of FMI 2.0")
     names = [known_name(name, description) for name, _ in words.vary]
     if len(set(names)) < len(names):
-        raise Problem("a variable varies twice")
+        raise Problem("a variable varies twice; expected it once")
     units = units_of(description)
     rows = points([(name, in_unit(name, values, units[name])) for name, (_, values) in zip(names, words.vary)], words.random, words.seed)
     experiment = description.defaultExperiment
@@ -328,5 +328,5 @@ def sweep(path, folder, words, runner, compile_ensemble):
             count = simulate_with_dask(client, *task) if client else simulate_in_threads(*task, ensemble)
             parts.join(output, count)
     except OSError as problem:
-        raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command goes on with them") from None
+        raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command continues with them") from None
     return output

@@ -272,7 +272,7 @@ def test_platforms_that_cannot_be_compiled(tmp_path):
         compile_fmu("win64", system, tmp_path, "f")
     with pytest.raises(Failure, match="'vax' is not known; expected linux64, win64, darwin64, aarch64-linux"):
         libraries_of("vax", "f")
-    with pytest.raises(Failure, match="needs SUNDIALS for win64; expected what scripts/sundials-all builds, or another <solver> than erk and bdf"):
+    with pytest.raises(Failure, match="needs SUNDIALS for win64; expected the libraries of scripts/sundials-all, or another <solver> than erk and bdf"):
         compile_fmu("win64", platforms() / "systems" / "BeadOnHoop" / "system.c", tmp_path, "BeadOnHoop")
 
 

@@ -140,8 +140,8 @@ def test_derivatives_at_events(lagrange_fmu):
     before = lagrange_fmu.sensitivities(ball, ["v"], ["h", "g"], [impact])
     assert [before.derivatives["v", name][0] for name in ("h", "g")] == pytest.approx([0, -impact], rel=1e-9, abs=1e-9)
     assert lagrange_fmu.sensitivities(ball, ["h"], ["h"], [0.7], {"e": 0.0}).derivatives["h", "h"][0] == pytest.approx(0, abs=1e-9)
-    for by, values, why in (("e", {"e": 0.0}, "leads some neighbours into other modes than this motion, of 'floor.closed', .* by e through it"),
-                            ("v", {"h": 0.0}, "no derivative by 'v' at 0: from values beside it floor.closed starts in another mode"), ("h", {"h": -1.0}, "contact 'floor' is penetrated")):  # fmt: skip
+    for by, values, why in (("e", {"e": 0.0}, "leads some neighbouring motions into other modes, of 'floor.closed', .* by e through it"),
+                            ("v", {"h": 0.0}, "no derivative by 'v' at 0: from neighbouring values floor.closed starts in another mode"), ("h", {"h": -1.0}, "contact 'floor' is penetrated")):  # fmt: skip
         with pytest.raises(lagrange_fmu.Problem, match=why):
             lagrange_fmu.sensitivities(ball, ["h"], [by], [0.7], values)
     with pytest.raises(lagrange_fmu.Problem, match="contact 'floor' is penetrated"):
@@ -149,7 +149,7 @@ def test_derivatives_at_events(lagrange_fmu):
 
 
 def test_a_mode_with_a_number(lagrange_fmu):
-    with pytest.raises(lagrange_fmu.Problem, match="gives 'fastest' another number for neighbours"):
+    with pytest.raises(lagrange_fmu.Problem, match="sets 'fastest' to numbers that vary between neighbouring motions"):
         lagrange_fmu.sensitivities(fmu.archive("Noted"), ["x"], ["w"], [3.0])
 
 
@@ -176,7 +176,7 @@ def test_starts_of_dependent_coordinates(lagrange_fmu, name, off, start):
 
 def test_a_start_that_follows_parameters_and_is_moved(lagrange_fmu):
     """The FMU does not show the start value before the projection, so that an expected value is required."""
-    with pytest.raises(lagrange_fmu.Problem, match="start value of 'y' follows parameters, and constraints move it; expected a value"):
+    with pytest.raises(lagrange_fmu.Problem, match="start value of 'y' follows from parameters, and constraints move it; expected a value"):
         lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1})
     lagrange_fmu.sensitivities(fmu.archive("Released"), ["x"], ["y"], [0.2], {"l": 1.1, "y": -0.77})
 
@@ -378,11 +378,11 @@ def test_best_values_are_kept(lagrange_fmu, monkeypatch):
     def over(self, *arguments):
         count.append(1)
         if len(count) == 2:
-            raise lagrange_fmu.Problem("no way on")
+            raise lagrange_fmu.Problem("cannot continue")
         return follow(self, *arguments)
 
     def fail(self, *arguments):
-        raise lagrange_fmu.Problem("no way on")
+        raise lagrange_fmu.Problem("cannot continue")
 
     data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
     with monkeypatch.context() as patch:

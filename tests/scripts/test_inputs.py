@@ -159,7 +159,7 @@ def test_prescribed_motions(name, place, of, version):
 
 def test_prescribed_motions_that_are_held_are_reported(monkeypatch):
     monkeypatch.setattr(Supplier, "__call__", lambda *words: None)
-    with pytest.warns(UserWarning, match="the FMU holds 'zb' over each step"):
+    with pytest.warns(UserWarning, match="the FMU keeps 'zb' constant over each step"):
         simulate(fmi3.archive("Carried"), {}, input=lambda t: 0.0, stop_time=0.1)
 
 

@@ -74,7 +74,7 @@ def table(**columns):
     (table(time=[0, 1], x=[0, 1]), {"noise": {"x": 0.0}}, "the noise is x=0; expected positive"),
     (table(time=[0, 1], x=[0, 1]), {"noise": {"y": 1.0}}, "the noise of 'y' is given, which was not measured"),
     (table(time=[0, 1], x=[0, 1]), {"bounds": {"m": (1, 2)}}, "'m' has bounds and does not vary"),
-    (table(time=[0, 1], x=[0, 1]), {"vary": ["k", "k"]}, "'k' stands there twice"),
+    (table(time=[0, 1], x=[0, 1]), {"vary": ["k", "k"]}, "'k' is given twice"),
 ])  # fmt: skip
 def test_unusable_data(lagrange_fmu, data, words, why):  # noqa: F811
     with pytest.raises(lagrange_fmu.Problem, match=why):

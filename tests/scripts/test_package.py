@@ -171,7 +171,7 @@ def test_closed_contacts_and_sticking_frictions_are_constraints(resting, command
 def test_where_nothing_presses_and_at_kinks_there_is_no_linearization(command, tmp_path, name, text):
     build_systems("resting", {name: text.replace("Resting", name)})
     result = command("linearize", fmu.archive(name), cwd=tmp_path)
-    assert result.returncode == 1 and f"{name} has no linearization at this point: beside it, something switches, such as a contact that touches without force; expected a point" in result.stderr
+    assert result.returncode == 1 and f"{name} has no linearization at this point: near it, something switches, such as a contact that touches without force; expected a point" in result.stderr
 
 
 def test_near_a_contact_the_steps_are_small(resting, command, tmp_path):

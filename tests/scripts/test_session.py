@@ -139,7 +139,7 @@ WRONG = [
     ("sim.step(-0.1)", "the step is -0.1; expected"),
     ("sim.step(np.inf)", "the step is inf; expected"),
     ("sim.step('1m')", "the step: '1m' is in m; expected a value in s"),
-    ("sim.restore(3)", "3 is not a saved state; expected what save() returned"),
+    ("sim.restore(3)", "3 is not a saved state; expected the result of save()"),
     ("sim.reset(y=1)", "'y' is not a variable of NoisyInSession"),
     ("sim.restore(other.save())", "the state is of another FMU than NoisyInSession"),
 ]

@@ -70,7 +70,7 @@ def test_sources_that_do_not_compile_over_lanes(tmp_path):
             target.writestr(name, source.read(name) + (b"#error other" if name.endswith(".c") else b""))
     words = command(tmp_path / "other.parquet", str(fmu), "--vary", "theta=0:3", "--random", "2000", "--stop", "0.1")
     result = subprocess.run(words, capture_output=True, text=True)
-    assert "2000 runs, 0 failed" in result.stdout and result.stderr.endswith("The runs follow one another.\n") and "#error other" in result.stderr
+    assert "2000 runs, 0 failed" in result.stdout and result.stderr.endswith("Runs are computed one after another.\n") and "#error other" in result.stderr
 
 
 def test_resumes_after_a_kill(tmp_path):
@@ -104,7 +104,7 @@ def interrupted(output, *words):
     result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
     whole.unlink(missing_ok=True)
     (line,) = result.stderr.splitlines()
-    assert result.returncode == 1 and re.match("scripts/sweep: .*No space left on device.*the same command goes on", line), line
+    assert result.returncode == 1 and re.match("scripts/sweep: .*No space left on device.*the same command continues", line), line
     (folder,) = output.parent.glob("*.parts-*")
     return folder
 

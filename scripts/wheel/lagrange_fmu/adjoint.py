@@ -187,7 +187,7 @@ def _aim_at_data(experiment):
 
 def _aim(point, of, data, stop_time, integral, noise):
     if (of is None) == (data is None):
-        raise Problem("expected the name of what is to be differentiated, or data from which the squares of the differences are")
+        raise Problem("expected the name of a variable to differentiate, or data whose squared differences are differentiated")
     if data is not None:
         experiment = Experiment(data, point, noise)
         check_noise(noise, [experiment])

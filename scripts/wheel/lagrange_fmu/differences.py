@@ -22,7 +22,7 @@ def rules_within(value, step, limits):
     low, high = ((limit - value) / step for limit in limits)
     rules = [rule for rule in (CENTRAL, FORWARD, BACKWARD) if all(low <= steps <= high for steps, _ in rule)]
     if not rules:
-        raise Problem(f"the limits {limits[0]:g} and {limits[1]:g} are too close together for a derivative by what is between them; expected limits further apart")
+        raise Problem(f"the limits {limits[0]:g} and {limits[1]:g} are too close together for a derivative by a value between them; expected limits further apart")
     return rules
 
 

@@ -81,7 +81,7 @@ class Experiment:
         read = [*dict.fromkeys([*point.outputs, *point.states, *point.derivatives])]
         for name in self.measured:
             if name not in read:
-                raise Problem(f"'{name}' of the data is not an output, a state or its derivative, nor an input; expected a column less, or one of these names: {', '.join([*read, *point.inputs])}")
+                raise Problem(f"'{name}' of the data is not an output, a state or its derivative, nor an input; expected no such column, or one of these names: {', '.join([*read, *point.inputs])}")
         if not self.measured:
             raise Problem(f"the data have no column that the system has as an output or state; expected some of {', '.join(read)}")
         for name in [*self.inputs, *self.measured]:

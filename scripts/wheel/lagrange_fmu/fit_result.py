@@ -73,7 +73,7 @@ class Fit:
             If an FMU was fitted, or the file does not name a value outside of <for> and <include>.
         """
         if self.system is None:
-            raise Problem("an FMU does not hold its system; fit the system itself to have it written")
+            raise Problem("an FMU does not contain its system; fit the system itself to write it")
         tree = ElementTree.parse(self.system, ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True)))
         for name in self.shared:
             element, attribute = _start_of(tree, name)
@@ -112,9 +112,9 @@ class Fit:
 def in_words(direction):
     """Return a sentence about an undetermined direction."""
     if len(direction) == 1:
-        return f"not determined by the data: {next(iter(direction))}, which does not change what was measured"
+        return f"not determined by the data: {next(iter(direction))}, which does not change the measured variables"
     changes = ", ".join(f"{name} by {change:.4g}" for name, change in direction.items())
-    return f"not determined by the data: {' and '.join(direction)}, which may change together ({changes}) and leave what was measured"
+    return f"not determined by the data: {' and '.join(direction)}, which may change together ({changes}) without a change of the measured variables"
 
 
 def _start_of(tree, name):

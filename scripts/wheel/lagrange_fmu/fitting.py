@@ -166,7 +166,7 @@ def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
             raise Problem(f"'{name}' has bounds and does not vary; expected bounds of {', '.join([*vary, *each])}")
     rho = loss_of(loss)
     if loss != "linear" and not noise:
-        raise Problem(f"the loss '{loss}' counts what is beyond the noise, which is not given; expected the noise of what was measured")
+        raise Problem(f"the loss '{loss}' depends on the noise, which is not given; expected the noise of each measured variable")
     with ExitStack() as stack:
         point = stack.enter_context(followed(system, dict(start_values), [*vary, *each]))
         noise = numbers_of(noise, point.units)
@@ -222,14 +222,14 @@ def _misfits(columns, rms):
     for name, (noise, parts) in columns.items():
         all_of = np.concatenate(parts)
         if is_misfit(all_of @ all_of, len(all_of)):
-            found.append(f"misfit: the residual of {name} is {rms[name] / noise:.3g} times its stated noise; the model misses something, or the noise is more. Deviations count with what remains")
+            found.append(f"misfit: the residual of {name} is {rms[name] / noise:.3g} times its stated noise; the model is incomplete, or the noise is larger. Deviations follow from the residuals")
     return found
 
 
 def _correlated(columns):
     found = {name: correlation_of_rows(parts) for name, (_, parts) in columns.items()}
     return [
-        f"residuals of {name} depend on those of the row before (correlation {share:.2f}), which deviations take for independent; they are too small by a factor of about {np.sqrt((1 + share) / (1 - share)):.2g}"
+        f"residuals of {name} correlate with those of the row before ({share:.2f}); deviations assume independence and are too small by a factor of about {np.sqrt((1 + share) / (1 - share)):.2g}"
         for name, share in found.items()
         if share > CORRELATED
     ]
@@ -239,7 +239,7 @@ def _remarks(search, found):
     if not found.freedom:
         yield "there are no more measured numbers than determined values, so that the noise and the deviations are unknown"
     if search.failed:
-        yield f"{search.failed} of {search.count} motions could not be computed, and the search went around their values"
+        yield f"{search.failed} of {search.count} motions could not be computed, and the search avoided their values"
     reasons = [experiment.why for experiment in search.experiments if experiment.why]
     if reasons:
         yield f"derivatives of {len(reasons)} of {len(search.experiments)} motions are by differences, since there are no exact ones: {reasons[0]}"

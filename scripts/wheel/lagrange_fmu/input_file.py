@@ -38,7 +38,7 @@ def _number(word, separator, place):
     try:
         return float(word if separator == "," else word.replace(",", "."))
     except ValueError:
-        raise Problem(f"{place} '{word}' is not a number") from None
+        raise Problem(f"{place} '{word}' is not a number; expected one such as 0.5") from None
 
 
 def read_table(path, units):
@@ -58,7 +58,7 @@ def read_table(path, units):
     values = np.empty((len(rows) - 1, len(names)))
     for place, (line, row) in enumerate(rows[1:]):
         if len(row) != len(names):
-            raise Problem(f"{path}:{line}: '{separator.join(row)}' is not {len(names)} numbers, of which the first line has the names")
+            raise Problem(f"{path}:{line}: '{separator.join(row)}' is not {len(names)} numbers; expected one for each name of the first line")
         values[place] = [_number(word, separator, f"{path}:{line}:") for word in row]
     return np.rec.fromarrays(values.T, names=names).view(np.ndarray)
 

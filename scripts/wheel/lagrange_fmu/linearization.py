@@ -111,7 +111,7 @@ def tangents(point, at):
         if projection is not None:
             left, singular, _ = np.linalg.svd(projection)
             return left[:, : np.count_nonzero(singular > 0.5)]
-    raise Problem(f"{point.name} has no linearization at this point: beside it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
+    raise Problem(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
 def independent(directions):

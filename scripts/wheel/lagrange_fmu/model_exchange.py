@@ -80,7 +80,7 @@ class Point:
         for value in (self.starts[name], moved):
             if np.allclose(self.start(values=values | {name: value}), states, rtol=1e-9, atol=1e-12):
                 return value
-        raise Problem(f"the start value of '{name}' follows parameters, and constraints move it; expected a value for it by start_values")
+        raise Problem(f"the start value of '{name}' follows from parameters, and constraints move it; expected a value for it by start_values")
 
     def start(self, states=None, values=None):
         """Initialize the FMU at `states` and `values` by name; return the states after initialization."""

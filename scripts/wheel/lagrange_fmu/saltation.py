@@ -122,7 +122,7 @@ class Saltation:
             if not is_needed or ends:
                 break
         if is_needed or ends:
-            raise Problem(f"{self.point.name} has no way on from the event at {self.time:g} s")
+            raise Problem(f"{self.point.name} cannot continue after the event at {self.time:g} s")
         self.model.enterContinuousTimeMode()
         return self.point.read(self.point.states)
 
@@ -141,7 +141,7 @@ class Saltation:
                 break
             known, value, delay = delay, now, delay - (now - self.level) * (delay - known) / (now - value)
         if not abs(delay) < 0.1 * unit:
-            raise Problem(f"the event at {self.time:g} s is only touched, and comes for some neighbours not at all: there is no derivative through it")
+            raise Problem(f"the event at {self.time:g} s is grazing: some neighbouring motions miss it, so that there is no derivative through it; expected other values, or a stop time before it")
         return delay
 
     def neighbour(self, shift, changes):
@@ -167,7 +167,7 @@ class Saltation:
             after = self.update()
         except FMICallException:
             why = "; ".join(self.point.messages)
-            raise Problem(f"the event at {self.time:g} s cannot be had {by}for some neighbours, so that there is no derivative: {why}; expected other values, or a min and a max that keep to what there is") from None
+            raise Problem(f"the event at {self.time:g} s fails {by}for some neighbouring motions, so that there is no derivative: {why}; expected other values, or a min and a max that exclude them") from None
         differing = self.point.differing(self.modes, self.point.modes())
         if differing:
             raise OtherModes(self.what_differs(differing, by))
@@ -177,8 +177,8 @@ class Saltation:
         """Return the message for a neighbour whose modes with these names differ after the event."""
         quoted = ", ".join(f"'{name}'" for name in names)
         if {*names} <= {*self.point.numbers}:
-            return f"the event at {self.time:g} s gives {quoted} another number {by}for neighbours, however near: derivatives by what modes hold are not known, even where nothing depends on it; expected a system without that mode, or a stop time before the event"
-        return f"the event at {self.time:g} s leads some neighbours into other modes than this motion, of {quoted}, so that there is no derivative {by}through it; expected other values, or a stop time before it"
+            return f"the event at {self.time:g} s sets {quoted} to numbers that vary {by}between neighbouring motions: derivatives by modes are not available, even where nothing depends on them; expected a system without that mode, or a stop time before the event"
+        return f"the event at {self.time:g} s leads some neighbouring motions into other modes, of {quoted}, so that there is no derivative {by}through it; expected other values, or a stop time before it"
 
     def sizes_of(self, acting):
         """Return the magnitudes of parameters by reference, 1 for zeros."""
@@ -227,7 +227,7 @@ class Saltation:
         if best is None:
             raise problem
         if not best[0] < UNKNOWN:
-            raise Problem(f"no derivative is found through the event at {self.time:g} s, of which neighbours make something else however near they are; expected other values, or a stop time before it")
+            raise Problem(f"no derivative is found through the event at {self.time:g} s, since differences of neighbouring motions do not converge; expected other values, or a stop time before it")
         return best[1]
 
     def change_anything(self, acting):

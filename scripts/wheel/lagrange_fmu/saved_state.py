@@ -24,7 +24,7 @@ class State:
 def check_state(state, description):
     """Raise Problem unless it is a State of this FMU."""
     if not isinstance(state, State):
-        raise Problem(f"{state!r} is not a saved state; expected what save() returned")
+        raise Problem(f"{state!r} is not a saved state; expected the result of save()")
     if state.fmu != description.guid:
         raise Problem(f"the state is of another FMU than {description.modelName}; expected one of the same build")
 

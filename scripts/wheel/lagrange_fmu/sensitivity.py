@@ -56,7 +56,7 @@ class Start:
 
     def slope_by(self, name):
         """Return the derivative of the states by a value, by a central difference, or a one-sided one where only one side can start."""
-        why = "from no value beside it the motion starts"
+        why = "the motion starts from no neighbouring value"
         for rule in self.rules[name]:
             found = [self.changed({name: count}) for count, _ in rule]
             if None in found:
@@ -64,10 +64,10 @@ class Start:
             states, modes, sides = zip(*found)
             others = [mode for mode in modes if mode != self.modes]
             if others:
-                why = f"from values beside it {', '.join(self.point.differing(self.modes, others[0]))} starts in another mode"
+                why = f"from neighbouring values {', '.join(self.point.differing(self.modes, others[0]))} starts in another mode"
                 break
             if (np.max(sides, axis=0) * np.min(sides, axis=0) < 0).any():
-                why = "from values beside it the motion starts on both sides of an event"
+                why = "from neighbouring values the motion starts on both sides of an event"
                 break
             return sum(weight * state for state, (_, weight) in zip(states, rule)) / self.step[name]
         raise Problem(f"the motion has no derivative by '{name}' at {self.at[name]:g}: {why}; expected another value of '{name}'")
@@ -200,7 +200,7 @@ class Motion:
         self.place(time, state, inputs)
         steepest = np.argmax(np.max(np.abs(self.point.jacobian(self.point.derivatives, self.point.states)), axis=1))
         return (
-            f"constraints hold it ever more weakly there, and {self.point.derivatives[steepest]} changes ever more with the states, as where a mechanism lies flat or comes to the limit of its reach, through which "
+            f"the constraints become singular, and {self.point.derivatives[steepest]} changes ever faster with the states, as at a flat position or at the limit of a mechanism, through which "
             "there are no derivatives"
         )
 
@@ -247,7 +247,7 @@ def as_arrays(rows):
 def check_once(names):
     for name in names:
         if names.count(name) > 1:
-            raise Problem(f"'{name}' stands there twice; expected each name once")
+            raise Problem(f"'{name}' is given twice; expected each name once")
 
 
 def check_tolerance(tolerance):
