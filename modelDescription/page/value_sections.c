@@ -12,7 +12,7 @@ void write_definitions(struct Page *page) {
     if (names->of[definition->node] != definition->name) continue;
     if (first) page_heading(page, "Definitions");
     first = false;
-    page_equation(page, definition->name, definition->node);
+    page_equation(page, definition->name, definition->shown);
   }
 }
 

@@ -4,10 +4,11 @@ import re
 
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from scipy.integrate import quad
 from scipy.special import roots_legendre
 
-from fmu import build_systems, lagc
+from fmu import ERROR, build_systems, lagc
 
 HEAD = '<coordinate name="x" velocity="v" start="0.7"/><coordinate name="y" velocity="vy" start="-0.3" velocityStart="0.5"/><particle mass="1" x="x" y="y"/><parameter name="p" start="1.5"/><input name="u" start="2"/>'
 FUNCTIONS = """<function name="wave" arguments="s k">sin(k*s)*exp(-s) + abs(s - x)*s</function>
@@ -79,6 +80,64 @@ def test_forces_of_an_integral(open_fmu):
     assert instance.get("totalEnergy") == pytest.approx(start, rel=1e-7)
 
 
+# Each with its value as a function of a bound or frequency x, and where it comes out of the range in which lagc finds it right.
+MOVING = {
+    "integral(s, 0, x, sin(s))": lambda x: 1 - np.cos(x),
+    "integral(s, 0, 1, cos(x*s))": lambda x: np.sin(x) / x if x else 1.0,
+    "integral(s, 0, time, exp(s - time)*cos(3*s))": lambda x: (np.cos(3 * x) + 3 * np.sin(3 * x) - np.exp(-x)) / 10,
+    "integral(s, x, x + 1, s^9)": lambda x: ((x + 1) ** 10 - x**10) / 10,
+}  # fmt: skip
+METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_integrals_are_right_or_stop(method, open_fmu):
+    """x = time. A rate stands for all forces; where it has no value, the solver stops before 40 s, at the end of the range."""
+    for i, (text, exact) in enumerate(MOVING.items()):
+        name = f"Moving{i}{method}"
+        system = f'<system name="{name}"><state name="x" rate="1"/><state name="z" rate="{text}"/><output name="o">der(z)</output><solver method="{method}" maxSteps="3000"/><experiment stopTime="3"/></system>'
+        build_systems(f"calculus-moving-{method}", {name: system})
+        instance, has_stopped = open_fmu(name).initialize(), False
+        for _ in range(40):
+            try:
+                instance.step(1.0)
+            except FMICallException:
+                has_stopped = True
+                break
+            x = instance.get("x")
+            assert instance.get("o") == pytest.approx(exact(x), rel=1e-10, abs=1e-11), (text, x)
+        assert has_stopped == ("s^9" not in text) and instance.time >= 3, text
+
+
+def test_a_parameter_beyond_the_range_is_refused(open_fmu):
+    build_systems("calculus-range", {"Ranged": '<system name="Ranged"><parameter name="L" start="1"/><state name="z" rate="integral(s, 0, L, sin(s))"/></system>'})
+    assert open_fmu("Ranged").initialize({"L": 4}).get("der(z)") == pytest.approx(1 - np.cos(4), rel=1e-11)
+    with (instance := open_fmu("Ranged")).fails(ERROR, "the rate of 'z' is not finite, .* or an integral leaves the range that lagc has named"):
+        instance.initialize({"L": 100})
+
+
+@pytest.mark.parametrize("expression, stop, message", [
+    ("integral(s, 0, time, sin(s))", 10, r"note: .* is exact to 1e-13 by \d+ nodes for time up to [\d.]+, beyond which the FMU stops"),
+    ("integral(s, 0, time, sin(s))", 5000, r"warning: .* needs more than 128 nodes; it is right for time up to [\d.]+ alone, beyond which the FMU stops; expected a <state> with the integrand as its rate"),
+    ("integral(s, 0, 1, sin(x*s))", 10, r"note: .* is exact to 1e-13 by \d+ nodes for x from -[\d.]+ to [\d.]+, beyond which the FMU stops"),
+    ("integral(s, 0, x, s^3*x)", 10, r"note: .* is exact to 1e-13 by 2 nodes near the start values"),
+    ("integral(s, 0, 1, cos(s + x))", 10, r"note: .* is exact to 1e-13 by \d+ nodes near the start values"),
+])  # fmt: skip
+def test_ranges_are_named(tmp_path, expression, stop, message):
+    said = said_of(tmp_path, f'<output name="o">{expression}</output><experiment stopTime="{stop}"/>').stderr
+    assert re.search(message, said), said
+
+
+def test_shapes_of_many_sines_stay_small(tmp_path):
+    """The shortening of a beam with eight shapes, whose velocity is a quadratic form at each of the nodes."""
+    shapes = "".join(f'<coordinate name="q{k}" velocity="v{k}" start="0.0{k}"/>' for k in range(1, 9))
+    w = "+".join(f"q{k}*sin({k}*pi*s)" for k in range(1, 9))
+    functions = f'<function name="w" arguments="s">{w}</function><function name="short" arguments="s">integral(r, 0, s, diff(w(r), r)^2/2)</function>'
+    (tmp_path / "system.xml").write_text(f'<system name="X">{shapes}{functions}<kinetic>integral(s, 0, 1, der(w(s))^2 + der(short(s))^2)</kinetic><potential>integral(s, 0, 1, diff(diff(w(s), s), s)^2)</potential></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
 def said_of(tmp_path, content):
     (tmp_path / "system.xml").write_text(f'<system name="X">\n{HEAD}{content}</system>')
     return lagc("system.xml", "-o", "out", cwd=tmp_path)
@@ -116,6 +175,10 @@ def test_a_kink_is_named_with_its_error(tmp_path):
 
 @pytest.mark.parametrize("expression, message", [
     ("diff(x^2, d)", "diff(..., d) is by an expression; expected a coordinate"),
+    ("diff(x^2*m, m)", "diff(..., m) is by a mode; expected a coordinate"),
+    ("diff(x^2*c, c)", "diff(..., c) is by a constant; expected a coordinate"),
+    ("integral(d, 0, 1, d)", "the variable 'd' of integral(...) is already a name"),
+    ("sum(later, 1, 2, later)", "the index 'later' of sum(...) is already a name"),
     ("diff(x^2)", "expected ',' before the name of diff(expression, name)"),
     ("diff(x^2, 3)", "expected a name at the end of diff(expression, name)"),
     ("diff(x^2, zz)", "unknown name 'zz'"),
@@ -130,7 +193,7 @@ def test_a_kink_is_named_with_its_error(tmp_path):
     ("integral(3, 0, x, 1)", "expected a name as the variable of integral(name, from, to, expression)"),
 ])  # fmt: skip
 def test_messages(tmp_path, expression, message):
-    result = said_of(tmp_path, f'<define name="d">2*x</define><output name="o">{expression}</output>')
+    result = said_of(tmp_path, f'<mode name="m"/><constant name="c" value="2"/><define name="o">{expression}</define><define name="d">2*x</define><define name="later">x</define>')
     assert result.returncode == 1 and message in result.stderr
 
 

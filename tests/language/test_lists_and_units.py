@@ -66,3 +66,21 @@ def test_units_that_are_not_si(tmp_path, unit, remedy):
 ])  # fmt: skip
 def test_messages(tmp_path, constant, message):
     assert message in compiled(tmp_path, f'<system name="X">{constant}<output name="o">1</output></system>').stderr
+
+
+@pytest.mark.parametrize("content, message", [
+    ('<mode name="peak"/><event when="v"><set mode="peak">x</set></event>', 'the value of <set> has the unit m, but \'peak\' has none; expected unit="m" of its <mode>'),
+    ('<mode name="peak" unit="s"/><event when="v"><set mode="peak">x</set></event>', "the value of <set> has the unit m, expected s"),
+    ('<mode name="peak"/><force coordinate="x">peak</force>', "the force has the unit 1, expected kg.m/s2"),
+    ('<mode name="peak" unit="m"/><event when="v"><set mode="peak">x</set></event><force coordinate="x">k*peak</force>', None),
+    ('<mode name="n"/><event when="v"><set mode="n">n + 1</set></event>', None),
+    ('<function name="f" arguments="s" unit="N">sin(s)</function><force coordinate="x">f(2)</force>', "the value of 'f' has the unit 1, expected kg.m/s2"),
+    ('<function name="f" arguments="s" unit="N">floor(s)*k</function><force coordinate="x">f(2)</force>', "the value of 'f' has the unit kg/s2, expected kg.m/s2"),
+    ('<function name="f" arguments="s" unit="N">k*s</function><force coordinate="x">f(x)</force>', None),
+    ('<function name="f" arguments="s" unit="N">s + k*x</function><force coordinate="x">f(2)</force>', None),
+])  # fmt: skip
+def test_units_of_modes_and_functions(tmp_path, content, message):
+    """A mode without a unit is a pure number; a number as an argument takes the unit of what it meets, what a function makes of it does not."""
+    text = f'<system name="X"><parameter name="k" start="2" unit="N/m"/><parameter name="m" start="1" unit="kg"/><coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/>{content}</system>'
+    result = compiled(tmp_path, text)
+    assert (result.returncode, result.stderr) == (0, "") if message is None else (result.returncode == 1 and message in result.stderr), result.stderr

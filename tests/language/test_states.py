@@ -212,7 +212,7 @@ MESSAGES = {
     "itself": ('<state name="a" rate="der(a)"/>', r"circle: der\(a\) -> der\(a\)"),
     "no rate": ('<state name="a"/>', "<state> needs the attribute 'rate'"),
     "unit": ('<state name="a" unit="m" rate="b"/><parameter name="b" unit="m" start="1"/>', "the rate has the unit m, expected m/s"),
-    "position": ('<coordinate name="x" velocity="v"/><state name="a" rate="v"/><particle mass="1" x="x + a"/>', "cannot depend on states, but 'a' does"),
+    "position": ('<coordinate name="x" velocity="v"/><state name="a" rate="v"/><particle mass="1" x="x + a"/>', "needs the second derivative of the state 'a', whose rate depends on 'v'"),
     "acceleration": ('<coordinate name="x" velocity="v"/><state name="a" rate="der(v)"/><particle mass="1" x="x"/><force coordinate="x">der(a)</force>', r"cannot depend on accelerations, but der\(...\) does"),
     "range": ('<state name="a" rate="1" start="3" max="2"/>', "'a': start 3 is outside min and max"),
     "set": ('<state name="a" rate="1"/><event when="a - 1"><set state="b">0</set></event>', "there is no state of this name"),

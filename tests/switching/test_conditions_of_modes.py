@@ -27,10 +27,47 @@ SYSTEM = """
 </system>
 """.format(counters="".join(f'<mode name="{name}"/><event when="{when.replace(">", "&gt;")}"><set mode="{name}">{name} + 1</set></event>' for name, when in CONDITIONS.items()))
 
+# n counts samples of 0.1 s, the first at the start, where it goes from 0 to 1. Expressions of modes and parameters pass 0 like others; each notes n then.
+PASSAGES = {"lim - n": ("falling", [4]), "n - 2*lim": ("rising", [7]), "5.5 - n": ("falling", [6]), "n - 5.5": ("falling", []), "(n - 2)*(n - 4)": ("both", [3, 5]), "sin(n - 0.5)": ("rising", [1, 7])}
+COUNTER = """
+<system name="Passages{method}">
+  <parameter name="lim" start="3"/>
+  <state name="x" rate="-x"/>
+  <mode name="n"/>
+  <sample every="0.1"><set mode="n">n + 1</set></sample>
+  {events}
+  <solver method="{method}"/>
+</system>
+"""
+EVENTS = "".join(f'<mode name="at[{i}]"/><event when="{when}" direction="{direction}"><set mode="at[{i}]">100*at[{i}] + n</set></event>' for i, (when, (direction, _)) in enumerate(PASSAGES.items()))
+METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    fmu.build_systems("conditions", {"Conditions": SYSTEM}, versions=[2])
+    counters = {f"Passages{method}": COUNTER.format(method=method, events=EVENTS) for method in METHODS}
+    fmu.build_systems("conditions", {"Conditions": SYSTEM, **counters}, versions=[2])
+
+
+def noted(counts):
+    return sum(n * 100**i for i, n in enumerate(reversed(counts)))
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("step", [1.0, 0.07, 0.001])
+def test_expressions_of_modes_pass_zero(method, step):
+    """The value is 0 at 3 of lim - n, and beyond it at 4."""
+    instance = fmu.Instance(f"Passages{method}").initialize()
+    instance.run(1.0, step, "n")
+    assert [instance.get(f"at[{i}]") for i in range(len(PASSAGES))] == [noted(counts) for _, counts in PASSAGES.values()]
+
+
+def test_a_tuned_parameter_brings_the_passage(open_fmu):
+    instance = open_fmu("Passagestaylor").initialize()
+    instance.step(0.05)
+    instance.set(lim=0.5)
+    instance.step(0.01)
+    assert instance.get("at[0]") == 1
 
 
 def turns(mode, time):

@@ -76,6 +76,18 @@ KICKED = """
 </system>
 """
 
+# The period is a mode, which the third sample changes: that at 0.3 comes as it was, and those behind it 0.25 apart.
+PACED = """
+<system name="Paced_{method}">
+  <state name="x" rate="1"/>
+  <mode name="dt" start="0.1" unit="s"/>
+  <mode name="n"/>
+  <mode name="at"/>
+  <sample every="dt"><set mode="n">n + 1</set><set mode="at">x</set><set mode="dt">if(n &gt; 1.5, 0.25, 0.1)</set></sample>
+  <solver method="{method}"/>
+</system>
+"""
+
 
 def name_of(method, offset):
     return f"Servo{method.title()}{'Late' if offset else ''}"
@@ -85,7 +97,18 @@ def name_of(method, offset):
 def built():
     servos = {name_of(method, offset): SERVO.format(name=name_of(method, offset), method=method, offset=offset) for method in METHODS for offset in (0.0, 0.25)}
     digits = {f"Digits_{method}": DIGITS.format(method=method) for method in METHODS}
-    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits}, versions=[2, 3])
+    paced = {f"Paced_{method}": PACED.format(method=method) for method in METHODS}
+    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits, **paced}, versions=[2, 3])
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("step", [2.0, 0.13, 0.01])
+def test_a_period_that_is_a_mode(method, step):
+    times = [0.0, 0.1, 0.2, *(0.3 + 0.25 * k for k in range(20))]
+    instance = fmu.Instance(f"Paced_{method}").initialize()
+    for time, n, at, x in instance.run(2.0, step, "n", "at", "x"):
+        passed = [sample for sample in times if sample <= time + 1e-12]
+        assert (n, at, x) == (len(passed), pytest.approx(passed[-1], abs=1e-9), pytest.approx(time, abs=1e-9)), time
 
 
 def exact_servo(end, Ts=0.1, t0=0.0, start=0.0, state=(0.2, 0.0)):
@@ -340,6 +363,16 @@ def test_many_runs_at_once():
     ('when="time - 2" direction="both"', None),
     ('when="time - o"', None),
     ('when="x - time"', None),
+    ('when="time &gt;= 0"', 'when="time >= 0" holds at the start, and does not come to hold later; expected <sample every='),
+    ('when="time &gt;= n*Ts"', "holds at the start, and does not come to hold later"),
+    ('when="not time &gt; 2"', "holds at the start"),
+    ('when="time &lt; -1"', 'when="time < -1" holds at no time'),
+    ('when="time &gt; 2 and time &lt; 1"', "holds at no time"),
+    ('when="time &gt; 0"', None),
+    ('when="time &gt; 1 and time &lt; 2"', None),
+    ('when="time &lt; 1 or time &gt; 2"', None),
+    ('when="time &gt;= o"', None),
+    ('when="time &gt;= 0 and x &lt; 1"', None),
 ])  # fmt: skip
 def test_events_that_never_happen(event, message, tmp_path):
     """A mode that another event sets may make the event occur."""

@@ -7,6 +7,12 @@ struct Cone *cone_create(void) {
   return allocate(1, sizeof(struct Cone));
 }
 
+void cone_release(struct Cone *cone) {
+  release(cone->nodes);
+  release(cone->place);
+  release(cone);
+}
+
 bool cone_has(const struct Cone *cone, Node node) {
   if (node >= cone->capacity) return false;
   size_t place = cone->place[node];

@@ -15,6 +15,7 @@ struct Cone {
 };
 
 struct Cone *cone_create(void);
+void cone_release(struct Cone *cone);
 
 /* Collects the targets and all nodes below them. */
 void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count);

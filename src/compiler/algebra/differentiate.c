@@ -106,6 +106,7 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
   seeds[graph->vertices[symbol].left] = ONE;
   Node derivative = ZERO;
   derivative_along(graph, &target, 1, seeds, &derivative);
+  release(seeds);
   return derivative;
 }
 
@@ -119,10 +120,12 @@ static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node
 /* Returns the adjoints of the symbols of the kinds; adjoint has one element for each member of the cone. */
 static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, const Node *adjoint) {
   const struct Cone *cone = graph->cone;
-  struct Gradient gradient = {allocate(cone->count, sizeof(Node)), allocate(cone->count, sizeof(Node)), 0};
+  struct Gradient gradient = {NULL, NULL, 0};
   for (size_t place = 0; place < cone->count; place++) {
     const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
     if (vertex->operation != SYMBOL || (vertex->kinds & kinds) == 0 || adjoint[place] == ZERO) continue;
+    gradient.symbols = make_room(gradient.symbols, gradient.count, sizeof(Node));
+    gradient.values = make_room(gradient.values, gradient.count, sizeof(Node));
     gradient.symbols[gradient.count] = cone->nodes[place];
     gradient.values[gradient.count++] = adjoint[place];
   }
@@ -155,7 +158,9 @@ struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, cons
     add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[place], by_left);
     if (arity == 2) add_adjoint(graph, kinds, adjoint, vertex.right, adjoint[place], by_right);
   }
-  return take_symbols(graph, kinds, adjoint);
+  struct Gradient gradient = take_symbols(graph, kinds, adjoint);
+  release(adjoint);
+  return gradient;
 }
 
 struct Gradient gradient_by_kinds(struct Graph *graph, Node target, unsigned kinds) {
@@ -206,4 +211,5 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
     }
   }
   for (size_t i = 0; i < count; i++) results[i] = mapped[cone_place(cone, targets[i])];
+  release(mapped);
 }

@@ -125,8 +125,60 @@ static void print_product(struct Printer *printer, double coefficient, Node base
   if (below > 1) fputs(")", printer->file);
 }
 
+/* The condition that does not hold where an opener, 1 - gate(condition, 1), is positive; ZERO for other openers. */
+static Node opposite_of(const struct Graph *graph, Node opener) {
+  const struct Vertex *sum = &graph->vertices[opener], *gate;
+  Node base;
+  if (sum->operation != ADD) return ZERO;
+  Node other = sum->left == ONE ? sum->right : sum->right == ONE ? sum->left : ZERO;
+  if (other == ZERO || coefficient_of(graph, other, &base) != -1.0) return ZERO;
+  gate = &graph->vertices[base];
+  return gate->operation == GATE && gate->right == ONE ? gate->left : ZERO;
+}
+
+/* if(opener > 0, positive, other) */
+struct Choice {
+  Node opener, positive, other;
+};
+
+/* A gate, or a sum of two gates of which one is open where the other is closed; false for other nodes. */
+static bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
+  const struct Vertex *vertices = graph->vertices, *vertex = &vertices[node];
+  if (vertex->operation == GATE) {
+    Node opposite = opposite_of(graph, vertex->left);
+    *choice = opposite != ZERO ? (struct Choice){opposite, ZERO, vertex->right}
+                               : (struct Choice){vertex->left, vertex->right, ZERO};
+    return true;
+  }
+  if (vertex->operation != ADD) return false;
+  const struct Vertex *left = &vertices[vertex->left], *right = &vertices[vertex->right];
+  if (left->operation != GATE || right->operation != GATE) return false;
+  bool is_swapped = opposite_of(graph, left->left) == right->left;
+  const struct Vertex *first = is_swapped ? right : left, *second = is_swapped ? left : right;
+  *choice = (struct Choice){first->left, first->right, second->right};
+  return opposite_of(graph, second->left) == first->left;
+}
+
+/* What opens by a sign is a comparison of what has the sign. */
+static void print_choice(struct Printer *printer, const struct Choice *choice) {
+  const struct Graph *graph = printer->graph;
+  Node base = choice->opener;
+  double coefficient = coefficient_of(graph, choice->opener, &base);
+  bool is_sign = graph->vertices[base].operation == SIGN && name_of(printer, base) == NULL;
+  bool is_below = is_sign && coefficient < 0.0;
+  fputs(is_below ? "if(0 > " : "if(", printer->file);
+  print(printer, is_sign ? graph->vertices[base].left : choice->opener, IN_SUM);
+  fputs(is_below ? ", " : " > 0, ", printer->file);
+  print(printer, choice->positive, IN_SUM);
+  fputs(", ", printer->file);
+  print(printer, choice->other, IN_SUM);
+  fputs(")", printer->file);
+}
+
 static void print_term(struct Printer *printer, Node node, bool first) {
-  if (printer->graph->vertices[node].operation == ADD && name_of(printer, node) == NULL) {
+  struct Choice choice;
+  bool is_sum = printer->graph->vertices[node].operation == ADD && !choice_of(printer->graph, node, &choice);
+  if (is_sum && name_of(printer, node) == NULL) {
     if (is_cut(printer)) return;
     printer->depth++;
     print_term(printer, printer->graph->vertices[node].left, first);
@@ -167,14 +219,6 @@ static bool print_bounded(struct Printer *printer, const struct Vertex *vertex) 
 }
 
 static void print_function(struct Printer *printer, const struct Vertex *vertex) {
-  if (vertex->operation == GATE) {
-    fputs("if(", printer->file);
-    print(printer, vertex->left, IN_SUM);
-    fputs(" > 0, ", printer->file);
-    print(printer, vertex->right, IN_SUM);
-    fputs(", 0)", printer->file);
-    return;
-  }
   if (print_bounded(printer, vertex)) return;
   fprintf(printer->file, "%s(", operation_name(vertex->operation));
   print(printer, vertex->left, IN_SUM);
@@ -195,13 +239,16 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
   printer->depth++;
   const struct Vertex *vertex = &printer->graph->vertices[node];
   Node base;
-  bool sum = vertex->operation == ADD || coefficient_of(printer->graph, node, &base) < 0;
+  struct Choice choice;
+  bool is_choice = choice_of(printer->graph, node, &choice);
+  bool sum = !is_choice && (vertex->operation == ADD || coefficient_of(printer->graph, node, &base) < 0);
   bool product = vertex->operation == MULTIPLY || vertex->operation == POWER;
   bool variable_power = vertex->operation == POWER && !graph_is_constant(printer->graph, vertex->right);
   bool quotient = vertex->operation == LOGISTIC || vertex->operation == SECH;
   bool parentheses = ((sum || quotient) && tightness > IN_SUM) || (product && tightness > IN_PRODUCT);
   if (parentheses) fputs("(", printer->file);
-  if (variable_power) {
+  if (is_choice) print_choice(printer, &choice);
+  else if (variable_power) {
     print(printer, vertex->left, IN_POWER);
     fputs("^", printer->file);
     print(printer, vertex->right, IN_POWER);

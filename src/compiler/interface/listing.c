@@ -157,7 +157,7 @@ static void append_modes(struct Interface *interface, const struct Model *model)
     struct InterfaceVariable *variable =
         append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
     variable->entry.start = mode->start;
-    variable->unit = variable_unit(mode);
+    set_units(variable, mode);
   }
   for (size_t i = 0; i < switches->contact_count; i++) {
     const char *constraint = model->constraints.items[switches->contacts[i].constraint].name;

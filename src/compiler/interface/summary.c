@@ -25,6 +25,7 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
       continue;
     add_name(names, node, list->items[i].name);
     add_name(names, without_branches(model, node), list->items[i].name);
+    if (list->items[i].shown != ZERO) add_name(names, list->items[i].shown, list->items[i].name);
   }
 }
 
@@ -35,7 +36,7 @@ static struct NodeNames author_names(const struct Model *model) {
     without_branches(model, model->definitions.items[i].node);
   for (size_t i = 0; i < model->calculated.count; i++) without_branches(model, model->calculated.items[i].node);
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
-  names.named = allocate(SHOWN_LIMIT + 1, sizeof *names.named);
+  names.named = allocate(SHOWN_LIMIT + 2, sizeof *names.named);
   add_names(&names, model, &model->calculated);
   if (!model->linearized) add_names(&names, model, &model->definitions);
   return names;
@@ -90,7 +91,8 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
       .kinetic = readable(model, &names, equations->kinetic),
       .potential = readable(model, &names, model->linearized ? equations->potential : model->energies.potential.node),
       .power = readable(model, &names, equations->stated_power),
-      .is_autonomous = simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
+      .is_autonomous = !graph_depends_on(graph, lagrangian, STATE) &&
+                       simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .motion_count = smaller(equations->count, SHOWN_LIMIT),
       .reaction_count = smaller(model->reactions.count, SHOWN_LIMIT),
       .rate_count = smaller(model->states.count, SHOWN_LIMIT),

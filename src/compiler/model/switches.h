@@ -72,7 +72,7 @@ struct Event {
   Node condition;       /* of modes alone: positive if the condition holds; for an expression, its sign */
   Node expression;      /* whose zero crossing is the event; ZERO for conditions and samples */
   Node side;            /* of an expression, the mode with its last nonzero sign; else ZERO */
-  long line;            /* of the sample or expression, for messages */
+  long line;            /* of the sample, or of when, for messages */
   bool is_of_contacts;  /* the condition depends on contacts, frictions or constraint forces */
   struct Assignment *assignments;
   size_t assignment_count;

@@ -7,6 +7,7 @@
 #include "read/event_checks.h"
 #include "read/expressions/named_functions.h"
 #include "read/robots/description/rigid_body.h"
+#include "read/state_checks.h"
 
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
@@ -194,6 +195,7 @@ static void warn_of_functions(const struct Reader *reader) {
 
 void check_system(struct Reader *reader) {
   check_content(reader);
+  check_moving_states(reader);
   if (reader->diagnostics->errors > 0) return;
   warn_of_functions(reader);
   warn_without_unit(reader);

@@ -1,8 +1,10 @@
 #include "read/event_checks.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "algebra/cone.h"
+#include "base/memory.h"
 
 /* Samples of an expression: at the start, 1 s and 2 s later. */
 enum { TIMES = 3 };
@@ -16,16 +18,27 @@ static bool is_set_by(const struct Event *event, Node mode) {
   return is_set;
 }
 
-/*
- * True if the event's expression depends only on time, parameters and modes that no other event sets. The graph's cone
- * holds the expression's nodes.
- */
+/* Counts the branches, contacts and frictions whose modes are in the cone of the graph. */
+static size_t count_switches(const struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  const struct Cone *cone = model->graph->cone;
+  size_t count = 0;
+  for (size_t i = 0; i < switches->branch_count; i++) count += cone_has(cone, switches->branches[i].mode);
+  for (size_t i = 0; i < switches->contact_count; i++) count += cone_has(cone, switches->contacts[i].mode);
+  for (size_t i = 0; i < switches->friction_count; i++) count += cone_has(cone, switches->frictions[i].told);
+  return count;
+}
+
+/* True if the nodes in the cone of the graph depend only on time, parameters and modes that no other event sets. */
 static bool is_alone(const struct Model *model, const struct Event *event) {
-  const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
   const struct Graph *graph = model->graph;
-  bool is_alone = (graph->vertices[event->expression].kinds & ~may_use) == 0;
-  for (size_t i = 0; i < model->switches.branch_count; i++)
-    is_alone &= !cone_has(graph->cone, model->switches.branches[i].mode);
+  bool is_alone = cone_has(graph->cone, model->time);
+  for (size_t i = 0; i < graph->cone->count; i++) {
+    Node node = graph->cone->nodes[i];
+    if (graph->vertices[node].operation != SYMBOL) continue;
+    enum SymbolKind kind = graph_symbol_of(graph, node)->kind;
+    is_alone &= kind == TIME || kind == PARAMETER || kind == MODE;
+  }
   for (size_t i = 0; i < model->switches.event_count; i++)
     for (size_t j = 0; j < model->modes.count && &model->switches.events[i] != event; j++)
       is_alone &= !cone_has(graph->cone, model->modes.items[j].node) ||
@@ -33,22 +46,21 @@ static bool is_alone(const struct Model *model, const struct Event *event) {
   return is_alone;
 }
 
-static void evaluate(const struct Model *model, Node expression, double *value) {
+/* The values at the start, and 1 s and 2 s later; false where they are not on a line that rises or falls. */
+static bool evaluate(const struct Model *model, Node expression, double *value) {
   double *symbols = start_values(model);
-  for (size_t i = 0; i < model->modes.count; i++)
-    symbols[model->graph->vertices[model->modes.items[i].node].left] = model->modes.items[i].start;
   for (int i = 0; i < TIMES; i++) {
     value[i] = graph_evaluate(model->graph, symbols)[expression];
     symbols[model->graph->vertices[model->time].left] += 1.0;
   }
+  double rate = value[1] - value[0], change = value[2] - value[1] - rate;
+  return rate != 0.0 && fabs(change) <= rounding * (fabs(value[0]) + fabs(value[1]) + fabs(value[2]));
 }
 
 static void warn_of_event(const struct Reader *reader, const struct Event *event) {
   double value[TIMES];
-  evaluate(reader->model, event->expression, value);
-  double rate = value[1] - value[0], change = value[2] - value[1] - rate;
-  bool is_affine = fabs(change) <= rounding * (fabs(value[0]) + fabs(value[1]) + fabs(value[2]));
-  if (!is_affine || rate == 0.0) return;
+  if (!evaluate(reader->model, event->expression, value)) return;
+  double rate = value[1] - value[0];
   bool rises = rate > 0.0, comes_to_zero = value[0] * rate < 0.0;
   bool looks_there = event->passage == PASSAGE_BOTH || (event->passage == PASSAGE_RISES) == rises;
   const char *course = rises ? "rises" : "falls";
@@ -64,12 +76,82 @@ static void warn_of_event(const struct Reader *reader, const struct Event *event
                    rises ? "rising" : "falling");
 }
 
+/* The branches that a condition, which the cone holds, looks at, and the times behind the start at which they turn. */
+struct Turns {
+  const struct Branch **branches;
+  double *times;
+  size_t branch_count, time_count;
+};
+
+static int compare_times(const void *first, const void *second) {
+  double a = *(const double *)first, b = *(const double *)second;
+  return (a > b) - (a < b);
+}
+
+/* False where a branch rests on others, or on more than time at a constant rate. */
+static bool find_turns(const struct Model *model, const struct Event *event, struct Turns *turns) {
+  const struct Switches *switches = &model->switches;
+  struct Cone *cone = model->graph->cone;
+  Node *roots = allocate(switches->branch_count + 1, sizeof *roots);
+  cone_collect(cone, model->graph, &event->condition, 1);
+  roots[0] = event->condition;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (cone_has(cone, switches->branches[i].mode)) {
+      turns->branches[turns->branch_count++] = &switches->branches[i];
+      roots[turns->branch_count] = switches->branches[i].indicator;
+    }
+  cone_collect(cone, model->graph, roots, turns->branch_count + 1);
+  if (count_switches(model) != turns->branch_count || !is_alone(model, event)) return false;
+  for (size_t i = 0; i < turns->branch_count; i++) {
+    double value[TIMES];
+    if (!evaluate(model, turns->branches[i]->indicator, value)) return false;
+    double duration = value[0] / (value[0] - value[1]);
+    if (duration > 0.0) turns->times[turns->time_count++] = duration;
+  }
+  qsort(turns->times, turns->time_count, sizeof *turns->times, compare_times);
+  return true;
+}
+
+/* Whether the condition holds a while behind the start. */
+static bool holds_at(const struct Model *model, const struct Event *event, const struct Turns *turns, double duration) {
+  double *symbols = start_values(model);
+  symbols[model->graph->vertices[model->time].left] += duration;
+  const double *value = graph_evaluate(model->graph, symbols);
+  for (size_t i = 0; i < turns->branch_count; i++) {
+    double indicator = value[turns->branches[i]->indicator];
+    symbols[model->graph->vertices[turns->branches[i]->mode].left] = (indicator > 0.0) - (indicator < 0.0);
+  }
+  return graph_evaluate(model->graph, symbols)[event->condition] > 0.0;
+}
+
+static void warn_of_condition(const struct Reader *reader, const struct Event *event) {
+  const struct Model *model = reader->model;
+  size_t count = model->switches.branch_count;
+  struct Turns turns = {.branches = allocate(count, sizeof(const struct Branch *)),
+                        .times = allocate(count, sizeof(double))};
+  if (!find_turns(model, event, &turns)) return;
+  bool at_start = holds_at(model, event, &turns, 0.0), before = at_start;
+  double passed = 0.0;
+  for (size_t i = 0; i <= turns.time_count; i++) {
+    double next = i < turns.time_count ? turns.times[i] : passed + 2.0;
+    bool holds = holds_at(model, event, &turns, (passed + next) / 2.0);
+    if (holds && !before) return;
+    before = holds;
+    passed = next;
+  }
+  report_warning(reader->diagnostics, event->line,
+                 "the event never happens: when=\"%s\" %s; expected <sample every=\"...\"> for what happens at the "
+                 "start and then at equal distances, or a condition that comes to hold later",
+                 event->text, at_start ? "holds at the start, and does not come to hold later" : "holds at no time");
+}
+
 void warn_of_events(const struct Reader *reader) {
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->switches.event_count; i++) {
     const struct Event *event = &model->switches.events[i];
+    if (event->passage == PASSAGE_HOLDS) warn_of_condition(reader, event);
     if (event->expression == ZERO) continue;
     cone_collect(model->graph->cone, model->graph, &event->expression, 1);
-    if (cone_has(model->graph->cone, model->time) && is_alone(model, event)) warn_of_event(reader, event);
+    if (count_switches(model) == 0 && is_alone(model, event)) warn_of_event(reader, event);
   }
 }

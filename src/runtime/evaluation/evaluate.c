@@ -28,13 +28,36 @@ void log_unkept(const struct Instance *instance, enum Status status, double time
               time, evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
 }
 
-void log_singularity(const struct Instance *instance, enum Status status, double time) {
-  if (instance->singular == 0) {
+const char *evaluate_rate_without_value(struct Instance *instance) {
+  struct Point point = instance_point(instance);
+  const size_t first = 2 * lagrangian.coordinate_count;
+  double *derivative = instance->work;
+  if (lagrangian.derivatives == NULL || lagrangian.derivatives(&point, derivative) != 0) return NULL;
+  if (!are_finite(derivative, first)) return NULL; /* from which rates follow */
+  for (size_t i = first; i < lagrangian.state_count; i++)
+    if (!isfinite(derivative[i])) return evaluate_name(VARIABLE_STATE, i);
+  return NULL;
+}
+
+static void log_not_finite(struct Instance *instance, enum Status status, double time) {
+  const char *state = evaluate_rate_without_value(instance);
+  if (state != NULL)
+    log_message(instance, status,
+                "time %g: the rate of '%s' is not finite, as when something is divided by 0, a root or a logarithm "
+                "has a negative argument, or an integral leaves the range that lagc has named; try other parameters, "
+                "inputs or start values",
+                time, state);
+  else
     log_message(
         instance, status,
-        "time %g: the accelerations are not finite, as when something is divided by 0, or exp or cosh gets a large "
-        "argument; try other parameters, inputs or start values",
+        "time %g: the accelerations are not finite, as when something is divided by 0, exp or cosh gets a large "
+        "argument, or an integral leaves the range that lagc has named; try other parameters, inputs or start values",
         time);
+}
+
+void log_singularity(struct Instance *instance, enum Status status, double time) {
+  if (instance->singular == 0) {
+    log_not_finite(instance, status, time);
     return;
   }
   size_t coordinate = (size_t)instance->singular - 1;

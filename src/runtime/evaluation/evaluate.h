@@ -46,8 +46,11 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
 /* The same at the instance's state, prepared values included. Discards after logging why there is no derivative. */
 enum Status evaluate_situation(struct Instance *instance, double *derivative);
 
+/* Returns the name of a state whose rate is not finite at the instance's state; NULL if there is none. */
+const char *evaluate_rate_without_value(struct Instance *instance);
+
 /* Logs why evaluate_derivatives() returned false, with this status. */
-void log_singularity(const struct Instance *instance, enum Status status, double time);
+void log_singularity(struct Instance *instance, enum Status status, double time);
 
 /* The same for a value or derivative that was asked for; logs once for each snapshot. Returns STATUS_DISCARD. */
 enum Status discard_for_singularity(struct Instance *instance);

@@ -91,10 +91,14 @@ static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
   const struct BranchFacts *facts = &settlement->switches->branches[branch];
   if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
   if (continuity_explain_corner(settlement, branch)) return without_end;
-  log_message(settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-              "time %g: %s, line %ld of %s, chatters: on both sides of its jump the motion leads back to it, as with "
-              "dry friction that sticks; expected <friction> in place of sign",
-              settlement->time, facts->function, facts->line, facts->file);
+  const char *remedy = lagrangian.coordinate_count > 0
+                           ? "as with dry friction that sticks; expected <friction> in place of sign, or of a <state>"
+                           : "as with a relay without hysteresis; expected";
+  log_message(
+      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+      "time %g: %s, line %ld of %s, chatters: on both sides of its jump the motion leads back to it, %s a <mode> "
+      "that two events set at different values",
+      settlement->time, facts->function, facts->line, facts->file, remedy);
   return without_end;
 }
 

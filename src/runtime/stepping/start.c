@@ -26,6 +26,8 @@ enum Status start_find(struct Instance *instance) {
   if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance)) return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
   log_singularity(instance, STATUS_ERROR, instance->situation->time);
+  const char *state = is_ready ? evaluate_rate_without_value(instance) : NULL;
+  if (state != NULL) return refuse_call(instance, "the rate of '%s' cannot be computed at the start values", state);
   return refuse_call(instance, "the accelerations cannot be computed at the start values");
 }
 

@@ -18,4 +18,6 @@ struct Quantity {
   struct Dimension dimension;
   struct NumberFactor factor;
   bool literal; /* made of numbers alone: takes the unit of the quantity that it is added to or compared with */
+  /* Of a definition with pieces, for <set>: with floor and the like as values, and with all pieces as values; else ZERO. */
+  Node at_instant, whole;
 };

@@ -203,6 +203,10 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
     return;
   case PIECEWISE_CONSTANT: append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0); return;
   case GATED:
+    if (is_constant_series(builder, vertex->right)) {
+      append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0);
+      return;
+    }
     append(builder, SERIES_GATE, series_coefficient(builder, node), value_of(builder, operand),
            series_coefficient(builder, vertex->right), 0);
     return;

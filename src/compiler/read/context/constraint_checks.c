@@ -15,7 +15,8 @@ static bool is_linear_in_velocities(struct Graph *graph, Node node) {
 static bool is_moving(const struct Model *model, Node constraint) {
   struct Graph *graph = model->graph;
   if (!graph_depends_on(graph, constraint, VELOCITY))
-    return graph_depends_on(graph, constraint, TIME) || graph_depends_on(graph, constraint, INPUT);
+    return graph_depends_on(graph, constraint, TIME) || graph_depends_on(graph, constraint, INPUT) ||
+           graph_depends_on(graph, constraint, STATE);
   Node *at_rest = allocate(graph->symbol_count, sizeof *at_rest), value;
   for (size_t i = 0; i < graph->symbol_count; i++)
     at_rest[i] = graph->symbols[i].kind == VELOCITY ? ZERO : graph->symbols[i].node;

@@ -17,7 +17,7 @@ void declare_constraint(struct Reader *reader, xmlNodePtr node) {
 void read_constraint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable *constraint = &model->constraints.items[reader->present->number];
-  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT);
+  struct Quantity value = expression_text_of(reader, node, "the constraint", IN_CONSTRAINT | KIND(STATE));
   constraint->node = value.node;
   constraint->is_of_velocities = graph_depends_on(model->graph, value.node, VELOCITY);
   scope_set_dimension(reader->scope, constraint_force_name(constraint), constraint_force_dimension(constraint));

@@ -10,26 +10,39 @@
 /* Kinds of symbols in conditions and assignments of events. */
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
 
+static const struct {
+  const char *attribute;
+  enum SymbolKind kind;
+} targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"state", STATE}, {"mode", MODE}};
+enum { TARGET_COUNT = sizeof targets / sizeof *targets };
+
+/* Reports a name of another kind than that of the attribute, or an unknown one. */
+static void report_target(struct Reader *reader, xmlNodePtr node, const char *attribute, const char *name,
+                          const struct Symbol *symbol) {
+  for (size_t i = 0; i < TARGET_COUNT && symbol != NULL; i++)
+    if (symbol->kind == targets[i].kind) {
+      report_at(reader, node, "<set %s=\"%s\">: '%s' is a %s; expected <set %s=\"%s\">", attribute, name, name,
+                targets[i].attribute, targets[i].attribute, name);
+      return;
+    }
+  report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name; expected one of the file", attribute, name,
+            attribute);
+}
+
 /* Returns the symbol that a <set> assigns: a coordinate, velocity, state or mode. ZERO after reporting an error. */
 static Node target_of(struct Reader *reader, xmlNodePtr node) {
-  static const struct {
-    const char *attribute;
-    enum SymbolKind kind;
-  } targets[] = {{"velocity", VELOCITY}, {"coordinate", COORDINATE}, {"state", STATE}, {"mode", MODE}};
   size_t given = 0;
   Node symbol = ZERO;
-  for (size_t i = 0; i < sizeof targets / sizeof *targets; i++) {
+  for (size_t i = 0; i < TARGET_COUNT; i++) {
     if (!has_attribute(node, targets[i].attribute)) continue;
     given++;
     char *name = reference_attribute(reader, node, targets[i].attribute);
     const struct Quantity *quantity = name != NULL ? scope_find(reader->scope, name) : NULL;
     const struct Graph *graph = reader->model->graph;
-    bool fits = quantity != NULL && graph->vertices[quantity->node].operation == SYMBOL &&
-                graph_symbol_of(graph, quantity->node)->kind == targets[i].kind;
-    if (fits) symbol = quantity->node;
-    else
-      report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name; expected one of the file",
-                targets[i].attribute, name != NULL ? name : "", targets[i].attribute);
+    bool is_symbol = quantity != NULL && graph->vertices[quantity->node].operation == SYMBOL;
+    const struct Symbol *found = is_symbol ? graph_symbol_of(graph, quantity->node) : NULL;
+    if (found != NULL && found->kind == targets[i].kind) symbol = quantity->node;
+    else report_target(reader, node, targets[i].attribute, name != NULL ? name : "", found);
   }
   if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate, state and mode");
   return symbol;
@@ -51,6 +64,26 @@ static void append_assignment(struct Event *event, Node symbol, Node value) {
   event->assignments[event->assignment_count++] = (struct Assignment){symbol, value};
 }
 
+/* True if the author has given no unit to the mode, which is then a pure number. */
+static bool is_mode_without_unit(const struct Model *model, Node symbol) {
+  for (size_t i = 0; i < model->modes.count; i++)
+    if (model->modes.items[i].node == symbol) return model->modes.items[i].unit == NULL;
+  return false;
+}
+
+static void check_unit_of_value(struct Reader *reader, xmlNodePtr node, Node symbol, struct Quantity value) {
+  const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
+  const struct Quantity *target = scope_find(reader->scope, name);
+  if (target == NULL || !target->dimension.known) return;
+  bool fits = value.literal || scope_units_agree(reader->scope, value.dimension, target->dimension);
+  if (!fits && is_mode_without_unit(reader->model, symbol))
+    report_at(
+        reader, node,
+        "unit mismatch: the value of <set> has the unit %s, but '%s' has none; expected unit=\"%s\" of its <mode>",
+        unit_text(value.dimension), name, unit_text(value.dimension));
+  else require_unit(reader, line_of(node), "the value of <set>", value, target->dimension);
+}
+
 static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event *event) {
   Node symbol = target_of(reader, node);
   bool is_of_sample = event->passage == PASSAGE_SAMPLES; /* its values need no events */
@@ -58,10 +91,7 @@ static void read_assignment(struct Reader *reader, xmlNodePtr node, struct Event
                                                                                     IN_EVENT | AT_INSTANT);
   if (symbol == ZERO || reader->diagnostics->errors > 0) return;
   check_target(reader, node, event, symbol);
-  const char *name = graph_symbol_of(reader->model->graph, symbol)->name;
-  const struct Quantity *target = scope_find(reader->scope, name);
-  if (target != NULL && target->dimension.known)
-    require_unit(reader, line_of(node), "the value of <set>", value, target->dimension);
+  check_unit_of_value(reader, node, symbol, value);
   append_assignment(event, symbol, value.node);
 }
 
@@ -89,8 +119,10 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   struct Graph *graph = reader->model->graph;
   struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
   char *direction = attribute(node, "direction");
+  int errors = reader->diagnostics->errors;
   Node value;
   bool is_given = parse_when(reader->scope, attribute_in_lines(node, "when"), place, &value);
+  event->line = scope_line(reader->scope, place.line);
   if (is_given || is_boolean_parameter(reader, value)) {
     event->condition = condition_of_modes(reader, value, place.line);
     if (direction != NULL)
@@ -101,12 +133,12 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
     event->condition = side_of(reader->scope, value, place.line);
     event->side = new_mode(reader, "side", when);
     event->expression = value;
-    event->line = scope_line(reader->scope, place.line);
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;
     bool is_both = direction != NULL && strcmp(direction, "both") == 0;
     event->passage = is_both ? PASSAGE_BOTH : rises ? PASSAGE_RISES : PASSAGE_FALLS;
   }
-  if (event->condition != ZERO && !graph_depends_on(graph, event->condition, MODE))
+  bool is_read = reader->diagnostics->errors == errors;
+  if (is_read && !graph_depends_on(graph, event->condition, MODE))
     report_at(
         reader, node,
         "when=\"%s\" never changes; expected an expression of coordinates, velocities, inputs, parameters or time",

@@ -27,7 +27,20 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
   source_enter(reader, present);
   require_unit(reader, line_of_attribute(where, "value"), what, value, unit);
   if (!unit.known) return value;
-  return (struct Quantity){.node = value.node, .dimension = unit};
+  return (struct Quantity){.node = value.node, .dimension = unit, .at_instant = value.at_instant, .whole = value.whole};
+}
+
+/* The expression of a <define>, also as <set> has it. */
+static struct Quantity read_definition(struct Reader *reader, xmlNodePtr node) {
+  static const char what[] = "the definition";
+  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
+  bool is_read = reader->diagnostics->errors == 0 && !definitions_are_waiting(reader->definitions);
+  if (!is_read || !graph_depends_on(reader->model->graph, value.node, MODE)) return value;
+  size_t requirements = reader->scope->requirements.count;
+  value.at_instant = expression_text_of(reader, node, what, IN_OUTPUT | AT_INSTANT).node;
+  value.whole = whole_expression_of(reader, node, what, IN_OUTPUT | AT_INSTANT).node;
+  reader->scope->requirements.count = requirements;
+  return value;
 }
 
 static struct Quantity read_component(struct Reader *reader, xmlNodePtr node, const char *component) {
@@ -62,7 +75,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   else if (is_element(node, "state")) value = read_rate(reader, node);
   else if (is_element(node, "spring")) value = read_spring_value(reader, node, expression->attribute);
   else if (is_element(node, "joint")) value = read_joint_force(reader, node, name);
-  else if (expression->attribute == NULL) value = expression_text_of(reader, node, "the definition", IN_OUTPUT);
+  else if (expression->attribute == NULL) value = read_definition(reader, node);
   else if (is_parameter || is_input)
     expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
                          is_parameter ? IN_MASS : IN_OUTPUT, &value);
@@ -94,6 +107,8 @@ void keep_named_expression(struct Reader *reader, xmlNodePtr node, const char *n
                               .display_unit = display_unit_attribute(reader, node, "displayUnit", value.dimension),
                               .dimension = value.dimension,
                               .node = without_displacements(reader, line_of(node), "the definition", value.node)};
+  variable.shown =
+      value.whole == ZERO ? variable.node : without_displacements(reader, line_of(node), "the definition", value.whole);
   append_variable(is_parameter ? &reader->model->calculated : &reader->model->definitions, variable);
 }
 

@@ -36,7 +36,8 @@ void declare_mode(struct Reader *reader, xmlNodePtr node) {
   mode.start = 0.0;
   number_attribute(reader, node, "start", &mode.start);
   int index = (int)model->switches.mode_count++;
-  mode.node = scope_symbol(reader->scope, MODE, index, mode.name, mode.dimension, mode.line);
+  struct Dimension dimension = mode.unit != NULL ? mode.dimension : dimension_one;
+  mode.node = scope_symbol(reader->scope, MODE, index, mode.name, dimension, mode.line);
   mode.line = scope_line(reader->scope, mode.line);
   append_variable(&model->modes, mode);
 }

@@ -139,15 +139,22 @@ static Node derivative_with_arguments_held(struct Parser *parser, Node variable,
   return has_held ? with_pieces(scope, derivative, current_line(parser)) : derivative;
 }
 
+/* What a name stands for by which no derivative can be taken. */
+static const char *words_for(const struct Graph *graph, Node node) {
+  bool is_symbol = graph->vertices[node].operation == SYMBOL;
+  if (graph_is_constant(graph, node)) return "a constant";
+  return is_symbol && graph_symbol_of(graph, node)->kind == MODE ? "a mode" : "an expression";
+}
+
 static struct Quantity derivative_by_variable(struct Parser *parser, const char *name) {
   struct Graph *graph = parser->graph;
   const struct Quantity variable = look_up(parser, name);
   if (parser->failed || definitions_are_waiting(parser->scope->definitions)) return nothing;
   if (!is_variable(graph, variable.node))
     FAIL(parser,
-         "%s: diff(..., %s) is by an expression; expected a coordinate, velocity, state, input, parameter, time or an "
+         "%s: diff(..., %s) is by %s; expected a coordinate, velocity, state, input, parameter, time or an "
          "argument of a <function>",
-         parser->place.what, name);
+         parser->place.what, name, words_for(graph, variable.node));
   struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension, unit;
   Node derivative = parser->failed ? ZERO : derivative_with_arguments_held(parser, variable.node, &unit);
   if (parser->failed) return nothing;
@@ -179,9 +186,7 @@ static size_t parse_node_count(struct Parser *parser) {
 struct Quantity parse_integral(struct Parser *parser) {
   const char *begin = parser->next;
   char *name = parse_declared(parser, "variable", integral_form);
-  if (!parser->failed && find_quantity(parser, name) != NULL)
-    FAIL(parser, "%s: the variable '%s' of integral(...) is already a name; expected a new one", parser->place.what,
-         name);
+  require_new_name(parser, "variable", name, "integral");
   struct Quantity from = parse_sum(parser);
   expect_character(parser, ',', format_text("after the beginning of %s", integral_form));
   struct Quantity to = parser->failed ? nothing : parse_sum(parser);

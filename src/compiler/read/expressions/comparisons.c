@@ -36,7 +36,7 @@ static bool is_connective(char before, const char *text) {
 bool is_condition(const char *text) {
   char before = ' ';
   for (; *text != '\0'; before = *text++)
-    if (*text == '<' || *text == '>' || is_connective(before, text)) return true;
+    if (strchr("<>=", *text) != NULL || is_connective(before, text)) return true;
   return false;
 }
 
@@ -47,6 +47,20 @@ static enum Comparison parse_comparison(struct Parser *parser) {
   if (is_more) return or_equal ? MORE_OR_EQUAL : MORE;
   if (is_less) return or_equal ? LESS_OR_EQUAL : LESS_THAN_OTHER;
   return NO_COMPARISON;
+}
+
+/* Numbers that a motion comes to are equal at an instant alone, which no test in between sees. */
+static void refuse_equality(struct Parser *parser) {
+  skip_space(parser);
+  bool is_unequal = strncmp(parser->next, "!=", 2) == 0;
+  if (is_unequal || *parser->next == '=')
+    FAIL(parser,
+         "%s: found '%s'; write >= for what comes to a value, as in time >= 2, and n > 1.5 and n < 2.5 for a whole "
+         "number n that is 2",
+         parser->place.what,
+         is_unequal               ? "!="
+         : parser->next[1] == '=' ? "=="
+                                  : "=");
 }
 
 static Node is_positive(struct Graph *graph, Node condition) {
@@ -65,6 +79,7 @@ static Node both(struct Graph *graph, Node first, Node second) {
 static Node parse_relation(struct Parser *parser) {
   struct Graph *graph = parser->graph;
   struct Quantity left = parse_sum(parser);
+  if (!parser->failed) refuse_equality(parser);
   enum Comparison comparison = parser->failed ? NO_COMPARISON : parse_comparison(parser);
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {

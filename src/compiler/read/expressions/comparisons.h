@@ -6,7 +6,7 @@
 /* Parses a condition. The node is constant between events, and positive while the condition holds. */
 Node parse_condition(struct Parser *parser);
 
-/* True if the text contains a comparison, or one of the words and, or, not. */
+/* True if the text contains a comparison, also one by =, or one of the words and, or, not. */
 bool is_condition(const char *text);
 
 /*

@@ -169,6 +169,13 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
   }
 }
 
+/* In <set> pieces of a definition that no event waits for are values. */
+static struct Quantity as_read_there(const struct Parser *parser, struct Quantity quantity) {
+  if ((parser->place.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
+  quantity.node = parser->scope->keeps_whole ? quantity.whole : quantity.at_instant;
+  return quantity;
+}
+
 struct Quantity look_up(struct Parser *parser, const char *name) {
   const struct Quantity *quantity = find_quantity(parser, name);
   if (quantity == NULL) {
@@ -189,7 +196,7 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
         "or an <output>, such as an <event> that sets a <mode>",
         parser->place.what, name);
   require_input_derivatives(parser, quantity->node, name);
-  return *quantity;
+  return as_read_there(parser, *quantity);
 }
 
 /* True if both bounds are literals. Others may be reversed on purpose: sum(j, 2, i-1, ...) is empty for i = 1. */
@@ -225,6 +232,16 @@ char *parse_declared(struct Parser *parser, const char *what, const char *usage)
   return name;
 }
 
+void require_new_name(struct Parser *parser, const char *what, const char *name, const char *function) {
+  if (parser->failed) return;
+  char *full_name = scope_full_name(parser->scope, name);
+  bool is_known = find_quantity(parser, name) != NULL || definitions_contain(parser->scope->definitions, full_name);
+  release(full_name);
+  if (is_known)
+    FAIL(parser, "%s: the %s '%s' of %s(...) is already a name; expected a new one", parser->place.what, what, name,
+         function);
+}
+
 static struct SumHead parse_sum_head(struct Parser *parser) {
   struct SumHead head = {.index = parse_declared(parser, "index", "sum(index, first, last, expression)")};
   const char *bounds = parser->next;
@@ -235,9 +252,7 @@ static struct SumHead parse_sum_head(struct Parser *parser) {
     FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
          head.first, head.last);
   expect_character(parser, ',', "after the last index");
-  if (!parser->failed && find_quantity(parser, head.index) != NULL)
-    FAIL(parser, "%s: the index '%s' of sum(...) is already a name; expected a new one", parser->place.what,
-         head.index);
+  require_new_name(parser, "index", head.index, "sum");
   return head;
 }
 
@@ -503,13 +518,21 @@ static struct Quantity condition_as_quantity(struct Parser *parser) {
   return (struct Quantity){.node = parse_condition(parser)};
 }
 
+/* True if a node that is constant between events holds or not: a mode, what rests on contacts and frictions, or if(...). */
+static bool is_truth(const struct Scope *scope, const char *text, Node node) {
+  if (!graph_is_constant_in_time(scope->graph, node)) return false;
+  bool is_choice = strncmp(text + strspn(text, " \t\r\n"), "if", 2) == 0 && graph_depends_on(scope->graph, node, MODE);
+  bool is_mode = scope->graph->vertices[node].operation == SYMBOL && graph_depends_on(scope->graph, node, MODE);
+  return is_choice || is_mode || (kinds_that_decide(scope, node) & CONTACT_STATE) != 0;
+}
+
 bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value) {
   bool compares = is_condition(text);
   struct Quantity quantity;
   bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
   *value = is_right ? quantity.node : ZERO;
   if (!is_right || compares) return is_right;
-  return graph_is_constant_in_time(scope->graph, *value) && !rests_on_parameters(scope->graph, *value);
+  return is_truth(scope, text, *value);
 }
 
 bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {

@@ -4,12 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "model/model.h"
 #include "read/expressions/number_units.h"
 #include "read/names/pieces_of_functions.h"
+
+static double value_at_start(const struct Scope *scope, Node node) {
+  const struct Graph *graph = scope->graph;
+  if (graph_is_constant(graph, node)) return graph_value(graph, node);
+  double *symbols = start_values(scope->model), *values = allocate(graph->count, sizeof *values);
+  cone_collect(graph->cone, graph, &node, 1);
+  graph_evaluate_part(graph, graph->cone->nodes, graph->cone->count, symbols, values);
+  double value = values[node];
+  release(symbols);
+  release(values);
+  return value;
+}
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
@@ -179,12 +193,25 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
   return result;
 }
 
+/* A number, or a parameter at its start, that is rounded without a word if it is no whole number. */
+static void require_whole(struct Parser *parser, const char *name, const char *what, Node node) {
+  const struct Graph *graph = parser->graph;
+  bool is_known = graph_is_constant(graph, node) || parser->scope->model != NULL;
+  if ((graph->vertices[node].kinds & ~(1u << PARAMETER)) != 0 || !is_known) return;
+  double value = value_at_start(parser->scope, node);
+  if (value == floor(value)) return;
+  FAIL(parser, "%s: the %s of %s is %g; expected a whole number, such as a parameter of type=\"Integer\"",
+       parser->place.what, what, name, value);
+}
+
 struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number) {
   struct Graph *graph = parser->graph;
   require_dimensionless(parser, seed, format_text("the seed of %s", name));
   require_dimensionless(parser, number, format_text("the number of %s", name));
   if (!graph_is_constant_in_time(graph, seed.node))
     FAIL(parser, "%s: the seed of %s changes in time; expected a number or a parameter", parser->place.what, name);
+  require_whole(parser, name, "seed", seed.node);
+  require_whole(parser, name, "number k", number.node);
   bool is_whole = gradient_by_kinds(graph, number.node, ~(1u << PARAMETER | 1u << MODE)).count == 0;
   Node half = graph_constant(graph, 0.5);
   Node k = is_whole ? number.node : floor_in_place(parser, add(graph, number.node, half));

@@ -38,13 +38,22 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
 }
 
 /* Returns the largest n for which name[1], ..., name[n] are known, up to LIMIT. */
-static int count_indices(const struct Parser *parser, const char *name) {
-  enum { LIMIT = 1000 }; /* bounds the search */
-  for (int i = 1; i <= LIMIT; i++) {
-    bool known = is_known(parser, format_text("%s[%d]", name, i));
-    if (!known) return i - 1;
-  }
-  return LIMIT;
+static int last_index(const struct Parser *parser, const char *name) {
+  enum { LIMIT = 1000 };
+  int last = 0;
+  while (last < LIMIT && is_known(parser, format_text("%s[%d]", name, last + 1))) last++;
+  return last;
+}
+
+/* Reports a name without an index, or with a wrong one, of which there is a list. False if there is none. */
+static bool report_index(struct Parser *parser, const char *name) {
+  const char *bracket = name[strlen(name) - 1] == ']' ? strrchr(name, '[') : NULL;
+  char *list = format_text("%.*s", (int)(bracket != NULL ? (size_t)(bracket - name) : strlen(name)), name);
+  int last = last_index(parser, list), first = is_known(parser, format_text("%s[0]", list)) ? 0 : 1;
+  if (last > 0)
+    FAIL(parser, "%s: unknown name '%s'; expected %s[%d], ..., %s[%d]", parser->place.what, name, list, first, list,
+         last);
+  return last > 0;
 }
 
 void report_unknown_name(struct Parser *parser, const char *name) {
@@ -53,15 +62,13 @@ void report_unknown_name(struct Parser *parser, const char *name) {
   const char *similar = shown ? scope_similar_name(parser->scope, name) : NULL, *hint = hint_for_name(name);
   const char *point = strrchr(name, '.');
   char *components = components_of(parser, name, point != NULL ? (size_t)(point - name) : strlen(name));
-  int indices = shown ? count_indices(parser, name) : 0;
   const char *next = parser->next + strspn(parser->next, " \t\r\n");
   if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
   if (*components != '\0')
     FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->place.what, name,
          components);
   else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->place.what, name, hint);
-  else if (indices > 0)
-    FAIL(parser, "%s: unknown name '%s'; expected %s[1], ..., %s[%d]", parser->place.what, name, name, name, indices);
+  else if (shown && report_index(parser, name)) return;
   else if (similar != NULL)
     FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
   else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));
@@ -84,14 +91,17 @@ void report_reserved(struct Parser *parser, const char *name) {
          parser->place.what, name, expected_names(parser));
 }
 
-/* Lists the functions of the graph, those of one argument first, each followed by ", ". */
+/* Lists the functions: those of the graph, of one argument first, then those with arguments of their own kinds. */
 static char *function_names(void) {
+  static const char others[] =
+      "sqrt, floor, ceil, round, mod, if, der, diff, sum, integral, uniform, gauss, distance, dot or norm";
   struct TextStream names;
   FILE *file = open_text(&names);
   for (int arity = 1; arity <= 2; arity++)
     for (int operation = 0; operation < OPERATION_COUNT; operation++)
       if (!functions[operation].is_internal && operation_arity((enum Operation)operation) == arity)
         fprintf(file, "%s, ", functions[operation].name);
+  fputs(others, file);
   return close_text(&names);
 }
 
@@ -121,5 +131,5 @@ void report_unknown_function(struct Parser *parser, const char *name) {
     FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
   else if (is_known(parser, indexed))
     FAIL(parser, "%s: '%s' is not a function; write %s[...] for an index", parser->place.what, name, name);
-  else FAIL(parser, "%s: unknown function '%s'; expected %ssqrt, der or sum", parser->place.what, name, names);
+  else FAIL(parser, "%s: unknown function '%s'; expected %s", parser->place.what, name, names);
 }

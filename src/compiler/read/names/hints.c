@@ -12,6 +12,7 @@ static const struct Hint of_text[] = {
     {"**", "; write ^ for a power"},
     {"*", "; write one * for a product and ^ for a power"},
     {"%", "; write mod(a, b) for a remainder, and 0.01 for a percent"},
+    {"==", "; write if(x >= 2, ..., ...) for values that depend on a condition"},
     {"!", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
     {"?", "; write if(x > 0, ..., ...), and conditions with and, or, not"},
     {"&&", "; write and"},
@@ -51,7 +52,7 @@ static const struct Hint of_functions[] = {
     {"arctan2", "; write atan2"},
     {"fabs", "; write abs"},
     {"sgn", "; write sign"},
-    {"int", "; write integral(s, a, b, expression) for an integral over s"},
+    {"int", "; write sign(x)*floor(abs(x)) for the whole part, integral(s, a, b, expression) for an integral over s"},
     {"integrate", "; write integral(s, a, b, expression) for an integral over s, <state name=\"z\" rate=\"...\"/> for "
                   "one over time"},
     {"ddt", "; write der for a time derivative"},

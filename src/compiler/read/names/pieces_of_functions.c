@@ -53,13 +53,10 @@ static bool keeps_whole(const struct Scope *scope) {
   return scope->switches == NULL || scope->keeps_whole;
 }
 
-bool rests_on_parameters(const struct Graph *graph, Node node) {
-  return graph_depends_on(graph, node, PARAMETER) && !graph_depends_on(graph, node, MODE);
-}
-
 static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_side) {
   struct Graph *graph = scope->graph;
-  bool is_fixed = graph_is_constant_in_time(graph, node) && !(is_side && rests_on_parameters(graph, node));
+  bool may_jump = graph_depends_on(graph, node, PARAMETER) || graph_depends_on(graph, node, MODE);
+  bool is_fixed = graph_is_constant_in_time(graph, node) && !(is_side && may_jump);
   if (keeps_whole(scope) || is_fixed) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
@@ -155,5 +152,6 @@ Node with_pieces(struct Scope *scope, Node node, long line) {
   }
   Node result = mapped[cone_place(cone, node)];
   release(mapped);
+  cone_release(cone);
   return result;
 }

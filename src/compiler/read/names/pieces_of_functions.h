@@ -13,9 +13,6 @@ Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 /* Returns the last nonzero sign of an event's expression, as a mode: see struct Branch.is_side. */
 Node side_of(struct Scope *scope, Node node, long line);
 
-/* True if the node is constant in time and changes with parameters alone, without modes. */
-bool rests_on_parameters(const struct Graph *graph, Node node);
-
 /*
  * Returns a mode with the sign of a condition on parameters. By it an event detects that setting parameters changed the
  * condition.
