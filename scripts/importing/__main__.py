@@ -15,7 +15,7 @@ import fmpy
 import numpy as np
 
 from html_page import write_csv
-from importing import packages, programs
+from importing import constrained, packages, programs
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = {2: ROOT / "build" / "fmu", 3: ROOT / "build" / "fmi3"}
@@ -117,7 +117,11 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/importers", description=__doc__)
     parser.add_argument("fmus", nargs="*", metavar="FMU", help="names of FMUs; default: all")
     parser.add_argument("--by", action="append", metavar="IMPORTER", help="run only this importer; can be repeated")
+    parser.add_argument("--constrained", action="store_true", help="evaluations, events and run times of constrained systems in model exchange instead")
     words = parser.parse_args()
+    if words.constrained:
+        print("\n".join(constrained.table(FOLDERS[2])))
+        return
     names = words.fmus or sorted(path.stem for path in FOLDERS[2].glob("*.fmu"))
     unknown = [name for name in names if not (FOLDERS[2] / f"{name}.fmu").exists()]
     if unknown:

@@ -17,7 +17,7 @@ import pytest
 import fmi3
 import fmu
 from fmu import BUILD, ROOT
-from importing import packages, programs
+from importing import constrained, packages, programs
 
 pytestmark = pytest.mark.release
 
@@ -75,6 +75,17 @@ def test_table(capfd, monkeypatch):
     assert table.simulated(lambda: 1 / 0) == "ZeroDivisionError: division by zero"
     rows = [["FMPy", 2, "CS", "One", 2e-9], ["FMPy", 2, "CS", "Other", "error 1.0e+00"]]
     assert table.table(rows, {"FMPy": "1.2"})[2] == "| FMPy | 1.2 | 1 of 2, 2e-09 | – | – | – |"
+
+
+def test_cost_of_constraints():
+    """At most 10 events a second, and three times the evaluations of the pendulum in minimal coordinates (AndrewsSqueezer: of 1000 s a second)."""
+    rows = {name: (float(end), int(evaluations), int(events)) for name, end, evaluations, events, _ in
+            (line.strip("| ").split(" | ") for line in constrained.table(BUILD / "fmu")[2:])}  # fmt: skip
+    assert set(rows) == set(constrained.SYSTEMS)
+    for name, (end, _, events) in rows.items():
+        assert events <= 10 * end * (1000 if name == "AndrewsSqueezer" else 1)
+    assert rows["PendulumCartesian"][1] <= 3 * rows["SimplePendulum"][1]
+    assert rows["SimplePendulum"][2] == 0 and rows["FourBar"][2] > 0
 
 
 PROGRAM = """#!/bin/sh
