@@ -30,6 +30,26 @@ READ = {
     "Start": "README.md",
     "Gallery": "gallery.md",
     "Tutorial": "fmu/TUTORIAL.md",
+    "How-to": {
+        "All tasks": "fmu/howto/README.md",
+        "Close a loop": "fmu/howto/close-a-loop.md",
+        "Draw a system": "fmu/howto/draw-a-system.md",
+        "Add a sampled controller": "fmu/howto/sampled-controller.md",
+        "Fit data": "fmu/howto/fit-data.md",
+        "Sweep on many machines": "fmu/howto/sweep-on-many-machines.md",
+        "Gear with losses": "fmu/howto/gear-with-losses.md",
+        "Brake": "fmu/howto/brake.md",
+        "Rope": "fmu/howto/rope.md",
+        "One-way clutch": "fmu/howto/one-way-clutch.md",
+        "Tyre": "fmu/howto/tyre.md",
+        "Robot from URDF": "fmu/howto/robot-from-urdf.md",
+        "Couple a controller by SSP": "fmu/howto/couple-by-ssp.md",
+        "Import into FMPy": "fmu/howto/import-into-fmpy.md",
+        "Import into OMSimulator": "fmu/howto/import-into-omsimulator.md",
+        "Import into CasADi": "fmu/howto/import-into-casadi.md",
+        "Import into Simulink and Dymola": "fmu/howto/import-into-simulink-and-dymola.md",
+        "Integrate into CMake": "fmu/howto/integrate-into-cmake.md",
+    },
     "Reference": "fmu/README.md",
     "Theory": {
         "Overview": "fmu/theory/README.md",
@@ -46,6 +66,8 @@ READ = {
         "Bibliography": "fmu/theory/BIBLIOGRAPHY.md",
     },
     "More": {
+        "Questions, by message": "fmu/FAQ.md",
+        "Glossary": "fmu/GLOSSARY.md",
         "Systems, and what they were checked against": "fmu/SYSTEMS.md",
         "What the solvers guarantee": "fmu/SOLVERS.md",
         "Importing FMUs": "fmu/IMPORTING.md",
@@ -60,8 +82,9 @@ READ = {
 }
 FIRST = "DoublePendulum"  # system that the laboratory shows first
 # Files to which pages link.
-BESIDE = ("fmu/systems.gif", "fmu/system.xsd", *(f"fmu/{name}/system.xml" for name in (
-    "BristleFriction", "GantryCrane", "HydraulicCylinder", "PidController", "SpinningBeam", "StateFeedback")))  # fmt: skip
+BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "scripts/coupling/slaves.py", "scripts/coupling/BalancedCart/SystemStructure.ssd", *(f"fmu/{name}/system.xml" for name in (
+    "BristleFriction", "ChainPendulum", "DigitalServo", "FourBar", "GantryCrane", "HydraulicCylinder", "PidController", "Rope", "SpinningBeam", "StateFeedback",
+    "WormGear")))  # fmt: skip
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
 .systems div { border: 1px solid #8884; border-radius: 8px; padding: .8rem; display: flex; flex-direction: column; gap: .4rem; }

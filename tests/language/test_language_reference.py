@@ -8,15 +8,13 @@ from scipy.linalg import eigh, expm
 
 import fmu
 from closed_forms import pendulum_angle
+from examples import check_motion, examples_of
 from fmu import ROOT, Instance, build_systems, lagc
 
 pytestmark = pytest.mark.release
 
 REFERENCE = (ROOT / "fmu" / "README.md").read_text()
-EXAMPLES = {
-    re.search(r' (?:name|model)="(\w+)"', text).group(1): text
-    for text in re.findall(r"```xml\n(<(?:system|robot|mujoco|linearization) .*?)```", REFERENCE, re.S)
-}
+EXAMPLES = examples_of(REFERENCE)
 
 
 def band_brake(t):
@@ -291,12 +289,7 @@ def test_examples_are_plain_c11():
 @pytest.mark.parametrize("name", MOTIONS)
 def test_example_moves_by_its_closed_form(name, open_fmu):
     motion, allowed = MOTIONS[name]
-    instance = open_fmu(name).initialize()
-    stop = float(re.search(r'stopTime="([\d.]+)"', EXAMPLES[name]).group(1)) if "stopTime" in EXAMPLES[name] else 1.0
-    for time in np.linspace(stop / 7, stop, 7):
-        instance.step(time - instance.time)
-        for variable, expected in motion(time).items():
-            assert abs(instance.get(variable) - expected) <= allowed, (variable, time)
+    check_motion(open_fmu(name).initialize(), EXAMPLES[name], motion, allowed)
 
 
 def test_limited_gain_at_its_limits(open_fmu):

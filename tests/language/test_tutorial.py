@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+import examples
 import fmu
 from closed_forms import pendulum_angle, pendulum_half_period
+from examples import settings_of
 from fmu import ROOT, build_systems, lagc
 
 TUTORIAL = (ROOT / "fmu" / "TUTORIAL.md").read_text()
@@ -24,13 +26,7 @@ def systems():
 
 def check_numbers(step, *expected):
     """Check that the bold numbers of a step are these, to the digits shown."""
-    shown = re.findall(r"\*\*(-?\d+\.?\d*) (?:s|m|rad|rad/s|N)\*\*", STEPS[step])
-    assert shown == [f"{value:.{len(text.partition('.')[2])}f}" for text, value in zip(shown, expected, strict=True)]
-
-
-def settings_of(command):
-    """The settings NAME=VALUE of a line such as `lagrange-fmu run Arm.xml help=1`."""
-    return {name: float(value) for name, value in re.findall(r"(\S+)=(\S+)", command)}
+    examples.check_numbers(STEPS[step], expected)
 
 
 def moved(open_fmu, step, command=0, until=None):

@@ -15,7 +15,7 @@ from fmu import BUILD, ROOT, all_names, lagc
 README = (ROOT / "README.md").read_text()
 SYSTEMS = (ROOT / "fmu" / "SYSTEMS.md").read_text()
 SOLVERS = (ROOT / "fmu" / "SOLVERS.md").read_text()
-FOLDERS = (ROOT / "fmu", ROOT / "fmu" / "theory")
+FOLDERS = (ROOT / "fmu", ROOT / "fmu" / "howto", ROOT / "fmu" / "theory")
 PAGES = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "src/README.md", "scripts/README.md")),
     *(page for folder in FOLDERS for page in sorted(folder.glob("*.md"))),
