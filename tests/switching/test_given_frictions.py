@@ -61,6 +61,8 @@ PLANES = {
     "Twice": PLANE.format("if(time &lt; 0.3, -3, if(time &lt; 1.1, 0, 6))", "if(time &lt; 0.3, -4, if(time &lt; 1.1, 0, -8))")
     .replace('"v" acc', '"v" velocityStart="0.9" acc').replace('"w" acc', '"w" velocityStart="1.2" acc'),
     "Quarter": PLANE.format("6*time*cos(2*time)", "6*time*sin(2*time)"),
+    "Reversing": PLANE.format("3", "4").replace('"v" acc', '"v" velocityStart="-3" acc').replace('"w" acc', '"w" velocityStart="-4" acc'),
+    "Cusp": PLANE.format("3", "8*(time - 1)").replace('"v" acc', '"v" velocityStart="-3" acc').replace('"w" acc', '"w" velocityStart="4" acc'),
 }  # fmt: skip
 QUARTER = lambda t: (3 * t * np.sin(2 * t) - 1.5 * (1 - np.cos(2 * t)), 1.5 * np.sin(2 * t) - 3 * t * np.cos(2 * t))
 # Functions of time: the velocity and the acceleration.
@@ -71,6 +73,8 @@ DRIVEN = {
     "Ramp": lambda t: ((-1.5 * max(0, t - 1) ** 2, 2 * max(0, t - 1) ** 2), (-3 * max(0, t - 1), 4 * max(0, t - 1))),
     "Twice": lambda t: ((0.9 - 3 * t, 1.2 - 4 * t), (-3, -4)) if t < 0.3 else ((6 * max(0, t - 1.1), -8 * max(0, t - 1.1)), (after(t, 1.1, 6), after(t, 1.1, -8))),
     "Quarter": lambda t: (QUARTER(t), (6 * t * np.cos(2 * t), 6 * t * np.sin(2 * t))),
+    "Reversing": lambda t: ((3 * t - 3, 4 * t - 4), (3, 4)),
+    "Cusp": lambda t: ((3 * t - 3, 4 * (t - 1) ** 2), (3, 8 * t - 8)),
 }  # fmt: skip
 
 
@@ -132,3 +136,13 @@ def test_forces_in_a_plane(open_fmu, body, method):
         if 0 < time and min(abs(time - 1), abs(time - 2)) > 1e-3:
             friction = [5 * part / speed if speed > 0 else 0 for part in velocity]
             assert forces == pytest.approx([*friction, *np.add(friction, acceleration)], abs=1e-6), time
+
+
+@pytest.mark.parametrize("steps", [1, 4, 7])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("body", ["Reversing", "Cusp"])
+def test_no_force_where_a_given_velocity_passes_through_0(open_fmu, body, method, steps):
+    """It has no direction there, and the drives give the acceleration alone."""
+    instance = open_fmu(name_of(body, method)).initialize()
+    instance.run(1, 1 / steps)
+    assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *DRIVEN[body](1)[1]], abs=0.01)

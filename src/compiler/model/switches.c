@@ -24,12 +24,19 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
 }
 
 /*
- * Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading.
+ * Below this share of the lower speed, the friction along a prescribed velocity falls to 0: such a velocity may pass through 0, where it
+ * has no direction.
  */
+static const double resting_share = 0.1;
+
+/* Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading. */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
   Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.heading);
-  Node square = choose_node(graph, friction->mode, square_of_speed(graph, along), ONE);
+  Node speed = square_of_speed(graph, along);
+  if (friction->is_given)
+    speed = add(graph, speed, power_number(graph, scale(graph, resting_share, along->plane.lower), 2.0));
+  Node square = choose_node(graph, friction->mode, speed, ONE);
   return divide(graph, component, power_number(graph, square, 0.5));
 }
 

@@ -138,7 +138,10 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, EXPRESSIONS);
   if (reader->options->pull && reader->model->coordinates.count > 0) add_pulls(reader);
   undisplace_branches(reader);
-  if (reader->diagnostics->errors == 0) find_given_frictions(reader->model);
+  if (reader->diagnostics->errors == 0) {
+    find_given_frictions(reader->model);
+    add_pushes_in_planes(reader);
+  }
   complete_friction_forces(reader);
   if (reader->diagnostics->errors == 0) hold_velocities(reader->model);
   reader->model->forces.any |= reader->model->given.inputs_move;

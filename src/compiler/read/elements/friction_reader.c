@@ -145,7 +145,13 @@ void complete_friction(struct Reader *reader, struct Friction *friction, struct 
     friction[i].stiction_back = friction->stiction_back;
     hold_velocity(reader, &friction[i], unit);
   }
-  for (size_t i = 0; i < parts && reader->diagnostics->errors == 0; i++) add_push(reader, &friction[i]);
+  if (parts == 1 && reader->diagnostics->errors == 0) add_push(reader, friction);
+}
+
+void add_pushes_in_planes(struct Reader *reader) {
+  const struct Switches *switches = &reader->model->switches;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (switches->frictions[i].plane.axis != NO_PLANE) add_push(reader, &switches->frictions[i]);
 }
 
 void read_friction(struct Reader *reader, xmlNodePtr node) {

@@ -35,5 +35,8 @@ void read_sample(struct Reader *reader, xmlNodePtr node);
  */
 void undisplace_branches(struct Reader *reader);
 
+/* Adds the forces of frictions in planes, once those with prescribed velocities are known. */
+void add_pushes_in_planes(struct Reader *reader);
+
 /* Replaces NAME.force of frictions, after all expressions, by the sliding force while they slide. */
 void complete_friction_forces(struct Reader *reader);
