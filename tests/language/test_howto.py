@@ -4,6 +4,7 @@ import re
 import zipfile
 
 import numpy as np
+import pyarrow.parquet as parquet
 import pytest
 from fmpy.ssp.simulation import simulate_ssp
 from scipy.linalg import expm
@@ -13,6 +14,7 @@ import fmu
 from closed_forms import pendulum_angle, pendulum_half_period
 from examples import check_motion, check_numbers, examples_of, settings_of
 from fmu import ROOT, build_systems
+from motions import lagrange_fmu  # noqa: F401
 
 PAGES = {path.stem: path.read_text() for path in sorted((ROOT / "fmu" / "howto").glob("*.md"))}
 EXAMPLES = {name: text for page in PAGES.values() for name, text in examples_of(page).items()}
@@ -201,6 +203,30 @@ def test_jacobian_in_casadi():
     assert np.array(function([0.1, 0], [3])).ravel() == pytest.approx([0, 1.1], abs=1e-14)
     by_states, by_inputs = function.factory("J", ["x", "u"], ["jac:ode:x", "jac:ode:u"])([0.1, 0], [3])
     assert np.array(by_states.full()) == pytest.approx(np.array([[0, 1], [-4, 0]])) and by_inputs.full().ravel() == pytest.approx([0, 0.5])
+
+
+def test_fit(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
+    """The data of the page give the values that it shows, which are near the true ones."""
+    monkeypatch.chdir(tmp_path)
+    page = PAGES["fit-data"]
+    exec(re.search(r"```python\n(.*?)```", page, re.S).group(1), {})
+    found = lagrange_fmu.fit(fmu.archive("Oscillator"), "data.csv", ["k", "b"])
+    shown = {name: (float(value), float(deviation)) for name, value, deviation in re.findall(r"^    (\w)  (\S+) \+- (\S+)$", page, re.M)}
+    for name, true in (("k", 25.0), ("b", 2.0)):
+        value, deviation = shown[name]
+        assert found.values[name] == pytest.approx(value, rel=1e-6)
+        assert abs(value - true) < 2 * deviation
+
+
+def test_sweep(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
+    """Every stone that stops within the run has gone v^2/(2 mu g)."""
+    monkeypatch.chdir(tmp_path)
+    records = lagrange_fmu.sweep(fmu.archive("Curling"), {"mu": (0.01, 0.03, 5), "v": [1, 2, 3]}, record=["x@end", "ice.events"])
+    table = parquet.read_table(records).to_pydict()
+    assert len(table["run"]) == 15
+    for mu, v, x, events in zip(table["mu"], table["v"], table["x@end"], table["ice.events"], strict=True):
+        if events:
+            assert x == pytest.approx(v**2 / (2 * mu * G), rel=1e-9)
 
 
 def texts_of_sources():
