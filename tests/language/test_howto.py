@@ -196,6 +196,22 @@ def test_overloaded_gear_and_brake(open_fmu):
     assert hoist.get("omega") == pytest.approx(5 + (50 * G * 0.1 - 40) / 0.9 * 2, rel=1e-9)
 
 
+def test_brake_released_by_a_ramp(open_fmu):
+    """With max(0.001, F), as the page says, the input may fall to 0 within steps, where rounding brings it below."""
+    text = EXAMPLES["HoistBrake"].replace("HoistBrake", "RampedBrake").replace("mu*F*R", "mu*max(0.001, F)*R").replace("muRest*F", "muRest*max(0.001, F)")
+    build_systems("howto-ramp", {"RampedBrake": text})
+    hoist = open_fmu("RampedBrake").initialize({"F": 2000})
+    hoist.step(0.3)
+    hoist.fmu.setRealInputDerivatives(hoist.vr("F"), [1], [-2500])
+    hoist.step(0.8)
+    hoist.set(F=0)
+    hoist.step(0.9)
+    # It slips from F = m g/muRest on, which is when the rest of the ramp begins.
+    slips, rate, ends = 0.3 + (2000 - 50 * G / 0.45) / 2500, 50 * G * 0.1, 1.1
+    braking = 0.4 * 0.1 * (2000 * (ends - slips) - 2500 * ((ends - 0.3) ** 2 - (slips - 0.3) ** 2) / 2)
+    assert hoist.get("omega") == pytest.approx((rate * (2 - slips) - braking) / 0.9, rel=1e-4)
+
+
 def test_jacobian_in_casadi():
     casadi = pytest.importorskip("casadi")
     builder = casadi.DaeBuilder("slider", str(fmu.unpacked("Slider")), {})
