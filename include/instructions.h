@@ -17,7 +17,7 @@
 enum Space {
   SPACE_NUMBER,
   SPACE_PARAMETER,
-  SPACE_PREPARED,
+  SPACE_PARAMETER_CONSTANTS,
   SPACE_STATE,
   SPACE_INPUT,
   SPACE_TIME,
@@ -41,10 +41,10 @@ enum Space {
 };
 
 /* A space in the upper 5 bits, and an index in it. */
-typedef uint32_t Place;
+typedef uint32_t Slot;
 
-/* PLACE_BITS: of the index in a Place. SPACE_BITS: of each space in the header of a run, the result's in the lowest. */
-enum { PLACE_BITS = 27, SPACE_BITS = 5 };
+/* SLOT_BITS: of the index in a Place. SPACE_BITS: of each space in the header of a run, the result's in the lowest. */
+enum { SLOT_BITS = 27, SPACE_BITS = 5 };
 
 /*
  * r is the result, a, b and c are the operands. Values are numbers. In instructions for series, k is the order, a_k a
@@ -70,7 +70,7 @@ enum Opcode {
   INVERSE_ROOT,   /* 1 / sqrt(a) */
   LESS_THAN,      /* 1 if a < b, else 0 */
   SIGN_OF,        /* -1, 0 or 1 */
-  GATE_OF,        /* b if a > 0, else 0 */
+  GUARD_OF,       /* b if a > 0, else 0 */
   CALL,           /* a function of a */
   CALL_OF_TWO,    /* a function of a and b */
   CHECK_POSITIVE, /* return r unless a > 0 */
@@ -102,7 +102,7 @@ enum Opcode {
   SERIES_ABSOLUTE,          /* of the row a */
   SERIES_LARGER,            /* b_k if the row a is positive just after t = 0, else c_k */
   SERIES_SMALLER,           /* b_k if the row a is negative just after t = 0, else c_k */
-  SERIES_GATE,              /* b_k if the value a is positive, else 0 */
+  SERIES_GUARD,             /* b_k if the value a is positive, else 0 */
   SERIES_REST,              /* a_k minus the product of the rows b and c without its term b_0 c_k */
   SERIES_SOLVE,             /* solves block r */
   SERIES_STATE,             /* r_(k+1) = a_k / (k + 1) */
@@ -120,7 +120,7 @@ struct BlockTable {
   void (*solve)(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
   void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                        Real *x);
-  /* oblique_solve() for a block with forces that depend on constraint forces; else NULL */
+  /* nonsymmetric_solve() for a block with forces that depend on constraint forces; else NULL */
   void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                           Real *x);
 };
@@ -172,12 +172,12 @@ enum LimitRule {
 
 struct LimitCheck {
   enum LimitRule rule;
-  Place row, other_row;
+  Slot row, other_row;
   const char *function; /* name for messages */
   double share;
-  Place exponent;
+  Slot exponent;
   bool is_gated; /* applies only if the value of opener is positive */
-  Place opener;
+  Slot guard_condition;
 };
 
 void instructions_limit(const struct Frame *frame, const struct LimitCheck *checks, size_t count,

@@ -24,8 +24,8 @@ struct Point {
   const Real *state;
   const Real *input;
   const Real *parameter;
-  const Real *prepared; /* constants that depend on parameters alone, computed by prepare() */
-  Real *work;           /* workspace of the generated functions; its values are lost at the next call */
+  const Real *parameter_constants; /* constants that depend on parameters alone, computed by prepare() */
+  Real *work;                      /* workspace of the generated functions; its values are lost at the next call */
 };
 
 /*
@@ -130,18 +130,18 @@ struct StepWork {
  * pattern.
  */
 struct LuPattern {
-  const int *place, *start, *column;
+  const int *slot, *start, *column;
 };
 
 /* A prescribed input: it occurs in constraints. The next `rates` inputs are its time derivatives. */
-struct Guide {
+struct PrescribedInput {
   size_t input, rates;
 };
 
 /*
  * Metadata of what switches a system. A mode is constant between events; it is the parameter with the index given here.
  */
-struct BranchFacts {
+struct BranchMetadata {
   size_t mode;          /* sign of the indicator: -1, 0 or 1 */
   const char *function; /* name of the piecewise function, for messages */
   const char *file;     /* the file of the expression, without its folder */
@@ -150,15 +150,15 @@ struct BranchFacts {
   bool holds_energy;    /* the state determines it, and energies depend on it: they must not jump there */
 };
 
-struct ContactFacts {
+struct ContactMetadata {
   size_t mode;       /* 1 while it is closed, else 0 */
   size_t constraint; /* active while the contact is closed */
   const char *name;
 };
 
-struct FrictionFacts {
+struct FrictionMetadata {
   size_t mode;       /* sign of the velocity while it slides, 0 while it sticks */
-  size_t told;       /* the reported mode: also 0 while other constraints keep the velocity at 0 */
+  size_t reported;   /* the reported mode: also 0 while other constraints keep the velocity at 0 */
   size_t constraint; /* active while it sticks */
   const char *name;
   bool is_given; /* its velocity is prescribed: it never sticks, and its mode is that of a branch */
@@ -170,19 +170,19 @@ struct FrictionFacts {
  * mode may change if the speed falls to lower, rises to upper, or if the velocity leaves the heading backwards or
  * sideways by as much.
  */
-struct PlaneFacts {
+struct PlaneMetadata {
   size_t along;        /* index of the friction along; the one across follows */
   size_t heading[2];   /* modes: the unit vector of the slip direction */
   size_t lower, upper; /* modes: speeds; upper < 0 is a bound on the velocity along the heading */
 };
 
 /* An assignment of an event, to a state or a mode. */
-struct AssignmentFacts {
+struct AssignmentMetadata {
   enum VariableKind kind;
   size_t index;
 };
 
-struct EventFacts {
+struct EventMetadata {
   enum Passage passage;
   size_t side;         /* the mode that keeps the last nonzero sign; unused with PASSAGE_HOLDS */
   bool is_of_contacts; /* its condition depends on contacts, frictions or constraint forces */
@@ -191,7 +191,7 @@ struct EventFacts {
 };
 
 /* Sampling times base + count period, whose parts are modes. */
-struct SampleFacts {
+struct SampleMetadata {
   size_t event;
   size_t branch; /* its indicator crosses 0 at the next sampling time */
   size_t base, count, period;
@@ -208,13 +208,13 @@ struct SwitchTable {
   bool feels_forces;    /* a branch depends on a constraint force */
   bool friction_varies; /* a friction force varies between events */
   bool has_sides;       /* some branches have is_side */
-  const struct BranchFacts *branches;
-  const struct ContactFacts *contacts;
-  const struct FrictionFacts *frictions;
-  const struct EventFacts *events;
-  const struct AssignmentFacts *assignments;
-  const struct ContactLaws *contact_laws;   /* settlement.h; NULL without contacts */
-  const struct FrictionLaws *friction_laws; /* settlement.h; NULL without frictions */
+  const struct BranchMetadata *branches;
+  const struct ContactMetadata *contacts;
+  const struct FrictionMetadata *frictions;
+  const struct EventMetadata *events;
+  const struct AssignmentMetadata *assignments;
+  const struct ContactLaws *contact_laws;   /* resolution.h; NULL without contacts */
+  const struct FrictionLaws *friction_laws; /* resolution.h; NULL without frictions */
   /* [friction * contact_count + contact]: true if the friction depends on the contact force; NULL if none does. */
   const bool *rests_on;
   /* Computes indicator[] as below: a sign change may change a mode. acceleration as for result(). */
@@ -223,7 +223,7 @@ struct SwitchTable {
    * Bounds the rounding errors of the indicators of branches, of the gaps, and of the velocities of frictions, in units
    * of DBL_EPSILON. Counts the rounding of each operation; the point itself counts as exact.
    */
-  void (*roundings)(const struct Point *point, const Real *acceleration, Real *uncertainty);
+  void (*rounding_bounds)(const struct Point *point, const Real *acceleration, Real *uncertainty);
   /*
    * Reduces limit->step by the elementary functions in the indicators, before and after the point; see series_limit.h.
    * input and x hold Taylor coefficients about the point up to limit->order. So do watched_acceleration_count rows of w
@@ -235,13 +235,13 @@ struct SwitchTable {
   size_t watched_rows, watched_acceleration_row, watched_acceleration_count;
   /* Computes value[] as below, on which the choice of modes depends. */
   void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
-  const struct PlaneFacts *planes; /* ascending; NULL if there are none */
+  const struct PlaneMetadata *planes; /* ascending; NULL if there are none */
   size_t plane_count;
   /* Branches whose indicators are affine in time and otherwise depend on parameters and modes alone; ascending. */
   const size_t *timed;
   size_t timed_count;
-  const struct TimeLaws *time_laws;  /* time_laws.h; NULL without such branches */
-  const struct SampleFacts *samples; /* NULL if there are none */
+  const struct TimeLaws *time_laws;     /* time_laws.h; NULL without such branches */
+  const struct SampleMetadata *samples; /* NULL if there are none */
   size_t sample_count;
 };
 
@@ -265,37 +265,37 @@ enum {
 
 enum { SAMPLE_EVERY, SAMPLE_OFFSET, SAMPLE_VALUES };
 
-static inline size_t branch_rate_place(const struct SwitchTable *switches, size_t branch) {
+static inline size_t branch_rate_slot(const struct SwitchTable *switches, size_t branch) {
   return switches->branch_count + branch;
 }
 
-static inline size_t contact_place(const struct SwitchTable *switches, size_t contact, size_t part) {
+static inline size_t contact_slot(const struct SwitchTable *switches, size_t contact, size_t part) {
   return 2 * switches->branch_count + CONTACT_VALUES * contact + part;
 }
 
-static inline size_t friction_place(const struct SwitchTable *switches, size_t friction, size_t part) {
-  return contact_place(switches, switches->contact_count, 0) + FRICTION_VALUES * friction + part;
+static inline size_t friction_slot(const struct SwitchTable *switches, size_t friction, size_t part) {
+  return contact_slot(switches, switches->contact_count, 0) + FRICTION_VALUES * friction + part;
 }
 
-static inline size_t condition_place(const struct SwitchTable *switches, size_t event) {
-  return friction_place(switches, switches->friction_count, 0) + event;
+static inline size_t condition_slot(const struct SwitchTable *switches, size_t event) {
+  return friction_slot(switches, switches->friction_count, 0) + event;
 }
 
-static inline size_t assignment_place(const struct SwitchTable *switches, size_t assignment) {
-  return condition_place(switches, switches->event_count) + assignment;
+static inline size_t assignment_slot(const struct SwitchTable *switches, size_t assignment) {
+  return condition_slot(switches, switches->event_count) + assignment;
 }
 
 /* Index of the kinetic energy; the potential energy and the momenta follow. */
-static inline size_t energy_place(const struct SwitchTable *switches) {
-  return assignment_place(switches, switches->assignment_count);
+static inline size_t energy_slot(const struct SwitchTable *switches) {
+  return assignment_slot(switches, switches->assignment_count);
 }
 
-static inline size_t plane_place(const struct SwitchTable *switches, size_t plane) {
-  return energy_place(switches) + switches->energy_count + plane;
+static inline size_t plane_slot(const struct SwitchTable *switches, size_t plane) {
+  return energy_slot(switches) + switches->energy_count + plane;
 }
 
-static inline size_t sample_place(const struct SwitchTable *switches, size_t sample, size_t part) {
-  return plane_place(switches, switches->plane_count) + SAMPLE_VALUES * sample + part;
+static inline size_t sample_slot(const struct SwitchTable *switches, size_t sample, size_t part) {
+  return plane_slot(switches, switches->plane_count) + SAMPLE_VALUES * sample + part;
 }
 
 /* Layout of indicator[] of struct SwitchTable: branches, contacts, frictions. */
@@ -319,7 +319,7 @@ static inline bool is_in_plane(const struct SwitchTable *switches, size_t fricti
 }
 
 /* Returns the sample that switches a branch; NULL for none. */
-static inline const struct SampleFacts *sample_of(const struct SwitchTable *switches, size_t branch) {
+static inline const struct SampleMetadata *sample_of(const struct SwitchTable *switches, size_t branch) {
   for (size_t i = 0; i < switches->sample_count; i++)
     if (switches->samples[i].branch == branch) return &switches->samples[i];
   return NULL;
@@ -340,7 +340,7 @@ struct EventLaws;
  */
 
 /* Metadata for the choice of steps. */
-struct StepFacts {
+struct StepMetadata {
   const double *nominal; /* [state_count]: scales of the absolute tolerance */
   double tolerance;      /* relative; used if the importer gives none */
   double max_step;       /* longest internal step of a solver, in s; INFINITY if not given */
@@ -396,10 +396,10 @@ struct ResultTable {
 
 /* Systems with constraints, those of contacts and frictions among them; zeros for others. */
 struct ConstraintTable {
-  size_t count, guide_count;
+  size_t count, prescribed_input_count;
   const char *const *names;
   const char *const *inputs; /* [count]: names of each one's prescribed inputs, or NULL; NULL without guides */
-  const struct Guide *guides;
+  const struct PrescribedInput *prescribed_inputs;
   const bool *coordinate_is_fixed;     /* [n]: fixed at the start; NULL if none is */
   const struct Projection *projection; /* projection.h */
   /*
@@ -431,11 +431,11 @@ struct ReverseSweep;
 
 struct Lagrangian {
   const char *name, *guid;
-  size_t coordinate_count, state_count, input_count, parameter_count, prepared_count;
+  size_t coordinate_count, state_count, input_count, parameter_count, parameter_constants_count;
   size_t work_count; /* size of Point.work */
   /* Number of last coordinates that are sensitivities of the others. An importer may set them at events. */
-  size_t variation_count;
-  size_t state_variation_count; /* the same of the states of first order */
+  size_t sensitivity_count;
+  size_t state_sensitivity_count; /* the same of the states of first order */
   size_t variable_count, array_count;
   const struct ScalarVariable *variables;
   const struct ArrayVariable *arrays; /* ascending; NULL if there are none */
@@ -443,7 +443,7 @@ struct Lagrangian {
   /* [coordinate_count]: the parameters and coordinates on which its inertia depends, for messages. */
   const char *const *inertia_depends_on;
   const struct Solver *solver; /* NULL for a system without coordinates */
-  struct StepFacts steps;
+  struct StepMetadata steps;
   struct ResultTable results;
   struct TaylorTable taylor;
   struct ImplicitTable implicit;
@@ -453,12 +453,12 @@ struct Lagrangian {
   const struct ReverseSweep *reverse_sweep; /* reverse_sweep.h; NULL unless lagc was asked for --adjoint */
 
   /*
-   * Computes prepared[prepared_count] from parameter[parameter_count]: the constants that depend on parameters alone.
+   * Computes prepared[parameter_constants_count] from parameter[parameter_count]: the constants that depend on parameters alone.
    */
-  int (*prepare)(const Real *parameter, Real *prepared);
+  int (*prepare)(const Real *parameter, Real *parameter_constants);
   /*
    * Computes the elements of state[state_count] whose start values are expressions of parameters, and their derivatives
-   * along seed; leaves the others. Uses no prepared values. NULL if there are none.
+   * along seed; leaves the others. Uses no parameter constants. NULL if there are none.
    */
   void (*initial_state)(const struct Point *point, Real *state);
   void (*initial_state_along)(const struct Point *point, const struct Seed *seed, Real *state);
@@ -474,7 +474,7 @@ struct Lagrangian {
   /*
    * For linear systems, d state / dt = A state + B input + c; row i of matrix[states][states + inputs + 1] is A, B, c.
    */
-  void (*linear)(const Real *parameter, const Real *prepared, Real *matrix);
+  void (*linear)(const Real *parameter, const Real *parameter_constants, Real *matrix);
 };
 
 extern const struct Lagrangian lagrangian;

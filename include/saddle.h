@@ -40,18 +40,18 @@ static inline Condition saddle_is_definite(Real pivot, Real diagonal) {
  * Returns the contribution of a term of a constraint's pivot to J M^-1 J^T of that constraint alone: that of a row of
  * M, which is positive.
  */
-static inline Real saddle_mobility(Real term) {
+static inline Real saddle_delassus(Real term) {
   return WHERE(term > 0.0, term, 0.0);
 }
 
 /*
- * True if a constraint's pivot may be wrong by rounding, and is recomputed. hold / mobility is the pivot relative to
+ * True if a constraint's pivot may be wrong by rounding, and is recomputed. hold / delassus is the pivot relative to
  * that of the constraint alone, weakest the smallest such ratio before. Below 1e-14 the pivot is 0 in any case.
  * Rounding errors grow by 1 / weakest; above 1e-11 / weakest the pivot has enough digits.
  */
-static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakest) {
+static inline Condition saddle_is_doubtful(Real hold, Real delassus, Real weakest) {
   const double rounding_of_share = 1e-14, rounding_by_weakest = 1e-11;
-  Real share = hold / mobility, size = WHERE(share < 0.0, -share, share);
+  Real share = hold / delassus, size = WHERE(share < 0.0, -share, share);
   return BOTH(size > rounding_of_share, size * weakest < rounding_by_weakest);
 }
 
@@ -60,10 +60,10 @@ static inline Condition saddle_is_doubtful(Real hold, Real mobility, Real weakes
  * angle between the constraint and the span of those before it, in the metric of M^-1. Up to 1e-12 (a sine of 1e-6) the
  * constraint counts as dependent: rounding leaves less, and a regular constraint would keep no digits.
  */
-static inline Real saddle_pivot(Real hold, Real mobility, Real *weakest) {
+static inline Real saddle_pivot(Real hold, Real delassus, Real *weakest) {
   const double smallest_share = 1e-12;
-  Condition has_hold = hold > smallest_share * mobility, has_none = hold <= smallest_share * mobility;
-  *weakest = WHERE(BOTH(has_hold, hold / mobility < *weakest), hold / mobility, *weakest);
+  Condition has_hold = hold > smallest_share * delassus, has_none = hold <= smallest_share * delassus;
+  *weakest = WHERE(BOTH(has_hold, hold / delassus < *weakest), hold / delassus, *weakest);
   return WHERE(has_none, -INFINITY, -hold); /* NAN stays NAN */
 }
 

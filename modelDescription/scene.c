@@ -150,7 +150,7 @@ static void write_place(xmlTextWriterPtr writer, const char *name, double place,
   else write_rounded(writer, name, place);
 }
 
-static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct Joint *joint,
+static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneJoint *joint,
                         char **formulas) {
   xmlTextWriterStartElement(writer, BAD_CAST "joint");
   write_thing(writer, "of", samples, joint->of);
@@ -167,7 +167,7 @@ static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, 
   xmlTextWriterEndElement(writer);
 }
 
-static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples, const struct Surface *surface) {
+static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneSurface *surface) {
   static const char *const normals[3] = {"nx", "ny", "nz"};
   xmlTextWriterStartElement(writer, BAD_CAST "surface");
   write_thing(writer, "of", samples, surface->thing);

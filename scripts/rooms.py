@@ -46,7 +46,7 @@ LAGC = House(
     src/compiler/program/expressions
     src/compiler/program/series
     src/compiler/program
-    src/compiler/program/facts
+    src/compiler/program/metadata
     src/compiler/program/tables
     src/compiler/write
     modelDescription/scene

@@ -63,14 +63,14 @@ static void append_bar(struct Drawing *drawing, const struct Body *body, struct 
 }
 
 /* Returns the projection of a point onto the surface. */
-static struct Spot foot_of(const struct Surface *surface, struct Spot spot) {
+static struct Spot foot_of(const struct SceneSurface *surface, struct Spot spot) {
   double height =
       (spot.right - surface->point[0]) * surface->normal[0] + (spot.up - surface->point[1]) * surface->normal[1];
   return (struct Spot){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
 }
 
 /* Appends a hatched line, as long as the objects above it; short for a stop. */
-static void append_surface(struct Drawing *drawing, const struct Surface *surface, double size) {
+static void append_surface(struct Drawing *drawing, const struct SceneSurface *surface, double size) {
   enum { HATCHES = 12 };
   double half = surface->is_stop ? 0.12 * size : 0.4 * size;
   double along[2] = {surface->normal[1], -surface->normal[0]}, low = -half, high = half;
@@ -95,7 +95,8 @@ static void append_surface(struct Drawing *drawing, const struct Surface *surfac
 }
 
 /* Appends a square of a plane in space around its point. */
-static void append_plane(struct Drawing *drawing, const struct View *view, const struct Surface *surface, double size) {
+static void append_plane(struct Drawing *drawing, const struct View *view, const struct SceneSurface *surface,
+                         double size) {
   double first[3] = {0.0, 0.0, 0.0}, second[3], corner[3];
   struct Spot corners[5];
   int least = 0;
@@ -172,7 +173,7 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
     if (!thing->is_planar) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
   }
   for (size_t i = 0; i < sight->links.joint_count; i++) {
-    const struct Joint *joint = &sight->links.joints[i];
+    const struct SceneJoint *joint = &sight->links.joints[i];
     append_pivot(drawing, spot_on(sight, joint->of, joint->place[0], joint->place[1]));
   }
   append_pivot(drawing, spot_of(sight, 0));
@@ -180,10 +181,10 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
 
 /* True if no earlier contact has the same plane. */
 static bool is_first(const struct Surfaces *surfaces, size_t surface) {
-  const struct Surface *last = &surfaces->items[surface];
+  const struct SceneSurface *last = &surfaces->items[surface];
   bool is_new = true;
   for (size_t i = 0; i < surface && !last->is_stop; i++) {
-    const struct Surface *other = &surfaces->items[i];
+    const struct SceneSurface *other = &surfaces->items[i];
     double away = 0.0;
     for (int axis = 0; axis < 3; axis++)
       away = fmax(away,
@@ -194,8 +195,8 @@ static bool is_first(const struct Surfaces *surfaces, size_t surface) {
 }
 
 /* Returns the surface with its point nearest to the object's start position. */
-static struct Surface met_surface(const struct Sight *sight, size_t surface) {
-  struct Surface met = sight->surfaces.items[surface];
+static struct SceneSurface met_surface(const struct Sight *sight, size_t surface) {
+  struct SceneSurface met = sight->surfaces.items[surface];
   const Node *position = sight->samples.things[met.thing].position;
   double height = 0.0;
   if (met.is_stop) return met;
@@ -206,7 +207,7 @@ static struct Surface met_surface(const struct Sight *sight, size_t surface) {
 
 static void append_surfaces(struct Drawing *drawing, const struct Sight *sight, double size) {
   for (size_t i = 0; i < sight->surfaces.count; i++) {
-    struct Surface surface = met_surface(sight, i);
+    struct SceneSurface surface = met_surface(sight, i);
     if (!is_first(&sight->surfaces, i)) continue;
     if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
     else append_surface(drawing, &surface, size);

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "letters.h"
+#include "glyphs.h"
 
 /* The position in the text. Parsing functions advance it, and set wrong on a syntax error. */
 struct Text {
@@ -157,7 +157,7 @@ static void measure(struct Formula *formula) {
   double count = (double)formula->count;
   switch (formula->kind) {
   case NUMBER: formula->width = (double)strlen(formula->word); break;
-  case NAME: formula->width = letters_width(formula->word); break;
+  case NAME: formula->width = glyphs_width(formula->word); break;
   case ELLIPSIS: formula->width = 2.0; break;
   case APPLICATION: formula->width = (double)strlen(formula->word) + 2.0 + sum + count - 1.0; break;
   case CONDITION: formula->width = sum + 3.0; break;

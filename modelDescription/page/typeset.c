@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "letters.h"
+#include "glyphs.h"
 
 static bool is_one_of(const char *word, const char *const *words) {
   for (size_t i = 0; words[i] != NULL; i++)
@@ -94,7 +94,7 @@ static int dots_of(const struct Formula *formula, const char **name) {
 static void write_application(FILE *file, const struct Formula *formula) {
   const char *name;
   int dots = dots_of(formula, &name);
-  if (dots > 0) letters_write(file, name, dots);
+  if (dots > 0) glyphs_write(file, name, dots);
   else if (strcmp(formula->word, "sqrt") == 0) {
     fputs("<msqrt>", file);
     write_arguments(file, formula);
@@ -196,7 +196,7 @@ void typeset(FILE *file, const struct Formula *formula) {
   }
   switch (formula->kind) {
   case NUMBER: write_number(file, formula->word); break;
-  case NAME: letters_write(file, formula->word, 0); break;
+  case NAME: glyphs_write(file, formula->word, 0); break;
   case ELLIPSIS: fputs("<mo>…</mo>", file); break;
   case APPLICATION: write_application(file, formula); break;
   case CONDITION:

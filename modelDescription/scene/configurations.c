@@ -66,7 +66,7 @@ struct Configurations configurations_of(const struct Model *model, const struct 
 }
 
 static bool can_move(const struct Model *model, size_t coordinate) {
-  bool is_driven = model->given.drive_count > 0 && model->given.drives[coordinate].given;
+  bool is_driven = model->given.prescribed_motion_count > 0 && model->given.prescribed_motions[coordinate].given;
   return !is_driven && !model->coordinates.items[coordinate].is_fixed;
 }
 

@@ -27,7 +27,7 @@ static double *places_with(const struct Model *model, const struct Links *links,
   struct Samples samples = take_samples(model, false, changes);
   double *places = allocate(PLACES * links->joint_count, sizeof *places);
   for (size_t i = 0; i < links->joint_count && places != NULL; i++) {
-    struct Joint joint = {.of = links->joints[i].of, .with = links->joints[i].with};
+    struct SceneJoint joint = {.of = links->joints[i].of, .with = links->joints[i].with};
     if (!find_joint(&samples, &joint)) places = NULL;
     for (int k = 0; k < PLACES && places != NULL; k++) places[PLACES * i + (size_t)k] = joint.place[k];
   }

@@ -50,7 +50,7 @@ static bool moves(const struct Samples *samples, size_t thing) {
  * True if the constraint is the norm of a quaternion, which scales all distances in a body but has no force along any.
  */
 static bool is_norm(const struct Model *model, size_t constraint) {
-  for (size_t i = 0; i < model->mechanism.stillness_count; i++)
+  for (size_t i = 0; i < model->mechanism.regularization_count; i++)
     if (model->mechanism.stillnesses[i].constraint == model->constraints.items[constraint].node) return true;
   return false;
 }
@@ -121,7 +121,7 @@ static void try_rod(struct Links *links, const struct Samples *samples, size_t f
  * Fills the equations of a joint. Unknowns: its position on each of the two objects, then the coefficients of the
  * constraints along x and y.
  */
-static void fill_joint(const struct Samples *samples, const struct Joint *joint, struct LeastSquares *system) {
+static void fill_joint(const struct Samples *samples, const struct SceneJoint *joint, struct LeastSquares *system) {
   for (size_t k = 0; k < samples->count; k++)
     for (int axis = 0; axis < 2; axis++) {
       double *row = least_squares_row(system, 2 * k + (size_t)axis);
@@ -143,7 +143,7 @@ static void fill_joint(const struct Samples *samples, const struct Joint *joint,
  * With r + A c = 0 for the distance r of both points and two constraints c, constraint forces l do the work l^T A^-1
  * dr, so that the force on the first object is F = A^-T l. Forces are found for exactly two constraints only.
  */
-static void set_forces(const struct Samples *samples, const double *multiples, struct Joint *joint) {
+static void set_forces(const struct Samples *samples, const double *multiples, struct SceneJoint *joint) {
   double a[FORCES][2] = {{0}};
   size_t count = 0;
   for (size_t c = 0; c < samples->constraint_count; c++) {
@@ -162,7 +162,7 @@ static void set_forces(const struct Samples *samples, const double *multiples, s
   joint->along[1][1] = a[0][0] / determinant;
 }
 
-bool find_joint(const struct Samples *samples, struct Joint *joint) {
+bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
   size_t columns = 4 + 2 * samples->constraint_count;
   struct LeastSquares system = least_squares_create(2 * samples->count, columns);
   double *solution = allocate(columns, sizeof *solution);
@@ -176,7 +176,7 @@ bool find_joint(const struct Samples *samples, struct Joint *joint) {
 }
 
 static void try_joint(struct Links *links, const struct Samples *samples, size_t of, size_t with) {
-  struct Joint joint = {.of = of, .with = with};
+  struct SceneJoint joint = {.of = of, .with = with};
   if (!find_joint(samples, &joint)) return;
   links->joints = make_room(links->joints, links->joint_count, sizeof *links->joints);
   links->joints[links->joint_count++] = joint;

@@ -16,7 +16,7 @@ struct Rod {
 };
 
 /* A point that a planar body shares with another object, and the constraint forces on the body there. */
-struct Joint {
+struct SceneJoint {
   size_t of, with;
   /* m: x, y along the body's axes; then x, y along those of the other planar body, or from another object */
   double place[PLACES];
@@ -28,12 +28,12 @@ struct Joint {
 struct Links {
   struct Rod *rods;
   size_t rod_count;
-  struct Joint *joints;
+  struct SceneJoint *joints;
   size_t joint_count;
 };
 
 /* Finds the shared point of joint->of, a planar body, and joint->with, and its forces. False if there is none. */
-bool find_joint(const struct Samples *samples, struct Joint *joint);
+bool find_joint(const struct Samples *samples, struct SceneJoint *joint);
 
 /* Finds all rods and joints. */
 struct Links find_links(const struct Samples *samples);

@@ -10,13 +10,13 @@ static double norm(const double vector[3]) {
   return sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-static void append(struct Surfaces *surfaces, struct Surface surface) {
+static void append(struct Surfaces *surfaces, struct SceneSurface surface) {
   surfaces->items = make_room(surfaces->items, surfaces->count, sizeof *surfaces->items);
   surfaces->items[surfaces->count++] = surface;
 }
 
 /* True if gap = normal . position + offset for all samples; sets the plane. */
-static bool is_plane(const struct Samples *samples, Node gap, struct Surface *surface) {
+static bool is_plane(const struct Samples *samples, Node gap, struct SceneSurface *surface) {
   struct LeastSquares system = least_squares_create(samples->count, 4);
   double solution[4];
   for (size_t k = 0; k < samples->count; k++) {
@@ -79,7 +79,7 @@ static double *values_where(const struct Configurations *configurations, Node ga
 }
 
 /* Sets the surface at the end of a path, with the normal from at to beside. False if the object does not move. */
-static bool is_end(const struct Thing *thing, const double *at, const double *beside, struct Surface *surface) {
+static bool is_end(const struct Thing *thing, const double *at, const double *beside, struct SceneSurface *surface) {
   for (int axis = 0; axis < 3; axis++) {
     surface->point[axis] = at[thing->position[axis]];
     surface->normal[axis] = beside[thing->position[axis]] - at[thing->position[axis]];
@@ -100,7 +100,7 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
          *beside = at == NULL ? NULL : values_where(configurations, gap, &limit, fabs(limit.slope) * little);
   bool is_found = false;
   for (size_t thing = 1; thing < samples->thing_count && beside != NULL && !is_found; thing++) {
-    struct Surface surface = {.thing = thing, .is_stop = true};
+    struct SceneSurface surface = {.thing = thing, .is_stop = true};
     is_found = is_end(&samples->things[thing], at, beside, &surface);
     if (is_found) append(surfaces, surface);
   }
@@ -138,7 +138,7 @@ struct Surfaces find_surfaces(const struct Samples *samples) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t before = surfaces.count;
     for (size_t thing = 1; thing < samples->thing_count && surfaces.count == before; thing++) {
-      struct Surface surface = {.thing = thing};
+      struct SceneSurface surface = {.thing = thing};
       if (is_plane(samples, switches->contacts[i].gap, &surface)) append(&surfaces, surface);
     }
     if (surfaces.count == before && has_stops) add_stop(&surfaces, samples, &configurations, switches->contacts[i].gap);

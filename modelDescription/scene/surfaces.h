@@ -3,7 +3,7 @@
 
 #include "samples.h"
 
-struct Surface {
+struct SceneSurface {
   size_t thing;     /* index of the object that hits it */
   double point[3];  /* m: in the plane; of a stop: the position of the object at the stop */
   double normal[3]; /* unit vector towards the open side */
@@ -11,7 +11,7 @@ struct Surface {
 };
 
 struct Surfaces {
-  struct Surface *items;
+  struct SceneSurface *items;
   size_t count;
 };
 

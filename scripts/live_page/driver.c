@@ -41,8 +41,14 @@ EXPORT("instantiate") fmi2Component instantiate(const char *guid) {
   return fmi2Instantiate("live", fmi2CoSimulation, guid, "", &callbacks, fmi2False, fmi2False);
 }
 
-EXPORT("messages") char *get_messages(void) { return messages; }
+EXPORT("messages") char *get_messages(void) {
+  return messages;
+}
 
-EXPORT("forgetMessages") void forget_messages(void) { messages[0] = '\0'; }
+EXPORT("forgetMessages") void forget_messages(void) {
+  messages[0] = '\0';
+}
 
-EXPORT("allocate") void *get_memory(size_t size) { return malloc(size); }
+EXPORT("allocate") void *get_memory(size_t size) {
+  return malloc(size);
+}

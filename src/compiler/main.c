@@ -17,7 +17,7 @@
 #include "read/names/words.h"
 #include "read/reader.h"
 #include "read/values.h"
-#include "read/variations.h"
+#include "read/sensitivities.h"
 #include "read/xml/schema.h"
 
 static const char usage[] =
@@ -131,12 +131,12 @@ static void print_linearization(const struct Model *model, const struct Equation
 }
 
 /* Derives the equations of motion, with variational equations if requested. */
-static struct Equations *motion_with_variations(struct Model *model, const struct Arguments *arguments,
-                                                struct Diagnostics *diagnostics) {
+static struct Equations *motion_with_sensitivities(struct Model *model, const struct Arguments *arguments,
+                                                   struct Diagnostics *diagnostics) {
   model->unrolled = arguments->along_count > 0;
   struct Equations *equations = motion_of(model, diagnostics);
   if (equations == NULL || arguments->along_count == 0) return equations;
-  add_variations(model, equations, arguments->along, arguments->along_count, diagnostics);
+  add_sensitivities(model, equations, arguments->along, arguments->along_count, diagnostics);
   model->unrolled = model->constraints.count == 0; /* redundant constraints are detected at run time only */
   return diagnostics->errors == 0 ? motion_of(model, diagnostics) : NULL;
 }
@@ -151,7 +151,7 @@ static int run(const struct Arguments *arguments) {
                                   .pull = arguments->pull,
                                   .linearize = arguments->linearize};
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
-  struct Equations *equations = model != NULL ? motion_with_variations(model, arguments, &diagnostics) : NULL;
+  struct Equations *equations = model != NULL ? motion_with_sensitivities(model, arguments, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
   else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);

@@ -5,7 +5,7 @@
 #include "lane_values.h"
 
 /* The runs that are in the lanes, and those to come. */
-struct Group {
+struct LaneGroup {
   const struct Ensemble *ensemble;
   struct LaneSteps steps;
   struct LaneEvents events;
@@ -26,14 +26,14 @@ static bool is_allowed(const struct ScalarVariable *variable, double value) {
   return isfinite(value) && value >= variable->minimum && value <= variable->maximum;
 }
 
-static void leave(struct Group *group, Mask lanes) {
+static void leave(struct LaneGroup *group, Mask lanes) {
   for (int i = 0; any_lane(lanes) && i < LANES; i++)
     if (lanes[i]) group->ensemble->is_left[group->run[i]] = true;
   group->is_active &= ~lanes;
 }
 
 /* Loads the next run into a lane. */
-static void load(struct Group *group, int lane) {
+static void load(struct LaneGroup *group, int lane) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
   size_t run = group->next++;
@@ -56,7 +56,7 @@ static void load(struct Group *group, int lane) {
 }
 
 /* Computes start values that are expressions of parameters, except those that vary themselves. */
-static void follow(struct Group *group, Mask lanes) {
+static void follow(struct LaneGroup *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
   struct Point point = {.parameter = steps->parameter, .work = steps->point_work};
@@ -73,7 +73,7 @@ static void follow(struct Group *group, Mask lanes) {
 }
 
 /* Loads runs into free lanes, until all are active or no run is left. */
-static void fill(struct Group *group) {
+static void fill(struct LaneGroup *group) {
   Mask is_new;
   do {
     is_new = ~group->is_active;
@@ -88,7 +88,7 @@ static void fill(struct Group *group) {
 }
 
 /* Returns the lanes whose next sampling time lies before their event, or else in their step; time: these times. */
-static Mask find_reached(const struct Group *group, Lanes *time) {
+static Mask find_reached(const struct LaneGroup *group, Lanes *time) {
   const double *times = group->ensemble->times;
   Lanes end = group->steps.origin + group->steps.reach;
   Mask is_reached = {0};
@@ -103,7 +103,7 @@ static Mask find_reached(const struct Group *group, Lanes *time) {
 }
 
 /* Samples values at all times within the steps. A run ends at the last time. */
-static void deliver(struct Group *group) {
+static void deliver(struct LaneGroup *group) {
   const struct Ensemble *ensemble = group->ensemble;
   for (;;) {
     Lanes time = group->steps.origin;
@@ -120,7 +120,7 @@ static void deliver(struct Group *group) {
 }
 
 bool ensemble_serves(const struct Ensemble *ensemble) {
-  bool serves = lagrangian.steps.max_steps == 0 && lagrangian.constraints.guide_count == 0;
+  bool serves = lagrangian.steps.max_steps == 0 && lagrangian.constraints.prescribed_input_count == 0;
   for (size_t i = 0; i < ensemble->varied_count; i++)
     serves &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
   for (size_t i = 0; i < ensemble->asked_count; i++)
@@ -129,7 +129,7 @@ bool ensemble_serves(const struct Ensemble *ensemble) {
 }
 
 bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {
-  struct Group group = {.ensemble = ensemble, .next = first, .end = first + count};
+  struct LaneGroup group = {.ensemble = ensemble, .next = first, .end = first + count};
   double tolerance = ensemble->tolerance > 0.0 ? ensemble->tolerance : lagrangian.steps.tolerance;
   if (!lane_steps_create(&group.steps, tolerance, ensemble->times[ensemble->time_count - 1])) return false;
   bool has_memory = lane_events_create(&group.events, &group.steps);

@@ -37,7 +37,7 @@ static struct LaneView view_of(const struct LaneSteps *steps, int lane) {
                            .series = (double *)steps->x + lane,
                            .low = (double *)steps->low + lane,
                            .parameter = (double *)steps->parameter + lane,
-                           .prepared = (double *)steps->prepared + lane,
+                           .parameter_constants = (double *)steps->parameter_constants + lane,
                            .input = (double *)steps->constants + lane};
 }
 
@@ -172,7 +172,7 @@ Mask lane_events_go_on(struct LaneEvents *events, Mask active) {
   }
   steps->origin = lanes_select(happens, events->time, steps->origin);
   Mask held = are_held(steps) & active;
-  if (any_lane(happens)) lagrangian.prepare(steps->parameter, steps->prepared);
+  if (any_lane(happens)) lagrangian.prepare(steps->parameter, steps->parameter_constants);
   for (int i = 0; i < LANES; i++) {
     if (!held[i]) continue;
     struct LaneView view = view_of(steps, i);

@@ -26,7 +26,7 @@ static Series *take_series(Lanes **block, size_t count) {
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t series = states + inputs + lagrangian.taylor.rows;
-  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.prepared_count +
+  size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.parameter_constants_count +
                 lagrangian.work_count + inputs + 6 * states;
   size_t size = (rows + 1) * sizeof(Lanes);
   char *memory = malloc(size);
@@ -41,7 +41,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   steps->input = take_series(&block, inputs);
   steps->work = take_series(&block, lagrangian.taylor.rows);
   steps->parameter = take(&block, lagrangian.parameter_count);
-  steps->prepared = take(&block, lagrangian.prepared_count);
+  steps->parameter_constants = take(&block, lagrangian.parameter_constants_count);
   steps->constants = take(&block, inputs);
   steps->low = take(&block, states);
   steps->unit = take(&block, states);
@@ -57,7 +57,7 @@ void lane_steps_destroy(struct LaneSteps *steps) {
   free(steps->memory);
 }
 
-/* --- The polynomials, as in methods/taylor.h and taylor_reach.c ----------------------------------------------------- */
+/* --- The polynomials, as in methods/taylor.h and taylor_interval.c ----------------------------------------------------- */
 
 static void measure_scales(struct LaneSteps *steps) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
@@ -132,10 +132,10 @@ static Lanes rough_power_of_two(Lanes x) {
 }
 
 /*
- * Returns the predicted step, from the last two coefficients that do not both vanish; see taylor_reach.c. 0 if they
+ * Returns the predicted step, from the last two coefficients that do not both vanish; see taylor_interval.c. 0 if they
  * are not finite.
  */
-static Lanes promised_step(const struct LaneSteps *steps) {
+static Lanes predicted_step(const struct LaneSteps *steps) {
   Lanes last = norm(steps, steps->order), before = norm(steps, steps->order - 1);
   Lanes share = LANES_OF(1.0 / steps->order), share_before = LANES_OF(1.0 / (steps->order - 1));
   Mask vanish = last + before == 0.0;
@@ -160,7 +160,7 @@ struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time) {
                         .state = steps->state,
                         .input = steps->constants,
                         .parameter = steps->parameter,
-                        .prepared = steps->prepared,
+                        .parameter_constants = steps->parameter_constants,
                         .work = steps->point_work};
 }
 
@@ -209,7 +209,7 @@ static Lanes defect(struct LaneSteps *steps, Lanes s) {
 static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
   Lanes inside = {0};
   for (int i = 0; any_lane(steps->is_limited) && i < DEFECT_PLACES; i++)
-    inside = larger_or_infinite(inside, defect(steps, places_of_defects[i] * s));
+    inside = larger_or_infinite(inside, defect(steps, slots_of_defects[i] * s));
   Lanes end = defect(steps, s);
   return lanes_select(steps->is_limited, larger_or_infinite(end, inside), end);
 }
@@ -297,25 +297,25 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active) {
   for (size_t i = 0; i < lagrangian.input_count; i++) steps->input[i][0] = steps->constants[i];
   struct Point point = lane_steps_point(steps, steps->origin);
   lagrangian.taylor.series(&point, steps->order, (const Series *)steps->input, steps->x, steps->work);
-  Lanes promised = promised_step(steps);
-  struct SeriesLimit limit = {.order = steps->order - 1, .step = lanes_smaller(promised, LANES_OF(steps->longest))};
+  Lanes predicted = predicted_step(steps);
+  struct SeriesLimit limit = {.order = steps->order - 1, .step = lanes_smaller(predicted, LANES_OF(steps->longest))};
   limit.step = lanes_select(active, limit.step, (Lanes){0});
   if (lagrangian.taylor.limit != NULL)
     lagrangian.taylor.limit(&point, (const Series *)steps->input, (const Series *)steps->x, (const Series *)steps->work,
                             &limit);
-  steps->is_limited = active & (limit.step < promised);
+  steps->is_limited = active & (limit.step < predicted);
   Mask left = active & approaches(steps, &limit);
   left |= shorten(steps, limit.step, active & ~left);
   return left | (active & may_be_stiff(steps));
 }
 
 /* Returns the stagnating lanes: stiff ones, in which many steps of the predicted length hardly move the state. */
-static Mask crawls(struct LaneSteps *steps, Lanes moved) {
+static Mask stagnates(struct LaneSteps *steps, Lanes moved) {
   steps->path += lanes_select(steps->is_limited, (Lanes){0}, moved);
   steps->steps += lanes_select(steps->is_limited, (Lanes){0}, LANES_OF(1.0));
-  Mask many = steps->steps >= (double)CRAWL_STEPS;
+  Mask many = steps->steps >= (double)STAGNATION_STEPS;
   if (!any_lane(many)) return many;
-  Mask stays = many & (steps->path < CRAWL_STEPS * fmin(steps->tolerance, 1e-6));
+  Mask stays = many & (steps->path < STAGNATION_STEPS * fmin(steps->tolerance, 1e-6));
   steps->path = lanes_select(many, (Lanes){0}, steps->path);
   steps->steps = lanes_select(many, (Lanes){0}, steps->steps);
   return stays;
@@ -331,12 +331,12 @@ Mask lane_steps_move(struct LaneSteps *steps) {
     steps->x[i][0] = sum;
   }
   steps->origin += steps->reach;
-  return crawls(steps, largest);
+  return stagnates(steps, largest);
 }
 
 Mask lane_steps_start(struct LaneSteps *steps) {
   lanes_refused = (Mask){0};
-  lagrangian.prepare(steps->parameter, steps->prepared);
+  lagrangian.prepare(steps->parameter, steps->parameter_constants);
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->state[i] = steps->x[i][0];
   struct Point point = lane_steps_point(steps, steps->origin);
   lagrangian.taylor.start(&point, steps->derivative, steps->work);

@@ -1,5 +1,5 @@
 /*
- * The Taylor method for several runs, a vector lane for each: the algorithm of methods/taylor.c and taylor_reach.c
+ * The Taylor method for several runs, a vector lane for each: the algorithm of methods/taylor.c and taylor_interval.c
  * with the same rule (methods/taylor_rule.h). All lanes share the order, which follows from the tolerance; each has
  * its own time and step. Branches become masks, so that a lane's results do not depend on other lanes.
  */
@@ -17,7 +17,7 @@ struct LaneSteps {
   double length;    /* length of the runs, in s */
   /* time of the series' origin, and length of the step in which they are valid, in s */
   Lanes origin, reach;
-  Lanes *parameter, *prepared, *constants; /* constants: the inputs, which are constant in a run */
+  Lanes *parameter, *parameter_constants, *constants; /* constants: the inputs, which are constant in a run */
   Lanes *unit; /* 1 / scale of each state variable; the scale is its size, or its nominal value if that is larger */
   Lanes *low;  /* compensation of the state at the origin: the low part of its sum */
   Series *x, *input, *work;   /* x[i][0] is the state at the origin */

@@ -37,7 +37,7 @@ static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *i
 }
 
 Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
-                      const size_t *run, const size_t *place) {
+                      const size_t *run, const size_t *slot) {
   struct Point point = lane_steps_point(events->steps, time);
   Mask is_lost = {0};
   const Lanes *acceleration = asks_for_accelerations(ensemble) ? accelerations(events, time, &is_lost) : NULL;
@@ -46,7 +46,7 @@ Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events
     is_lost |= ~lanes_are_finite(value);
     for (int j = 0; j < LANES; j++)
       if (is_reached[j])
-        ensemble->values[(run[j] * ensemble->time_count + place[j]) * ensemble->asked_count + i] = value[j];
+        ensemble->values[(run[j] * ensemble->time_count + slot[j]) * ensemble->asked_count + i] = value[j];
   }
   return is_lost & is_reached;
 }

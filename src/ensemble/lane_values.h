@@ -14,6 +14,6 @@ bool lane_values_can_tell(const struct ScalarVariable *variable);
  * lane, the run and the index of the time. Returns the lanes in which a value is not finite.
  */
 Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
-                      const size_t *run, const size_t *place);
+                      const size_t *run, const size_t *slot);
 
 #endif

@@ -9,17 +9,17 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
-#include "events/settlement.h"
+#include "events/resolution.h"
 #include "instance/event_laws.h"
 #include "instance/projection.h"
 #include "instance/solver.h"
 #include "instance/time_laws.h"
 #include "interpreter.h"
 #include "library_functions.h"
-#include "oblique.h"
-#include "program/facts/block_facts.h"
-#include "program/facts/facts.h"
-#include "program/facts/switch_facts.h"
+#include "nonsymmetric.h"
+#include "program/metadata/block_metadata.h"
+#include "program/metadata/metadata.h"
+#include "program/metadata/switch_metadata.h"
 #include "saddle.h"
 #include "support/lu.h"
 
@@ -74,8 +74,8 @@ static const struct BlockTable *blocks_of(const struct Program *program) {
       table->column = block->column;
     }
     if (block->force_count > 0) {
-      table->factor = oblique_factor;
-      table->solve_obliquely = oblique_solve;
+      table->factor = nonsymmetric_factor;
+      table->solve_obliquely = nonsymmetric_solve;
     } else if (block->constraint_count > 0) {
       table->factor = saddle_factor;
       table->solve = saddle_solve;
@@ -93,9 +93,9 @@ static void add_shared_tables(const struct Encoding *encoding) {
   for (size_t i = 0; i < encoding->numbers.count; i++)
     numbers[i] = graph_value(program->model->graph, encoding->numbers.nodes[i]);
   for (enum Operation function = 0; function < OPERATION_COUNT; function++) {
-    size_t place = encoding->function[function];
-    if (place > 0 && operation_arity(function) == 1) of_one[place - 1] = function_of_one(function_in_c(function));
-    if (place > 0 && operation_arity(function) == 2) of_two[place - 1] = function_of_two(function_in_c(function));
+    size_t slot = encoding->function[function];
+    if (slot > 0 && operation_arity(function) == 1) of_one[slot - 1] = function_of_one(function_in_c(function));
+    if (slot > 0 && operation_arity(function) == 2) of_two[slot - 1] = function_of_two(function_in_c(function));
   }
   interpreter.tables = (struct InstructionTables){numbers,
                                                   of_one,
@@ -111,13 +111,13 @@ static void add_results(const struct Encoding *encoding) {
   const struct ResultGroups alone = groups_of_one(program->interface->result_count);
   interpreter.results = encode_all(encoding, program->result, &program->groups);
   interpreter.results_along = encode_all(encoding, program->result_along, &alone);
-  interpreter.values = allocate(interpreter.results.largest_place + 1, sizeof(double));
+  interpreter.values = allocate(interpreter.results.largest_slot + 1, sizeof(double));
 }
 
 static void fill_interpreter(const struct Encoding *encoding) {
   const struct Program *program = encoding->program;
   interpreter.coordinate_count = program->equations->count;
-  interpreter.prepared_count = program->prepared->count;
+  interpreter.parameter_constants_count = program->parameter_constants->count;
   for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++) interpreter.code[i] = code_of(encoding, program->routines[i]);
   add_series(encoding, FUNCTION_START, FUNCTION_SERIES, program->series);
   add_series(encoding, FUNCTION_OUTPUT_SERIES, FUNCTION_OUTPUT_SERIES, program->output_series);
@@ -134,7 +134,7 @@ static void fill_interpreter(const struct Encoding *encoding) {
 static struct SwitchTable *switches_of(const struct Program *program) {
   if (program->equations->switching == NULL) return NULL;
   struct SwitchTable *switches = allocate(1, sizeof *switches);
-  *switches = switch_facts_of(program);
+  *switches = switch_metadata_of(program);
   if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
   if (switches->friction_count > 0)
     switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
@@ -148,7 +148,7 @@ const char *assemble(const struct Program *program, const char *guid) {
   struct Encoding *encoding = encoding_create(program);
   struct Lagrangian *system = allocate(1, sizeof *system);
   struct SwitchTable *switches = switches_of(program);
-  *system = facts_of(program, encoding_work_count(encoding));
+  *system = metadata_of(program, encoding_work_count(encoding));
   system->guid = guid;
   system->solver = solver;
   system->switches = switches;

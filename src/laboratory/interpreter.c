@@ -29,10 +29,10 @@ static void fill_with(enum FunctionName name, const struct Point *point, const d
   instructions_run(&frame, interpreter.code[name]);
 }
 
-static int prepare(const double *parameter, double *prepared) {
+static int prepare(const double *parameter, double *parameter_constants) {
   const struct Point point = {.parameter = parameter};
-  struct Frame frame = frame_of(&point, NULL, prepared);
-  frame.base[SPACE_LOCAL] = prepared + interpreter.prepared_count;
+  struct Frame frame = frame_of(&point, NULL, parameter_constants);
+  frame.base[SPACE_LOCAL] = parameter_constants + interpreter.parameter_constants_count;
   return instructions_run(&frame, interpreter.code[FUNCTION_PREPARE]);
 }
 
@@ -58,8 +58,8 @@ static int jacobian(const struct Point *point, double *values) {
   return fill(FUNCTION_JACOBIAN, point, NULL, values);
 }
 
-static void linear(const double *parameter, const double *prepared, double *matrix) {
-  const struct Point point = {.parameter = parameter, .prepared = prepared};
+static void linear(const double *parameter, const double *parameter_constants, double *matrix) {
+  const struct Point point = {.parameter = parameter, .parameter_constants = parameter_constants};
   fill(FUNCTION_LINEAR, &point, NULL, matrix);
 }
 
@@ -97,8 +97,8 @@ static void indicators(const struct Point *point, const double *acceleration, do
   fill_with(FUNCTION_INDICATORS, point, acceleration, indicator);
 }
 
-static void roundings(const struct Point *point, const double *acceleration, double *uncertainty) {
-  fill_with(FUNCTION_ROUNDINGS, point, acceleration, uncertainty);
+static void rounding_bounds(const struct Point *point, const double *acceleration, double *uncertainty) {
+  fill_with(FUNCTION_ROUNDING_BOUNDS, point, acceleration, uncertainty);
 }
 
 static void switching_values(const struct Point *point, const double *acceleration, double *value) {
@@ -163,7 +163,7 @@ static void output_series(const struct Point *point, int order, const Series *in
 
 /* Runs the table of a result and returns its value; NAN without a table. */
 static double value_of(const struct RoutineTables *tables, struct Frame *frame, size_t result) {
-  double *value = &interpreter.values[tables->place[result]];
+  double *value = &interpreter.values[tables->slot[result]];
   *value = NAN;
   frame->base[SPACE_TARGET] = interpreter.values;
   instructions_run(frame, tables->words.items + tables->start[result]);
@@ -214,7 +214,7 @@ void set_functions(struct Lagrangian *system, struct SwitchTable *switches, cons
   set_constraint_functions(&system->constraints, program);
   if (switches == NULL) return;
   SET(switches->indicators, FUNCTION_INDICATORS, indicators);
-  SET(switches->roundings, FUNCTION_ROUNDINGS, roundings);
+  SET(switches->rounding_bounds, FUNCTION_ROUNDING_BOUNDS, rounding_bounds);
   SET(switches->switching_values, FUNCTION_SWITCHING_VALUES, switching_values);
   SET(switches->watched_limit, FUNCTION_WATCHED_LIMIT, watched_limit);
 }

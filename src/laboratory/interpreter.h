@@ -22,8 +22,9 @@ struct Interpreter {
   const uint32_t *order[FUNCTION_COUNT];       /* of series: table for the coefficients k */
   struct RoutineTables results, results_along; /* from encode_all() */
   double *values;                              /* workspace for the targets of a table of results */
-  size_t coordinate_count, prepared_count;     /* counts; prepared_count excludes the local variables of prepare() */
-  size_t mass_row;                             /* see struct SeriesProgram */
+  size_t coordinate_count,
+      parameter_constants_count; /* counts; parameter_constants_count excludes the local variables of prepare() */
+  size_t mass_row;               /* see struct SeriesProgram */
   struct Limits limits, watched_limits;
 };
 

@@ -21,7 +21,7 @@ static struct FmuLibrary fmu;
 static const char *guid;
 static size_t variables, states;
 static long failures, right_steps, restored_states;
-static uint64_t noise = 88172645463325252u;
+static uint64_t error_bound = 88172645463325252u;
 
 static fmi2Component c;
 static fmi2FMUstate saved[SAVED];
@@ -32,10 +32,10 @@ static double now; /* the communication point, if it is known */
 
 /* xorshift64 */
 static uint64_t random_below(uint64_t limit) {
-  noise ^= noise << 13;
-  noise ^= noise >> 7;
-  noise ^= noise << 17;
-  return noise % limit;
+  error_bound ^= error_bound << 13;
+  error_bound ^= error_bound >> 7;
+  error_bound ^= error_bound << 17;
+  return error_bound % limit;
 }
 
 static bool one_in(uint64_t count) {
@@ -145,11 +145,11 @@ static void sign(char *bytes, size_t size) {
 /* Overwrites a few numbers of the saved state. */
 static void damage(char *bytes, size_t size) {
   for (uint64_t i = 0; i <= random_below(4); i++) {
-    size_t place = HEADER + 8 * random_below((size - HEADER) / 8);
+    size_t slot = HEADER + 8 * random_below((size - HEADER) / 8);
     double value = number();
     int32_t small = (int32_t)random_below(40) - 5;
-    if (one_in(2)) memcpy(bytes + place, &value, sizeof value);
-    else memcpy(bytes + place, &small, sizeof small);
+    if (one_in(2)) memcpy(bytes + slot, &value, sizeof value);
+    else memcpy(bytes + slot, &small, sizeof small);
   }
 }
 
@@ -219,7 +219,7 @@ int main(int count, char **words) {
   guid = words[2];
   variables = strtoul(words[3], NULL, 10);
   states = strtoul(words[4], NULL, 10);
-  noise ^= strtoull(words[6], NULL, 10) * 0x9E3779B97F4A7C15u; /* spreads small seeds */
+  error_bound ^= strtoull(words[6], NULL, 10) * 0x9E3779B97F4A7C15u; /* spreads small seeds */
   const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   for (int type = fmi2ModelExchange; type <= fmi2CoSimulation; type++) {
     c = NULL;

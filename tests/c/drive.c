@@ -33,37 +33,37 @@ static void expect(int right, const char *what) {
 }
 #define EXPECT(condition) expect(condition, #condition)
 
-struct Drive {
+struct PrescribedMotion {
   struct FmuLibrary fmu;
   const char *guid;
   size_t reals, states;
 };
 
-static fmi2Component instantiate(const struct Drive *drive, fmi2Type type) {
+static fmi2Component instantiate(const struct PrescribedMotion *prescribed_motion, fmi2Type type) {
   const fmi2CallbackFunctions callbacks = {print_message, count_allocation, count_free, NULL, NULL};
-  fmi2Component c =
-      drive->fmu.fmi2Instantiate("drive", type, drive->guid, "file:///tmp/resources", &callbacks, fmi2False, fmi2True);
+  fmi2Component c = prescribed_motion->fmu.fmi2Instantiate("drive", type, prescribed_motion->guid,
+                                                           "file:///tmp/resources", &callbacks, fmi2False, fmi2True);
   EXPECT(c != NULL);
   return c;
 }
 
-static void initialize(const struct Drive *drive, fmi2Component c) {
-  EXPECT(drive->fmu.fmi2SetupExperiment(c, fmi2True, 1e-6, 0.0, fmi2False, 0.0) == fmi2OK);
-  EXPECT(drive->fmu.fmi2EnterInitializationMode(c) == fmi2OK);
-  EXPECT(drive->fmu.fmi2ExitInitializationMode(c) == fmi2OK);
+static void initialize(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  EXPECT(prescribed_motion->fmu.fmi2SetupExperiment(c, fmi2True, 1e-6, 0.0, fmi2False, 0.0) == fmi2OK);
+  EXPECT(prescribed_motion->fmu.fmi2EnterInitializationMode(c) == fmi2OK);
+  EXPECT(prescribed_motion->fmu.fmi2ExitInitializationMode(c) == fmi2OK);
 }
 
-static void read_all(const struct Drive *drive, fmi2Component c) {
-  for (fmi2ValueReference vr = 0; vr < drive->reals; vr++) {
+static void read_all(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  for (fmi2ValueReference vr = 0; vr < prescribed_motion->reals; vr++) {
     double value = NAN;
-    EXPECT(drive->fmu.fmi2GetReal(c, &vr, 1, &value) == fmi2OK);
+    EXPECT(prescribed_motion->fmu.fmi2GetReal(c, &vr, 1, &value) == fmi2OK);
     EXPECT(isfinite(value));
   }
 }
 
 /* Saves and restores the state, also by bytes. */
-static void exercise_state(const struct Drive *drive, fmi2Component c) {
-  const struct FmuLibrary *fmu = &drive->fmu;
+static void exercise_state(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  const struct FmuLibrary *fmu = &prescribed_motion->fmu;
   fmi2FMUstate state = NULL, copy = NULL;
   size_t size = 0;
   EXPECT(fmu->fmi2GetFMUstate(c, &state) == fmi2OK);
@@ -82,44 +82,44 @@ static void exercise_state(const struct Drive *drive, fmi2Component c) {
   free(bytes);
 }
 
-static void co_simulate(const struct Drive *drive, fmi2Component c) {
-  const struct FmuLibrary *fmu = &drive->fmu;
-  initialize(drive, c);
+static void co_simulate(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  const struct FmuLibrary *fmu = &prescribed_motion->fmu;
+  initialize(prescribed_motion, c);
   for (int i = 0; i < 40; i++) {
     EXPECT(fmu->fmi2DoStep(c, 0.01 * i, 0.01, fmi2False) == fmi2OK);
-    if (i == 20) exercise_state(drive, c);
+    if (i == 20) exercise_state(prescribed_motion, c);
   }
-  read_all(drive, c);
+  read_all(prescribed_motion, c);
   EXPECT(fmu->fmi2Terminate(c) == fmi2OK);
 }
 
-static void exchange_model(const struct Drive *drive, fmi2Component c) {
-  const struct FmuLibrary *fmu = &drive->fmu;
+static void exchange_model(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  const struct FmuLibrary *fmu = &prescribed_motion->fmu;
   static double x[1024], derivative[1024], nominal[1024];
-  EXPECT(drive->states <= 1024);
+  EXPECT(prescribed_motion->states <= 1024);
   fmi2EventInfo event;
   fmi2Boolean enter_event, terminate;
-  initialize(drive, c);
+  initialize(prescribed_motion, c);
   EXPECT(fmu->fmi2NewDiscreteStates(c, &event) == fmi2OK);
   EXPECT(fmu->fmi2EnterContinuousTimeMode(c) == fmi2OK);
-  EXPECT(fmu->fmi2GetContinuousStates(c, x, drive->states) == fmi2OK);
-  EXPECT(fmu->fmi2GetNominalsOfContinuousStates(c, nominal, drive->states) == fmi2OK);
+  EXPECT(fmu->fmi2GetContinuousStates(c, x, prescribed_motion->states) == fmi2OK);
+  EXPECT(fmu->fmi2GetNominalsOfContinuousStates(c, nominal, prescribed_motion->states) == fmi2OK);
   for (int i = 1; i <= 20; i++) {
-    EXPECT(fmu->fmi2GetDerivatives(c, derivative, drive->states) == fmi2OK);
-    for (size_t k = 0; k < drive->states; k++) x[k] += 1e-4 * derivative[k];
+    EXPECT(fmu->fmi2GetDerivatives(c, derivative, prescribed_motion->states) == fmi2OK);
+    for (size_t k = 0; k < prescribed_motion->states; k++) x[k] += 1e-4 * derivative[k];
     EXPECT(fmu->fmi2SetTime(c, 1e-4 * i) == fmi2OK);
-    EXPECT(fmu->fmi2SetContinuousStates(c, x, drive->states) == fmi2OK);
+    EXPECT(fmu->fmi2SetContinuousStates(c, x, prescribed_motion->states) == fmi2OK);
     EXPECT(fmu->fmi2CompletedIntegratorStep(c, fmi2True, &enter_event, &terminate) == fmi2OK);
   }
-  exercise_state(drive, c);
-  read_all(drive, c);
+  exercise_state(prescribed_motion, c);
+  read_all(prescribed_motion, c);
   EXPECT(fmu->fmi2EnterEventMode(c) == fmi2OK);
   EXPECT(fmu->fmi2Terminate(c) == fmi2OK);
 }
 
 /* Makes calls in wrong states or with wrong arguments; each must return an error and do no harm. */
-static void call_wrongly(const struct Drive *drive, fmi2Component c) {
-  const struct FmuLibrary *fmu = &drive->fmu;
+static void call_wrongly(const struct PrescribedMotion *prescribed_motion, fmi2Component c) {
+  const struct FmuLibrary *fmu = &prescribed_motion->fmu;
   const fmi2ValueReference unknown = 100000;
   double value = NAN;
   fmi2FMUstate state = NULL;
@@ -137,32 +137,34 @@ static void call_wrongly(const struct Drive *drive, fmi2Component c) {
   EXPECT(fmu->fmi2Reset(c) == fmi2OK);
 }
 
-static void live(struct Drive *drive, const char *path) {
-  drive->fmu = fmu_library_open(path);
+static void live(struct PrescribedMotion *prescribed_motion, const char *path) {
+  prescribed_motion->fmu = fmu_library_open(path);
   const fmi2CallbackFunctions callbacks = {print_message, count_allocation, count_free, NULL, NULL};
-  EXPECT(drive->fmu.fmi2Instantiate("drive", fmi2CoSimulation, "{wrong}", NULL, &callbacks, fmi2False, fmi2False) ==
-         NULL);
-  fmi2Component c = instantiate(drive, fmi2CoSimulation), second = instantiate(drive, fmi2CoSimulation);
+  EXPECT(prescribed_motion->fmu.fmi2Instantiate("drive", fmi2CoSimulation, "{wrong}", NULL, &callbacks, fmi2False,
+                                                fmi2False) == NULL);
+  fmi2Component c = instantiate(prescribed_motion, fmi2CoSimulation),
+                second = instantiate(prescribed_motion, fmi2CoSimulation);
   for (int run = 0; run < 2; run++) {
-    call_wrongly(drive, c);
-    co_simulate(drive, c);
-    EXPECT(drive->fmu.fmi2Reset(c) == fmi2OK);
-    co_simulate(drive, second);
-    EXPECT(drive->fmu.fmi2Reset(second) == fmi2OK);
+    call_wrongly(prescribed_motion, c);
+    co_simulate(prescribed_motion, c);
+    EXPECT(prescribed_motion->fmu.fmi2Reset(c) == fmi2OK);
+    co_simulate(prescribed_motion, second);
+    EXPECT(prescribed_motion->fmu.fmi2Reset(second) == fmi2OK);
   }
-  drive->fmu.fmi2FreeInstance(c);
-  drive->fmu.fmi2FreeInstance(second);
-  drive->fmu.fmi2FreeInstance(NULL);
-  c = instantiate(drive, fmi2ModelExchange);
-  exchange_model(drive, c);
-  drive->fmu.fmi2FreeInstance(c);
+  prescribed_motion->fmu.fmi2FreeInstance(c);
+  prescribed_motion->fmu.fmi2FreeInstance(second);
+  prescribed_motion->fmu.fmi2FreeInstance(NULL);
+  c = instantiate(prescribed_motion, fmi2ModelExchange);
+  exchange_model(prescribed_motion, c);
+  prescribed_motion->fmu.fmi2FreeInstance(c);
   EXPECT(blocks == 0);
-  fmu_library_close(&drive->fmu);
+  fmu_library_close(&prescribed_motion->fmu);
 }
 
 int main(int count, char **words) {
   if (count != 5) return 2;
-  struct Drive drive = {.guid = words[2], .reals = strtoul(words[3], NULL, 10), .states = strtoul(words[4], NULL, 10)};
-  for (int load = 0; load < 2; load++) live(&drive, words[1]);
+  struct PrescribedMotion prescribed_motion = {
+      .guid = words[2], .reals = strtoul(words[3], NULL, 10), .states = strtoul(words[4], NULL, 10)};
+  for (int load = 0; load < 2; load++) live(&prescribed_motion, words[1]);
   return failures > 0;
 }

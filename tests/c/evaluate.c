@@ -67,7 +67,7 @@ static void set_modes(const struct Point *point, double *parameter) {
   const struct SwitchTable *switches = lagrangian.switches;
   double *indicator = zeros(indicator_count(switches), sizeof *indicator);
   for (size_t round = 0; switches != NULL && round <= switches->branch_count; round++) {
-    if (lagrangian.prepare(parameter, (double *)point->prepared) != 0) exit(1);
+    if (lagrangian.prepare(parameter, (double *)point->parameter_constants) != 0) exit(1);
     switches->indicators(point, NULL, indicator);
     for (size_t i = 0; i < switches->branch_count; i++)
       parameter[switches->branches[i].mode] = (double)((indicator[i] > 0.0) - (indicator[i] < 0.0));
@@ -80,14 +80,14 @@ int main(void) {
   size_t modes = lagrangian.switches != NULL ? lagrangian.switches->mode_count : 0;
   size_t count = 1 + states + inputs + parameters, n = lagrangian.coordinate_count;
   double *at = read_numbers(count, count - modes), *direction = read_numbers(count, count - modes);
-  double *prepared = zeros(lagrangian.prepared_count, sizeof *prepared);
+  double *parameter_constants = zeros(lagrangian.parameter_constants_count, sizeof *parameter_constants);
   double *work = zeros(lagrangian.work_count, sizeof *work);
   double *derivative = zeros(states, sizeof *derivative), *along = zeros(states, sizeof *along);
   double *parameter = at + 1 + states + inputs;
-  struct Point point = {at[0], at + 1, at + 1 + states, parameter, prepared, work};
+  struct Point point = {at[0], at + 1, at + 1 + states, parameter, parameter_constants, work};
   struct Seed seed = {direction[0], direction + 1, direction + 1 + states, direction + 1 + states + inputs};
   set_modes(&point, parameter);
-  if (lagrangian.prepare(parameter, prepared) != 0 || lagrangian.derivatives(&point, derivative) != 0 ||
+  if (lagrangian.prepare(parameter, parameter_constants) != 0 || lagrangian.derivatives(&point, derivative) != 0 ||
       lagrangian.directional(&point, &seed, along) != 0)
     return 1;
   print("derivatives", derivative, states);
@@ -103,7 +103,7 @@ int main(void) {
   }
   if (lagrangian.implicit.jacobian != NULL) print_jacobian(&point);
   else print_series(&point);
-  double *const arrays[] = {at, direction, prepared, work, derivative, along};
+  double *const arrays[] = {at, direction, parameter_constants, work, derivative, along};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
   return 0;
 }

@@ -23,7 +23,7 @@ struct Importer {
   void *cvode;
 };
 
-static int place(const struct Importer *importer, double time, N_Vector x) {
+static int slot(const struct Importer *importer, double time, N_Vector x) {
   const struct FmuLibrary *fmu = &importer->fmu;
   return fmu->fmi2SetTime(importer->component, time) == fmi2OK &&
          fmu->fmi2SetContinuousStates(importer->component, N_VGetArrayPointer(x), importer->states) == fmi2OK;
@@ -32,13 +32,13 @@ static int place(const struct Importer *importer, double time, N_Vector x) {
 static int right_side(double time, N_Vector x, N_Vector derivative, void *user) {
   const struct Importer *importer = user;
   double *values = N_VGetArrayPointer(derivative);
-  return !place(importer, time, x) ||
+  return !slot(importer, time, x) ||
          importer->fmu.fmi2GetDerivatives(importer->component, values, importer->states) != fmi2OK;
 }
 
 static int roots(double time, N_Vector x, double *values, void *user) {
   const struct Importer *importer = user;
-  return !place(importer, time, x) ||
+  return !slot(importer, time, x) ||
          importer->fmu.fmi2GetEventIndicators(importer->component, values, importer->indicators) != fmi2OK;
 }
 
@@ -63,7 +63,7 @@ static int go_to(struct Importer *importer, double end) {
   for (double time = -1.0; time < end;) {
     int flag = CVode(importer->cvode, end, importer->x, &time, CV_NORMAL);
     fmi2Boolean has_event = fmi2False, is_over = fmi2False;
-    if (flag < 0 || !place(importer, time, importer->x) ||
+    if (flag < 0 || !slot(importer, time, importer->x) ||
         fmu->fmi2CompletedIntegratorStep(importer->component, fmi2True, &has_event, &is_over) != fmi2OK || is_over)
       return 0;
     if (flag != CV_ROOT_RETURN && !has_event) continue;

@@ -27,7 +27,7 @@ static void go(void *argument) {
   struct Instance *instance = task->instance;
   const struct Solver *solver = lagrangian.solver;
   struct CommunicationStep step = {.end = task->end, .length = task->end};
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   double *state = calloc(lagrangian.state_count, sizeof *state);
   task->status = 1;
   if (state == NULL || !solver->create(instance) ||

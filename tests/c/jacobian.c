@@ -33,14 +33,16 @@ static double element(const double *values, size_t row, size_t j, int *k) {
 
 int main(void) {
   size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
-  double *parameter = zeros(lagrangian.parameter_count), *prepared = zeros(lagrangian.prepared_count);
+  double *parameter = zeros(lagrangian.parameter_count),
+         *parameter_constants = zeros(lagrangian.parameter_constants_count);
   double *input = zeros(lagrangian.input_count), *work = zeros(lagrangian.work_count);
   double *state = zeros(states), *along = zeros(states), *column = zeros(states), *values = zeros(count);
   for (size_t i = 0; i < lagrangian.variable_count; i++)
     if (lagrangian.variables[i].kind == VARIABLE_PARAMETER)
       parameter[lagrangian.variables[i].index] = lagrangian.variables[i].start;
-  if (lagrangian.prepare(parameter, prepared) != 0) return 1;
-  struct Point point = {.state = state, .input = input, .parameter = parameter, .prepared = prepared, .work = work};
+  if (lagrangian.prepare(parameter, parameter_constants) != 0) return 1;
+  struct Point point = {
+      .state = state, .input = input, .parameter = parameter, .parameter_constants = parameter_constants, .work = work};
   double *no_input = zeros(lagrangian.input_count), *no_parameter = zeros(lagrangian.parameter_count);
   struct Seed seed = {.state = along, .input = no_input, .parameter = no_parameter};
   double largest = 0.0, difference = 0.0;
@@ -60,7 +62,8 @@ int main(void) {
     }
   }
   printf("%zu %zu %g\n", states, count, difference / largest);
-  double *const arrays[] = {parameter, prepared, input, work, state, along, column, values, no_input, no_parameter};
+  double *const arrays[] = {parameter, parameter_constants, input, work, state, along, column, values,
+                            no_input,  no_parameter};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
   return 0;
 }

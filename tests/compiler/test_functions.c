@@ -209,7 +209,7 @@ static void test_the_language_follows(void **state) {
     snprintf(one, sizeof one, "%s(x)", name);
     snprintf(two, sizeof two, "%s(x, y)", name);
     bool is_internal = is_leaf(operation) || operation == UNIFORM || operation == GAUSS || operation == ADD ||
-                       operation == MULTIPLY || operation == LESS || operation == GATE;
+                       operation == MULTIPLY || operation == LESS || operation == GUARD;
     bool has_two = operation_arity(operation) == 2;
     Node first = parse(&e, one);
     assert_int_equal(e.diagnostics.errors, is_internal || has_two ? 1 : 0);

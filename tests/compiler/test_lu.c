@@ -6,9 +6,9 @@
 
 enum { SIZE = 30, POSITIONS = SIZE * (SIZE + 1) / 2, NUMBERS = COMPLEX * (SIZE * SIZE + SIZE) };
 
-static int place[SIZE], start[SIZE + 1], column[POSITIONS];
+static int slot[SIZE], start[SIZE + 1], column[POSITIONS];
 const struct Lagrangian lagrangian = {
-    .coordinate_count = SIZE, .state_count = 2 * SIZE, .implicit = {.lu_pattern = {place, start, column}}};
+    .coordinate_count = SIZE, .state_count = 2 * SIZE, .implicit = {.lu_pattern = {slot, start, column}}};
 
 /* Returns a random number from -1 to 1. */
 static double next(unsigned *seed) {
@@ -19,7 +19,7 @@ static double next(unsigned *seed) {
 static void set_pattern(const struct Position *positions, size_t count) {
   struct Graph *graph = graph_create();
   struct Elimination elimination = eliminate(graph, SIZE, SIZE, positions, count);
-  for (size_t i = 0; i < SIZE; i++) place[elimination.order[i]] = (int)i;
+  for (size_t i = 0; i < SIZE; i++) slot[elimination.order[i]] = (int)i;
   for (size_t i = 0; i <= SIZE; i++) start[i] = (int)elimination.start[i];
   for (size_t k = 0; k < elimination.start[SIZE]; k++) column[k] = (int)elimination.column[k];
 }
@@ -27,7 +27,7 @@ static void set_pattern(const struct Position *positions, size_t count) {
 /* Sets an element of a matrix, and adds its product with x to the right side. */
 static void set(const struct Lu *lu, size_t width, size_t i, size_t j, const double *value, double *matrix,
                 const double *x, double *right) {
-  memcpy(matrix + width * lu->place(i, j), value, width * sizeof *value);
+  memcpy(matrix + width * lu->slot(i, j), value, width * sizeof *value);
   number_add_product(width, right + width * i, value, x + width * j);
 }
 
@@ -72,11 +72,11 @@ static void test_solutions(void **state) {
 /* Factors the unit matrix with two rows and columns changed. Returns false if that fails. */
 static bool factors(const struct Lu *lu, size_t width, double a, double b, double c, double d) {
   double matrix[NUMBERS] = {0}, work[2 * COMPLEX * SIZE];
-  for (size_t i = 0; i < SIZE; i++) matrix[width * lu->place(i, i)] = 1.0;
-  matrix[width * lu->place(7, 7)] = a;
-  matrix[width * lu->place(7, 8)] = b;
-  matrix[width * lu->place(8, 7)] = c;
-  matrix[width * lu->place(8, 8)] = d;
+  for (size_t i = 0; i < SIZE; i++) matrix[width * lu->slot(i, i)] = 1.0;
+  matrix[width * lu->slot(7, 7)] = a;
+  matrix[width * lu->slot(7, 8)] = b;
+  matrix[width * lu->slot(8, 7)] = c;
+  matrix[width * lu->slot(8, 8)] = d;
   return lu->factor(width, matrix, work);
 }
 

@@ -321,8 +321,8 @@ def test_forged_choices_are_errors(open_fmu):
     forgeries = [(steps, 7), (is_trial, 2), (crosses, 2), (method, 2), (next_patience, 10**6)]
     for forgery in forgeries:
         refuses(instance, data, "=q", *forgery)
-    work, trial_work, promised_step = choice + 80, choice + 96, choice + 104
-    for place in (work, trial_work, promised_step):
+    work, trial_work, predicted_step = choice + 80, choice + 96, choice + 104
+    for place in (work, trial_work, predicted_step):
         for value in (np.nan, np.inf, -1.0):
             refuses(instance, data, "=d", place, value)
     for place in (work, trial_work):

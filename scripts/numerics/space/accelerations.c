@@ -33,12 +33,12 @@ int main(int count, char **words) {
   if (evaluations < 1) return 2;
   double *state = zeros(lagrangian.state_count, sizeof *state), *input = zeros(lagrangian.input_count, sizeof *input);
   double *parameter = zeros(lagrangian.parameter_count, sizeof *parameter);
-  double *prepared = zeros(lagrangian.prepared_count, sizeof *prepared);
+  double *parameter_constants = zeros(lagrangian.parameter_constants_count, sizeof *parameter_constants);
   double *work = zeros(lagrangian.work_count, sizeof *work);
   double *derivative = zeros(lagrangian.state_count + lagrangian.constraints.count, sizeof *derivative);
   set_point(state, parameter);
-  if (lagrangian.prepare(parameter, prepared) != 0) return 1;
-  const struct Point point = {0.0, state, input, parameter, prepared, work};
+  if (lagrangian.prepare(parameter, parameter_constants) != 0) return 1;
+  const struct Point point = {0.0, state, input, parameter, parameter_constants, work};
   const size_t n = lagrangian.coordinate_count;
   const double begin = seconds();
   for (long k = 0; k < evaluations; k++) {
@@ -47,7 +47,7 @@ int main(int count, char **words) {
     state[2 * n - 1] = 0.1 + 1e-9 * derivative[n];
   }
   printf("%g\n", (seconds() - begin) / (double)evaluations);
-  double *const arrays[] = {state, input, parameter, prepared, work, derivative};
+  double *const arrays[] = {state, input, parameter, parameter_constants, work, derivative};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
   return 0;
 }

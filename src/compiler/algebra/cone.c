@@ -19,7 +19,7 @@ bool cone_has(const struct Cone *cone, Node node) {
   return place < cone->count && cone->nodes[place] == node;
 }
 
-size_t cone_place(const struct Cone *cone, Node node) {
+size_t cone_slot(const struct Cone *cone, Node node) {
   return cone->place[node];
 }
 

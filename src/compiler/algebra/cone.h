@@ -31,4 +31,4 @@ bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node 
 bool cone_has(const struct Cone *cone, Node node);
 
 /* Returns the index of a member in nodes. */
-size_t cone_place(const struct Cone *cone, Node node);
+size_t cone_slot(const struct Cone *cone, Node node);

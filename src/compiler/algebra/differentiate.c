@@ -28,10 +28,10 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
 /* Returns weight by. The guards of weight enclose the product, since by may be undefined where a guard is closed. */
 static Node gated_product(struct Graph *graph, Node weight, Node by) {
   const struct Vertex vertex = graph->vertices[weight];
-  if (vertex.operation == GATE) return function(graph, GATE, vertex.left, gated_product(graph, vertex.right, by));
-  bool is_sum_of_gates = vertex.operation == ADD && graph->vertices[vertex.left].operation == GATE &&
-                         graph->vertices[vertex.right].operation == GATE;
-  if (!is_sum_of_gates) return multiply(graph, weight, by);
+  if (vertex.operation == GUARD) return function(graph, GUARD, vertex.left, gated_product(graph, vertex.right, by));
+  bool is_sum_of_guards = vertex.operation == ADD && graph->vertices[vertex.left].operation == GUARD &&
+                          graph->vertices[vertex.right].operation == GUARD;
+  if (!is_sum_of_guards) return multiply(graph, weight, by);
   Node first = gated_product(graph, vertex.left, by);
   return add(graph, first, gated_product(graph, vertex.right, by));
 }
@@ -40,7 +40,7 @@ static Node gated_product(struct Graph *graph, Node weight, Node by) {
 static Node along_operands(struct Graph *graph, Node node, Node along_left, Node along_right) {
   const struct Vertex vertex = graph->vertices[node];
   if (along_left == ZERO && along_right == ZERO) return ZERO;
-  if (vertex.operation == GATE) return function(graph, GATE, vertex.left, along_right);
+  if (vertex.operation == GUARD) return function(graph, GUARD, vertex.left, along_right);
   Node by_left, by_right;
   partial_derivatives(graph, node, &by_left, &by_right);
   Node along = multiply(graph, by_left, along_left);
@@ -60,10 +60,10 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
     int arity = operation_arity(vertex.operation);
     if (vertex.operation == SYMBOL) along[place] = seeds[vertex.left];
     if (arity == 0) continue;
-    along[place] = along_operands(graph, cone->nodes[place], along[cone_place(cone, vertex.left)],
-                                  arity == 2 ? along[cone_place(cone, vertex.right)] : ZERO);
+    along[place] = along_operands(graph, cone->nodes[place], along[cone_slot(cone, vertex.left)],
+                                  arity == 2 ? along[cone_slot(cone, vertex.right)] : ZERO);
   }
-  for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_place(cone, targets[i])];
+  for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_slot(cone, targets[i])];
 }
 
 static enum Visit visit_unknown(void *context, const struct Graph *graph, Node node) {
@@ -113,7 +113,7 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
 /* Adds weight by to the adjoint of an operand, if the operand depends on the kinds. */
 static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node operand, Node weight, Node by) {
   if ((graph->vertices[operand].kinds & kinds) == 0) return;
-  Node *sum = &adjoint[cone_place(graph->cone, operand)];
+  Node *sum = &adjoint[cone_slot(graph->cone, operand)];
   *sum = add(graph, *sum, gated_product(graph, weight, by));
 }
 
@@ -149,8 +149,8 @@ struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, cons
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
     if (adjoint[place] == ZERO || arity == 0) continue;
-    if (vertex.operation == GATE) {
-      add_adjoint(graph, kinds, adjoint, vertex.right, function(graph, GATE, vertex.left, adjoint[place]), ONE);
+    if (vertex.operation == GUARD) {
+      add_adjoint(graph, kinds, adjoint, vertex.right, function(graph, GUARD, vertex.left, adjoint[place]), ONE);
       continue;
     }
     Node by_left, by_right;
@@ -199,8 +199,8 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
     Node node = cone->nodes[place];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
-    Node left = arity > 0 ? mapped[cone_place(cone, vertex.left)] : ZERO;
-    Node right = arity > 1 ? mapped[cone_place(cone, vertex.right)] : ZERO;
+    Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
+    Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO;
     switch (vertex.operation) {
     case CONSTANT: mapped[place] = node; break;
     case SYMBOL: mapped[place] = replacements[vertex.left]; break;
@@ -210,6 +210,6 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
     default: mapped[place] = function(graph, vertex.operation, left, right); break;
     }
   }
-  for (size_t i = 0; i < count; i++) results[i] = mapped[cone_place(cone, targets[i])];
+  for (size_t i = 0; i < count; i++) results[i] = mapped[cone_slot(cone, targets[i])];
   release(mapped);
 }

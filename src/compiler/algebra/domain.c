@@ -30,17 +30,17 @@ void require_domain(struct Requirements *requirements, const struct Graph *graph
 
 void warn_outside_domains(const struct Requirements *requirements, const struct Graph *graph, const double *values,
                           const struct Diagnostics *diagnostics) {
-  long told[OPERATION_COUNT];
-  memset(told, 0xff, sizeof told);
+  long reported[OPERATION_COUNT];
+  memset(reported, 0xff, sizeof reported);
   for (size_t i = 0; i < requirements->count; i++) {
     const struct Requirement *requirement = &requirements->items[i];
     double value = values[requirement->argument];
     bool unknown = graph_depends_on(graph, requirement->argument, ACCELERATION) ||
                    graph_depends_on(graph, requirement->argument, REACTION);
     if (unknown || isnan(value) || domain_contains(requirement->operation, value) ||
-        told[requirement->operation] == requirement->line)
+        reported[requirement->operation] == requirement->line)
       continue;
-    told[requirement->operation] = requirement->line;
+    reported[requirement->operation] = requirement->line;
     if (requirement->operation == POWER)
       report_warning(diagnostics, requirement->line,
                      "a root or fractional power of %g at the start values; expected a base %s", value,

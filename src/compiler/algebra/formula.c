@@ -126,25 +126,25 @@ static void print_product(struct Printer *printer, double coefficient, Node base
 }
 
 /* The condition that does not hold where an opener, 1 - gate(condition, 1), is positive; ZERO for other openers. */
-static Node opposite_of(const struct Graph *graph, Node opener) {
-  const struct Vertex *sum = &graph->vertices[opener], *gate;
+static Node opposite_of(const struct Graph *graph, Node guard_condition) {
+  const struct Vertex *sum = &graph->vertices[guard_condition], *guard;
   Node base;
   if (sum->operation != ADD) return ZERO;
   Node other = sum->left == ONE ? sum->right : sum->right == ONE ? sum->left : ZERO;
   if (other == ZERO || coefficient_of(graph, other, &base) != -1.0) return ZERO;
-  gate = &graph->vertices[base];
-  return gate->operation == GATE && gate->right == ONE ? gate->left : ZERO;
+  guard = &graph->vertices[base];
+  return guard->operation == GUARD && guard->right == ONE ? guard->left : ZERO;
 }
 
 /* if(opener > 0, positive, other) */
 struct Choice {
-  Node opener, positive, other;
+  Node guard_condition, positive, other;
 };
 
 /* A gate, or a sum of two gates of which one is open where the other is closed; false for other nodes. */
 static bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
   const struct Vertex *vertices = graph->vertices, *vertex = &vertices[node];
-  if (vertex->operation == GATE) {
+  if (vertex->operation == GUARD) {
     Node opposite = opposite_of(graph, vertex->left);
     *choice = opposite != ZERO ? (struct Choice){opposite, ZERO, vertex->right}
                                : (struct Choice){vertex->left, vertex->right, ZERO};
@@ -152,7 +152,7 @@ static bool choice_of(const struct Graph *graph, Node node, struct Choice *choic
   }
   if (vertex->operation != ADD) return false;
   const struct Vertex *left = &vertices[vertex->left], *right = &vertices[vertex->right];
-  if (left->operation != GATE || right->operation != GATE) return false;
+  if (left->operation != GUARD || right->operation != GUARD) return false;
   bool is_swapped = opposite_of(graph, left->left) == right->left;
   const struct Vertex *first = is_swapped ? right : left, *second = is_swapped ? left : right;
   *choice = (struct Choice){first->left, first->right, second->right};
@@ -162,12 +162,12 @@ static bool choice_of(const struct Graph *graph, Node node, struct Choice *choic
 /* What opens by a sign is a comparison of what has the sign. */
 static void print_choice(struct Printer *printer, const struct Choice *choice) {
   const struct Graph *graph = printer->graph;
-  Node base = choice->opener;
-  double coefficient = coefficient_of(graph, choice->opener, &base);
+  Node base = choice->guard_condition;
+  double coefficient = coefficient_of(graph, choice->guard_condition, &base);
   bool is_sign = graph->vertices[base].operation == SIGN && name_of(printer, base) == NULL;
   bool is_below = is_sign && coefficient < 0.0;
   fputs(is_below ? "if(0 > " : "if(", printer->file);
-  print(printer, is_sign ? graph->vertices[base].left : choice->opener, IN_SUM);
+  print(printer, is_sign ? graph->vertices[base].left : choice->guard_condition, IN_SUM);
   fputs(is_below ? ", " : " > 0, ", printer->file);
   print(printer, choice->positive, IN_SUM);
   fputs(", ", printer->file);

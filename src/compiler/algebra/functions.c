@@ -20,8 +20,8 @@ static double is_less(double left, double right) {
   return left < right ? 1.0 : 0.0;
 }
 
-static double gate_of(double opener, double x) {
-  return opener > 0.0 ? x : 0.0;
+static double guard_of(double guard_condition, double x) {
+  return guard_condition > 0.0 ? x : 0.0;
 }
 
 static double sign_of(double x) {
@@ -187,9 +187,9 @@ static void along_maximum(struct Graph *graph, Node node, Node *by_left, Node *b
   *by_left = subtract(graph, ONE, *by_right);
 }
 
-static void along_gate(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void along_guard(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   *by_left = ZERO;
-  *by_right = function(graph, GATE, operand(graph, node), ONE);
+  *by_right = function(graph, GUARD, operand(graph, node), ONE);
 }
 
 static void along_absolute(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
@@ -247,13 +247,13 @@ const struct Function functions[OPERATION_COUNT] = {
               .auxiliary = difference,
               .has_pieces = true,
               .auxiliary_limit = "sign"},
-    [GATE] = {.name = "gate",
-              .is_internal = true,
-              .of_two = gate_of,
-              .units = UNIT_KEPT,
-              .recurrence = GATED,
-              .auxiliary = operand,
-              .partial_derivatives = along_gate},
+    [GUARD] = {.name = "gate",
+               .is_internal = true,
+               .of_two = guard_of,
+               .units = UNIT_KEPT,
+               .recurrence = GATED,
+               .auxiliary = operand,
+               .partial_derivatives = along_guard},
     [SINE] = {.name = "sin", .of_one = sine, .parity = ODD, .recurrence = INTEGRAL, .auxiliary = cosine_of_operand},
     [COSINE] = {.name = "cos",
                 .of_one = cosine,

@@ -25,8 +25,8 @@ enum Operation {
   ATAN2,
   MINIMUM,
   MAXIMUM,
-  LESS, /* 1 if left < right, else 0 */
-  GATE, /* the right operand if the left one is positive, else 0, even if the right one is NaN */
+  LESS,  /* 1 if left < right, else 0 */
+  GUARD, /* the right operand if the left one is positive, else 0, even if the right one is NaN */
   SINE,
   COSINE,
   TANGENT,

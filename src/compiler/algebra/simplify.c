@@ -327,12 +327,12 @@ Node subtract(struct Graph *graph, Node left, Node right) {
 }
 
 /* Simplifies guards: a constant condition removes one, and the guard of a guarded 1 uses its condition. */
-static Node gate(struct Graph *graph, Node opener, Node node) {
-  const struct Vertex *vertex = &graph->vertices[opener];
-  if (graph_is_constant(graph, opener)) return graph_value(graph, opener) > 0.0 ? node : ZERO;
+static Node guard(struct Graph *graph, Node guard_condition, Node node) {
+  const struct Vertex *vertex = &graph->vertices[guard_condition];
+  if (graph_is_constant(graph, guard_condition)) return graph_value(graph, guard_condition) > 0.0 ? node : ZERO;
   if (node == ZERO) return ZERO;
-  if (vertex->operation == GATE && vertex->right == ONE) opener = vertex->left;
-  return graph_node(graph, GATE, opener, node);
+  if (vertex->operation == GUARD && vertex->right == ONE) guard_condition = vertex->left;
+  return graph_node(graph, GUARD, guard_condition, node);
 }
 
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right) {
@@ -341,7 +341,7 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
     return graph_constant(graph, operation_evaluate(operation, graph_value(graph, left), graph_value(graph, right)));
   if ((operation == MINIMUM || operation == MAXIMUM) && left == right) return left;
   if (operation == ABSOLUTE && is_never_negative(graph, left)) return left;
-  if (operation == GATE) return gate(graph, left, right);
+  if (operation == GUARD) return guard(graph, left, right);
   Node base;
   if (operation == LOGARITHM && bounded_logarithm(graph, left, &base)) return base;
   if (coefficient_of(graph, left, &base) < 0) {
@@ -353,7 +353,7 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
 }
 
 Node choose_node(struct Graph *graph, Node condition, Node positive, Node other) {
-  Node is_positive = function(graph, GATE, condition, ONE);
-  Node chosen = function(graph, GATE, condition, positive);
-  return add(graph, chosen, function(graph, GATE, subtract(graph, ONE, is_positive), other));
+  Node is_positive = function(graph, GUARD, condition, ONE);
+  Node chosen = function(graph, GUARD, condition, positive);
+  return add(graph, chosen, function(graph, GUARD, subtract(graph, ONE, is_positive), other));
 }

@@ -64,12 +64,12 @@ void report_error(struct Diagnostics *diagnostics, long line, const char *format
 }
 
 /* Adds an error to those reported, if there is room; false if it is already there. */
-static bool note_told(struct Diagnostics *diagnostics, char *error) {
+static bool note_reported(struct Diagnostics *diagnostics, char *error) {
   int i = 0;
-  while (i < ERROR_LIMIT && diagnostics->told[i] != NULL && strcmp(diagnostics->told[i], error) != 0) i++;
+  while (i < ERROR_LIMIT && diagnostics->reported[i] != NULL && strcmp(diagnostics->reported[i], error) != 0) i++;
   if (i == ERROR_LIMIT) return true;
-  bool is_new = diagnostics->told[i] == NULL;
-  diagnostics->told[i] = error;
+  bool is_new = diagnostics->reported[i] == NULL;
+  diagnostics->reported[i] = error;
   return is_new;
 }
 
@@ -77,7 +77,7 @@ static bool note_told(struct Diagnostics *diagnostics, char *error) {
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
   struct FileLine place = file_line(diagnostics, line);
   char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", place.file, place.line, text);
-  if (note_told(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&place, "", text);
+  if (note_reported(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&place, "", text);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: more errors follow; correct these first\n", diagnostics->file);
 }

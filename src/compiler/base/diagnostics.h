@@ -25,7 +25,7 @@ struct Diagnostics {
   const char *origin;      /* says how the file is included, for the end of messages; NULL for the user's own */
   struct FileLines *noted; /* shared by all readers of a system's files; NULL if no file is read */
   int errors;
-  char *told[ERROR_LIMIT]; /* errors reported so far, each once; NULL at the end */
+  char *reported[ERROR_LIMIT]; /* errors reported so far, each once; NULL at the end */
 };
 
 /*

@@ -50,14 +50,14 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
   if (graph_limit(graph) != NULL) return;
   cone_collect(graph->cone, graph, &target, 1);
   enum Dependency *on = allocate(cone->count, sizeof *on);
-  on[cone_place(cone, target)] = kind;
+  on[cone_slot(cone, target)] = kind;
   for (size_t place = cone->count; place-- > 0;) {
     const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
     int arity = operation_arity(vertex->operation);
     if (vertex->operation == SYMBOL) note(dependencies, vertex->left, on[place]);
     for (int i = 0; i < arity; i++) {
       Node operand = i == 0 ? vertex->left : vertex->right, other = i == 0 ? vertex->right : vertex->left;
-      enum Dependency *below = &on[cone_place(cone, operand)];
+      enum Dependency *below = &on[cone_slot(cone, operand)];
       *below = (enum Dependency)larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
     }
   }

@@ -168,7 +168,7 @@ static void append_modes(struct Interface *interface, const struct Model *model)
     bool is_in_plane = switches->frictions[i].plane.axis != NO_PLANE;
     if (switches->frictions[i].plane.axis == ACROSS) continue; /* shares the mode of the friction along */
     char *name = format_text("%s.sliding", model->constraints.items[switches->frictions[i].constraint].name);
-    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].told, name,
+    append_mode(interface, model, VARIABLE_CONTACT, switches->frictions[i].reported, name,
                 is_in_plane ? "1 while it slides, 0 while it sticks"
                             : "1 or -1 while it slides, by the sign of the velocity, 0 while it sticks");
   }

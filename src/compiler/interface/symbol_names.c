@@ -36,8 +36,8 @@ static size_t find_symbols_below(const struct Graph *graph, size_t first, uint64
   for (size_t place = 0; place < cone->count; place++) {
     const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
     int arity = operation_arity(vertex->operation);
-    below[place] = arity > 0 ? below[cone_place(cone, vertex->left)] : 0;
-    if (arity == 2) below[place] |= below[cone_place(cone, vertex->right)];
+    below[place] = arity > 0 ? below[cone_slot(cone, vertex->left)] : 0;
+    if (arity == 2) below[place] |= below[cone_slot(cone, vertex->right)];
     if (vertex->operation != SYMBOL) continue;
     if (symbols >= first && symbols < first + WORD_BITS) below[place] = (uint64_t)1 << (symbols - first);
     symbols++;
@@ -63,7 +63,7 @@ void symbol_names_add_each(struct SymbolNames *names, const struct Graph *graph,
     graph_work(graph, cone->count);
     for (size_t i = 0; i < count; i++)
       for (size_t k = 0; k < WORD_BITS; k++)
-        if ((below[cone_place(cone, nodes[i])] >> k & 1) != 0) add_symbol(&names[i], symbols[first + k]);
+        if ((below[cone_slot(cone, nodes[i])] >> k & 1) != 0) add_symbol(&names[i], symbols[first + k]);
   }
 }
 

@@ -12,7 +12,7 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
   struct Gradient gradient = gradient_by_kinds(graph, target, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    bool is_driven = model->given.drives[coordinate].given;
+    bool is_driven = model->given.prescribed_motions[coordinate].given;
     elements_append(is_driven ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
   }
 }
@@ -28,14 +28,14 @@ static bool has_element(const struct Elements *elements, size_t row, size_t colu
  * Appends the generalized forces that depend on constraint forces. J gets elements of 0 at their positions, so that its
  * pattern includes them.
  */
-static void append_oblique(struct Constraints *constraints, const struct Model *model) {
+static void append_nonsymmetric(struct Constraints *constraints, const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   for (size_t i = 0; i < n; i++) {
     struct Gradient gradient = gradient_by_kinds(graph, model->forces.along[i].node, 1u << ACCELERATION);
-    for (size_t k = 0; k < gradient.count && !model->given.drives[i].given; k++) {
+    for (size_t k = 0; k < gradient.count && !model->given.prescribed_motions[i].given; k++) {
       size_t row = (size_t)graph_symbol_of(graph, gradient.symbols[k])->index - n;
-      elements_append(&constraints->oblique, row, i, negate(graph, gradient.values[k]));
+      elements_append(&constraints->nonsymmetric, row, i, negate(graph, gradient.values[k]));
       if (!has_element(&constraints->jacobian, row, i)) elements_append(&constraints->jacobian, row, i, ZERO);
     }
   }
@@ -61,7 +61,7 @@ struct Constraints *constraints_derive(const struct Model *model) {
     derivative_along(graph, &constraints->velocity[j], 1, seeds, &constraints->acceleration[j]);
     derivative_along(graph, &constraints->velocity[j], 1, seeds_of_rest, &constraints->acceleration_rest[j]);
   }
-  append_oblique(constraints, model);
+  append_nonsymmetric(constraints, model);
   return constraints;
 }
 

@@ -19,9 +19,9 @@ struct Constraints {
   struct Elements jacobian; /* J: constraints and free coordinates */
   /*
    * Coefficients of constraint forces in generalized forces, on the left side, such as the friction of a contact:
-   * constraints and coordinates. They make K nonsymmetric, see oblique.h.
+   * constraints and coordinates. They make K nonsymmetric, see nonsymmetric.h.
    */
-  struct Elements oblique;
+  struct Elements nonsymmetric;
   struct Elements driven; /* elements of J for prescribed coordinates, which constraints do not accelerate */
 };
 

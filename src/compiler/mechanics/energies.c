@@ -40,8 +40,8 @@ static struct Degrees degrees_of_vertex(const struct Model *model, Node node, co
   bool is_symbol = vertex->operation == SYMBOL;
   if (!graph_depends_on(graph, node, VELOCITY) && !graph_depends_on(graph, node, INPUT)) return (struct Degrees){0, 0};
   if (is_symbol) return is_velocity(model, node) ? (struct Degrees){1, 1} : (struct Degrees){0, 0};
-  struct Degrees left = of[cone_place(graph->cone, vertex->left)], right = {0, 0};
-  if (operation_arity(vertex->operation) == 2) right = of[cone_place(graph->cone, vertex->right)];
+  struct Degrees left = of[cone_slot(graph->cone, vertex->left)], right = {0, 0};
+  if (operation_arity(vertex->operation) == 2) right = of[cone_slot(graph->cone, vertex->right)];
   switch (vertex->operation) {
   case ADD: return (struct Degrees){fmin(left.lowest, right.lowest), fmax(left.highest, right.highest)};
   case MULTIPLY: return (struct Degrees){left.lowest + right.lowest, left.highest + right.highest};
@@ -61,7 +61,7 @@ static struct Degrees degrees_of(const struct Model *model, Node target) {
   cone_collect(cone, graph, &target, 1);
   struct Degrees *of = allocate(cone->count, sizeof *of);
   for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(model, cone->nodes[place], of);
-  return of[cone_place(cone, target)];
+  return of[cone_slot(cone, target)];
 }
 
 Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {

@@ -30,7 +30,7 @@ static struct VirtualWork work_on_positions(const struct Model *model, const Nod
       virtual_work_add(&work, position, multiply(graph, inertia, rate[4 * i + (size_t)component]));
     }
   }
-  for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
+  for (size_t i = 0; i < model->mechanism.regularization_count && kind == COORDINATE; i++) {
     Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
     if (is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
@@ -69,7 +69,7 @@ static struct VirtualWork work_on_velocities(const struct Model *model, const No
       virtual_work_add(&work, spin.along[axis], torque.along[axis]);
     }
   }
-  for (size_t i = 0; i < model->mechanism.stillness_count && kind == COORDINATE; i++) {
+  for (size_t i = 0; i < model->mechanism.regularization_count && kind == COORDINATE; i++) {
     Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
     if (!is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
@@ -92,10 +92,10 @@ Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolK
   return force;
 }
 
-Node energy_of_stillness(const struct Model *model) {
+Node energy_of_regularization(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, false), energy = ZERO;
-  for (size_t i = 0; i < model->mechanism.stillness_count; i++) {
+  for (size_t i = 0; i < model->mechanism.regularization_count; i++) {
     Node rate = model->mechanism.stillnesses[i].constraint;
     if (!is_rate(graph, rate)) derivative_along(graph, &rate, 1, seeds, &rate);
     Node term = multiply(graph, model->mechanism.stillnesses[i].inertia, power_number(graph, rate, 2.0));

@@ -19,4 +19,4 @@
 Node *inertial_forces(const struct Model *model, const Node *seeds, enum SymbolKind kind, size_t count);
 
 /* Returns the kinetic energy of the regularization: 0 on the motion, but with nonzero second derivatives. */
-Node energy_of_stillness(const struct Model *model);
+Node energy_of_regularization(const struct Model *model);

@@ -31,7 +31,7 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
 }
 
 static bool is_driven(const struct Model *model, size_t row) {
-  return row < model->coordinates.count && model->given.drives[row].given;
+  return row < model->coordinates.count && model->given.prescribed_motions[row].given;
 }
 
 /*
@@ -68,11 +68,11 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
 /* Replaces the equation of a prescribed coordinate by v' = acceleration; its residual becomes the driving force. */
 static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
   struct Graph *graph = model->graph;
-  const struct Drive *drive = &model->given.drives[i];
+  const struct PrescribedMotion *prescribed_motion = &model->given.prescribed_motions[i];
   shorten(graph, 1, &equations->residual[i]);
-  equations->reactions[drive->reaction] = equations->residual[i];
-  equations->right_side[i] = drive->acceleration;
-  equations->residual[i] = subtract(graph, model->unknowns.accelerations[i], drive->acceleration);
+  equations->reactions[prescribed_motion->reaction] = equations->residual[i];
+  equations->right_side[i] = prescribed_motion->acceleration;
+  equations->residual[i] = subtract(graph, model->unknowns.accelerations[i], prescribed_motion->acceleration);
 }
 
 /* Removes the terms with constraint forces, which the matrix contains. */
@@ -106,7 +106,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = without_forces(model, subtract(graph, right, left[0][i]));
     equations->residual[i] = subtract(graph, left[1][i], right);
-    if (model->given.drives[i].given) give_motion(model, equations, i);
+    if (model->given.prescribed_motions[i].given) give_motion(model, equations, i);
   }
 }
 
@@ -120,7 +120,7 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
     *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->unknowns.forces));
   }
   for (size_t k = 0; k < driven->count; k++) {
-    Node *sum = &equations->reactions[model->given.drives[driven->positions[k].column].reaction];
+    Node *sum = &equations->reactions[model->given.prescribed_motions[driven->positions[k].column].reaction];
     *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->unknowns.forces));
   }
   for (size_t j = 0; j < constraints->count; j++) {
@@ -174,8 +174,9 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   struct Graph *graph = model->graph;
   Node power = ZERO;
   for (size_t i = 0; i < equations->count; i++) {
-    const struct Drive *drive = &model->given.drives[i];
-    Node whole = drive->given ? add(graph, force[i], equations->reactions[drive->reaction]) : force[i];
+    const struct PrescribedMotion *prescribed_motion = &model->given.prescribed_motions[i];
+    Node whole =
+        prescribed_motion->given ? add(graph, force[i], equations->reactions[prescribed_motion->reaction]) : force[i];
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
   power = add(graph, power, moving_power(model));
@@ -215,11 +216,13 @@ struct Equations *equations_derive(const struct Model *model, struct Diagnostics
   int errors = diagnostics->errors;
   struct Equations *equations = equations_create(model);
   Node *momentum = allocate(n, sizeof *momentum), *force = generalized_forces(model);
-  Node stillness = energy_of_stillness(model), kinetic = add(graph, model->energies.kinetic.node, stillness);
+  Node regularization = energy_of_regularization(model),
+       kinetic = add(graph, model->energies.kinetic.node, regularization);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   const struct Constraints *constraints = equations->constraints;
-  const struct Border border = {constraints->count, &constraints->jacobian, &constraints->oblique};
-  equations->inertia = inertia_derive(model, momentum, stillness, &border, diagnostics);
+  const struct ConstraintBlock constraint_block = {constraints->count, &constraints->jacobian,
+                                                   &constraints->nonsymmetric};
+  equations->inertia = inertia_derive(model, momentum, regularization, &constraint_block, diagnostics);
   if (equations->inertia != NULL) {
     derive_motion(model, equations, force);
     add_constraints(model, equations);

@@ -301,7 +301,7 @@ static void fill_row(const struct Model *model, Node derivative, size_t row, con
     const struct Symbol *symbol = graph_symbol_of(graph, slopes.symbols[k]);
     Node slope = simplify_fraction(graph, slopes.values[k]);
     if (symbol->kind == INPUT) b[symbol->index] = slope;
-    else a[state_place(model->coordinates.count, symbol)] = slope;
+    else a[state_slot(model->coordinates.count, symbol)] = slope;
     if (!graph_is_constant_in_time(graph, slope) || graph_depends_on(graph, slope, MODE))
       report_error(diagnostics, model->solver.line,
                    "the system is not linear: der(%s) is not linear in %s; expected a method other than 'exact'", name,

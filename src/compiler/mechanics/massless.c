@@ -27,13 +27,13 @@ static struct Elements mass_elements(const struct Model *model) {
   size_t n = model->coordinates.count;
   struct Elements elements = {0};
   Node *momentum = allocate(n, sizeof *momentum);
-  Node kinetic = add(graph, model->energies.kinetic.node, energy_of_stillness(model));
+  Node kinetic = add(graph, model->energies.kinetic.node, energy_of_regularization(model));
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   for (size_t i = 0; i < n && graph_limit(graph) == NULL; i++) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (!model->given.drives[i].given && !model->given.drives[j].given)
+      if (!model->given.prescribed_motions[i].given && !model->given.prescribed_motions[j].given)
         elements_append(&elements, i, j, row.values[k]);
     }
   }
@@ -202,9 +202,9 @@ static void append_stillnesses(const struct Matrices *matrices, struct Model *mo
   for (size_t j = 0; j < model->constraints.count; j++) {
     if (!matrices->is_held[j]) continue;
     Node inertia = harmonic_inertia(matrices, j, inertias);
-    model->mechanism.stillnesses =
-        make_room(model->mechanism.stillnesses, model->mechanism.stillness_count, sizeof *model->mechanism.stillnesses);
-    model->mechanism.stillnesses[model->mechanism.stillness_count++] = (struct Stillness){
+    model->mechanism.stillnesses = make_room(model->mechanism.stillnesses, model->mechanism.regularization_count,
+                                             sizeof *model->mechanism.stillnesses);
+    model->mechanism.stillnesses[model->mechanism.regularization_count++] = (struct Regularization){
         model->constraints.items[j].node, scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)};
   }
 }

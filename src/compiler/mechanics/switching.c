@@ -3,7 +3,7 @@
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
 #include "algebra/node_list.h"
-#include "algebra/roundings.h"
+#include "algebra/rounding_bounds.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "lagrangian.h"
@@ -181,15 +181,15 @@ static void append_watched(const struct Model *model, const struct SwitchingExpr
 }
 
 /* Bounds the rounding errors of the indicators of branches, of gaps, and of the velocities of frictions. */
-static void fill_roundings(const struct Model *model, const struct SwitchTable *counts,
-                           struct SwitchingExpressions *switching) {
-  Node *nodes = switching->roundings = allocate(indicator_count(counts), sizeof *nodes);
+static void fill_rounding_bounds(const struct Model *model, const struct SwitchTable *counts,
+                                 struct SwitchingExpressions *switching) {
+  Node *nodes = switching->rounding_bounds = allocate(indicator_count(counts), sizeof *nodes);
   for (size_t i = 0; i < counts->branch_count; i++) nodes[i] = switching->branches[i]->indicator;
   for (size_t i = 0; i < counts->contact_count; i++)
     nodes[contact_indicator(counts, i)] = model->switches.contacts[i].gap;
   for (size_t i = 0; i < counts->friction_count; i++)
     nodes[friction_indicator(counts, i)] = model->switches.frictions[i].velocity;
-  roundings_of(model->graph, nodes, indicator_count(counts), nodes);
+  rounding_bounds_of(model->graph, nodes, indicator_count(counts), nodes);
 }
 
 /* Appends the energies and momenta if a branch has holds_energy. */
@@ -213,14 +213,14 @@ static Node scale_of_plane(const struct Model *model, const struct Friction *alo
   struct Graph *graph = model->graph;
   Node scale = ZERO;
   for (int axis = 0; axis < 2; axis++) {
-    const struct Gradient levers = gradient_by_kinds(graph, along[axis].velocity, 1u << VELOCITY);
-    for (size_t i = 0; i < levers.count; i++) {
-      const struct Symbol *symbol = graph_symbol_of(graph, levers.symbols[i]);
+    const struct Gradient jacobian_rows = gradient_by_kinds(graph, along[axis].velocity, 1u << VELOCITY);
+    for (size_t i = 0; i < jacobian_rows.count; i++) {
+      const struct Symbol *symbol = graph_symbol_of(graph, jacobian_rows.symbols[i]);
       double nominal = model->velocities.items[symbol->index].nominal;
-      Node size = function(graph, ABSOLUTE, levers.symbols[i], ZERO);
+      Node size = function(graph, ABSOLUTE, jacobian_rows.symbols[i], ZERO);
       size = add(graph, size, graph_constant(graph, isnan(nominal) ? 1.0 : nominal));
-      Node lever = function(graph, ABSOLUTE, levers.values[i], ZERO);
-      Node term = multiply(graph, lever, size);
+      Node jacobian_row = function(graph, ABSOLUTE, jacobian_rows.values[i], ZERO);
+      Node term = multiply(graph, jacobian_row, size);
       scale = add(graph, scale, term);
     }
   }
@@ -251,10 +251,10 @@ static void fill_contacts(const struct Model *model, const struct SwitchTable *c
   for (size_t i = 0; i < counts->contact_count; i++) {
     const struct Contact *contact = &model->switches.contacts[i];
     Node rate = rate_of(model, contact->gap, seeds);
-    values[contact_place(counts, i, CONTACT_GAP)] = contact->gap;
-    values[contact_place(counts, i, CONTACT_RATE)] = rate;
-    values[contact_place(counts, i, CONTACT_ACCELERATION)] = rate_of(model, rate, seeds);
-    values[contact_place(counts, i, CONTACT_RESTITUTION)] = contact->restitution;
+    values[contact_slot(counts, i, CONTACT_GAP)] = contact->gap;
+    values[contact_slot(counts, i, CONTACT_RATE)] = rate;
+    values[contact_slot(counts, i, CONTACT_ACCELERATION)] = rate_of(model, rate, seeds);
+    values[contact_slot(counts, i, CONTACT_RESTITUTION)] = contact->restitution;
   }
 }
 
@@ -262,12 +262,12 @@ static void fill_frictions(const struct Model *model, const struct SwitchTable *
                            Node *values) {
   for (size_t i = 0; i < counts->friction_count; i++) {
     const struct Friction *friction = &model->switches.frictions[i];
-    values[friction_place(counts, i, FRICTION_VELOCITY)] = friction->velocity;
-    values[friction_place(counts, i, FRICTION_RATE)] = rate_of(model, friction->velocity, seeds);
-    values[friction_place(counts, i, FRICTION_STICTION)] = friction->stiction;
-    values[friction_place(counts, i, FRICTION_FORCE)] = friction->sliding;
-    values[friction_place(counts, i, FRICTION_STICTION_BACK)] = friction->stiction_back;
-    values[friction_place(counts, i, FRICTION_FORCE_BACK)] = friction->sliding_back;
+    values[friction_slot(counts, i, FRICTION_VELOCITY)] = friction->velocity;
+    values[friction_slot(counts, i, FRICTION_RATE)] = rate_of(model, friction->velocity, seeds);
+    values[friction_slot(counts, i, FRICTION_STICTION)] = friction->stiction;
+    values[friction_slot(counts, i, FRICTION_FORCE)] = friction->sliding;
+    values[friction_slot(counts, i, FRICTION_STICTION_BACK)] = friction->stiction_back;
+    values[friction_slot(counts, i, FRICTION_FORCE_BACK)] = friction->sliding_back;
   }
 }
 
@@ -275,9 +275,9 @@ static void fill_events(const struct Switches *switches, const struct SwitchTabl
   size_t assignment = 0;
   for (size_t i = 0; i < counts->event_count; i++) {
     const struct Event *event = &switches->events[i];
-    values[condition_place(counts, i)] = event->condition;
+    values[condition_slot(counts, i)] = event->condition;
     for (size_t j = 0; j < event->assignment_count; j++)
-      values[assignment_place(counts, assignment++)] = event->assignments[j].value;
+      values[assignment_slot(counts, assignment++)] = event->assignments[j].value;
   }
 }
 
@@ -295,14 +295,14 @@ static void fill_branches(const struct Model *model, const struct SwitchingExpre
                           const struct SwitchTable *counts, const Node *seeds, Node *values) {
   for (size_t i = 0; i < counts->branch_count; i++) values[i] = switching->branches[i]->indicator;
   for (size_t i = 0; i < counts->branch_count; i++)
-    values[branch_rate_place(counts, i)] = rate_of(model, values[i], seeds);
+    values[branch_rate_slot(counts, i)] = rate_of(model, values[i], seeds);
 }
 
 /* Appends all values, in the order of struct SwitchTable. */
 static void append_values(const struct Model *model, const struct Equations *equations,
                           const struct SwitchTable *counts, struct SwitchingExpressions *switching,
                           struct NodeList *list) {
-  size_t count = energy_place(counts);
+  size_t count = energy_slot(counts);
   Node *values = allocate(count, sizeof *values);
   Node *seeds = time_seeds(model, true);
   for (size_t i = 0; i < equations->rates.count; i++)
@@ -371,7 +371,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->values = values.nodes;
   switching->value_count = values.count;
   find_timed(model, switching);
-  fill_roundings(model, &counts, switching);
+  fill_rounding_bounds(model, &counts, switching);
   return switching->indicator_count > 0 ? switching : NULL;
 }
 

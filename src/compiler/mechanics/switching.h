@@ -14,7 +14,7 @@ struct SwitchingExpressions {
    */
   Node *indicators;
   size_t indicator_count;
-  Node *roundings; /* rounding error bounds of the indicators, see include/lagrangian.h */
+  Node *rounding_bounds; /* rounding error bounds of the indicators, see include/lagrangian.h */
   /*
    * Expressions in the indicators, for any modes: indicators of branches, gaps, velocities and stictions of frictions.
    */

@@ -25,7 +25,7 @@ static size_t only_unknown(const struct Model *model, Node constraint, const boo
 static bool *given_velocities(const struct Model *model) {
   size_t n = model->coordinates.count;
   bool *is_given = allocate(n, sizeof *is_given), grows = true;
-  for (size_t i = 0; i < n; i++) is_given[i] = model->given.drives[i].given;
+  for (size_t i = 0; i < n; i++) is_given[i] = model->given.prescribed_motions[i].given;
   while (grows) {
     grows = false;
     for (size_t i = 0; i < model->constraints.count; i++) {

@@ -27,7 +27,7 @@ void substitute_in_observers(struct Model *model, const Node *replacements) {
 
 /* Returns an expression that is positive unless the velocity of the friction is kept at 0. */
 static Node is_free(struct Graph *graph, const struct Friction *friction) {
-  return power_number(graph, friction->told, 2.0);
+  return power_number(graph, friction->reported, 2.0);
 }
 
 /* Returns the same for a velocity that depends on it by a coefficient; a coefficient of 0 leaves the velocity free. */
@@ -93,7 +93,7 @@ static void hold_coordinate(const struct Model *model, const struct Gear *gears,
                             Node is_free, bool *is_held, Node *replacements) {
   struct Graph *graph = model->graph;
   Node *shown = &replacements[graph->vertices[model->velocities.items[coordinate].node].left];
-  *shown = function(graph, GATE, is_free, *shown);
+  *shown = function(graph, GUARD, is_free, *shown);
   is_held[coordinate] = true;
   for (size_t i = 0; i < gear_count; i++)
     for (int side = 0; side < 2; side++) {

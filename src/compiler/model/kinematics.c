@@ -100,9 +100,9 @@ void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node 
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       Node product = multiply(graph, axis.along[i], axis.along[j]), *element = &turn.row[i].along[j];
-      Node lever = i == j ? ZERO : multiply(graph, sine, axis.along[3 - i - j]);
-      if ((i + 1) % 3 == j) lever = negate(graph, lever);
-      *element = add(graph, multiply(graph, rest, product), i == j ? cosine : lever);
+      Node jacobian_row = i == j ? ZERO : multiply(graph, sine, axis.along[3 - i - j]);
+      if ((i + 1) % 3 == j) jacobian_row = negate(graph, jacobian_row);
+      *element = add(graph, multiply(graph, rest, product), i == j ? cosine : jacobian_row);
     }
   turn_axes(graph, pose, &turn, vector_scale(graph, rate, axis));
 }
@@ -117,9 +117,9 @@ void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node 
     int j = (i + 1) % 3, k = (i + 2) % 3;
     Node others = add(graph, square[j + 1], square[k + 1]);
     turn.row[i].along[i] = subtract(graph, add(graph, square[0], square[i + 1]), others);
-    Node product = multiply(graph, q[i + 1], q[j + 1]), lever = multiply(graph, q[0], q[k + 1]);
-    turn.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, lever));
-    turn.row[j].along[i] = scale(graph, 2.0, add(graph, product, lever));
+    Node product = multiply(graph, q[i + 1], q[j + 1]), jacobian_row = multiply(graph, q[0], q[k + 1]);
+    turn.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, jacobian_row));
+    turn.row[j].along[i] = scale(graph, 2.0, add(graph, product, jacobian_row));
     Node forth = difference_of_products(graph, q[0], rate[i + 1], q[i + 1], rate[0]);
     Node around = difference_of_products(graph, q[k + 1], rate[j + 1], q[j + 1], rate[k + 1]);
     spin.along[i] = scale(graph, 2.0, add(graph, forth, around));

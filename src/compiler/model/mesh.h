@@ -17,7 +17,7 @@ struct Mesh {
    */
   size_t corners[MOST_CORNERS]; /* indices of points, ascending */
   size_t corner_count;          /* 0 until they are found */
-  double lack;                  /* m: distance of the farthest point outside the hull of the corners */
+  double residual;              /* m: distance of the farthest point outside the hull of the corners */
 };
 
 /* Returns the longest side of the bounding box, and its least corner, in m. */

@@ -15,7 +15,7 @@ static const struct Method methods[] = {
                  "narrow. abs, min, max and sign are followed piece by piece. A point where the equations have no "
                  "solution and a stiff system end in fmi2Discard with a message that names them.",
      .evaluations = "series of the equations of motion",
-     .sources = {"methods/taylor_reach.c", "support/series_limit.c"},
+     .sources = {"methods/taylor_interval.c", "support/series_limit.c"},
      .series = ALL_TERMS},
     {.name = "erk",
      .solver = "erk",
@@ -57,7 +57,7 @@ static const struct Method methods[] = {
          "it skips no peak, jump or pulse of a function in them (exp, tanh, powers, quotients, ...), however narrow. A "
          "point where the equations have no solution ends in fmi2Discard with a message that names it.",
      .evaluations = "series of the equations of motion, and evaluations of them",
-     .sources = {"methods/stiffness.c", "methods/taylor.c", "methods/taylor_reach.c", "methods/radau.c",
+     .sources = {"methods/stiffness.c", "methods/taylor.c", "methods/taylor_interval.c", "methods/radau.c",
                  "methods/radau_systems.c", "methods/first_terms.c", "support/series_limit.c"},
      .series = ALL_TERMS,
      .needs_jacobian = true,

@@ -58,7 +58,7 @@ const struct Variable *work_of(const struct Model *model) {
   return NULL;
 }
 
-size_t state_place(size_t coordinates, const struct Symbol *symbol) {
+size_t state_slot(size_t coordinates, const struct Symbol *symbol) {
   size_t first = symbol->kind == VELOCITY ? coordinates : symbol->kind == STATE ? 2 * coordinates : 0;
   return first + (size_t)symbol->index;
 }

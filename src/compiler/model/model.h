@@ -77,12 +77,12 @@ struct Torque {
  * nonholonomic constraint itself. M + j^T m j, where j is the constraint's row of J, may be regular if M is singular.
  * Neither the motion nor the forces change.
  */
-struct Stillness {
+struct Regularization {
   Node constraint, inertia;
 };
 
 /* Prescribed motion of a coordinate. */
-struct Drive {
+struct PrescribedMotion {
   bool given;        /* false for a coordinate that moves by its equation */
   Node acceleration; /* a function of inputs, parameters and time */
   size_t reaction;   /* index of the driving force among the reactions */
@@ -101,11 +101,11 @@ struct Origin {
 
 /* Motions that inputs or prescribed coordinates impose. */
 struct GivenMotion {
-  Node *input_rates;                 /* [inputs]: the input that is its time derivative; ZERO for none */
-  bool inputs_move;                  /* positions or energies depend on inputs */
-  struct Drive *drives;              /* [coordinates] */
-  size_t drive_count;                /* number of prescribed coordinates */
-  const struct Variable *constraint; /* a rheonomic constraint, whose force does work; NULL for none */
+  Node *input_rates;                           /* [inputs]: the input that is its time derivative; ZERO for none */
+  bool inputs_move;                            /* positions or energies depend on inputs */
+  struct PrescribedMotion *prescribed_motions; /* [coordinates] */
+  size_t prescribed_motion_count;              /* number of prescribed coordinates */
+  const struct Variable *constraint;           /* a rheonomic constraint, whose force does work; NULL for none */
 };
 
 enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH, SHAPE_ELLIPSOID };
@@ -147,8 +147,8 @@ struct Mechanism {
   size_t shape_count;
   struct VariableList places; /* positions and velocities of bodies, frames and points, as nodes */
   struct Vector gravity;      /* m/s2: the acceleration of <gravity>, along the base's axes */
-  struct Stillness *stillnesses;
-  size_t stillness_count;
+  struct Regularization *stillnesses;
+  size_t regularization_count;
 };
 
 /* In J; the dissipation in W. */
@@ -201,8 +201,8 @@ struct Model {
   struct VariableList states;      /* of first order, after the velocities: of <state> and <work/> */
   struct VariableList calculated;  /* parameters computed from others; their nodes are the values */
   struct VariableList definitions; /* of <define>; their nodes are the expressions */
-  size_t variation_count;       /* number of last coordinates that are sensitivities of the others, see variations.h */
-  size_t state_variation_count; /* the same for states */
+  size_t sensitivity_count; /* number of last coordinates that are sensitivities of the others, see sensitivities.h */
+  size_t state_sensitivity_count; /* the same for states */
   struct VariableList displacements;
   struct VariableList modes; /* declared by the author; modes of switches have no names */
   struct VariableList
@@ -222,7 +222,7 @@ struct Model {
 };
 
 /* Returns the index of a coordinate, velocity or first-order state in the state; of other symbols, their index. */
-size_t state_place(size_t coordinates, const struct Symbol *symbol);
+size_t state_slot(size_t coordinates, const struct Symbol *symbol);
 
 /* Returns the number of time derivatives of the input that are inputs too; they follow it. */
 size_t input_rate_count(const struct Model *model, size_t input);

@@ -49,7 +49,7 @@ struct PlaneSide {
  */
 struct Friction {
   size_t constraint; /* index among the model's constraints */
-  Node mode, told, velocity, sliding, stiction, sliding_back, stiction_back;
+  Node mode, reported, velocity, sliding, stiction, sliding_back, stiction_back;
   bool is_given;
   struct PlaneSide plane;
 };

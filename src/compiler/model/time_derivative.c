@@ -13,7 +13,7 @@ Node *time_seeds(const struct Model *model, bool with_accelerations) {
   for (size_t i = 0; i < model->coordinates.count; i++) {
     Node *rate = &seeds[graph->vertices[model->velocities.items[i].node].left];
     seeds[graph->vertices[model->coordinates.items[i].node].left] = model->velocities.items[i].node;
-    if (model->given.drives[i].given) *rate = model->given.drives[i].acceleration;
+    if (model->given.prescribed_motions[i].given) *rate = model->given.prescribed_motions[i].acceleration;
     else if (with_accelerations) *rate = model->unknowns.accelerations[i];
   }
   return seeds;

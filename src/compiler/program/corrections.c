@@ -23,21 +23,21 @@ static const double weight_of_fixed = 1e12;
 static void weigh_fixed(const struct Program *program, struct Values *values, const struct LoopedBlock *looped) {
   const struct Model *model = program->model;
   const struct InertiaBlock *block = looped->block;
-  Place weight = place_in(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
+  Slot weight = slot_in(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     if (row >= model->coordinates.count || !model->coordinates.items[row].is_fixed) continue;
-    Place mass = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    Slot mass = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
     routine_append(values->routine, PRODUCT, mass, mass, weight, 0);
   }
 }
 
 /* Sets the nonsymmetric columns of K to 0: forces that depend on others take no part in corrections and impulses. */
-static void leave_oblique_out(struct Values *values, const struct LoopedBlock *looped) {
+static void leave_nonsymmetric_out(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    values_copy(values, place_in(SPACE_MASS, first + i), ZERO);
+    values_copy(values, slot_in(SPACE_MASS, first + i), ZERO);
 }
 
 /* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */
@@ -45,7 +45,7 @@ static void append_solved(const struct Program *program, struct Values *values, 
                           bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   append_masses(values, looped);
-  leave_oblique_out(values, looped);
+  leave_nonsymmetric_out(values, looped);
   if (starting) weigh_fixed(program, values, looped);
   append_factor(values, &program->blocks, number);
   append_solution(values, &program->blocks, number, side);
@@ -63,9 +63,9 @@ static void append_block(const struct Program *program, struct Values *values, s
   append_solved(program, values, number, side, starting);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
-    Place pivot = place_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n) routine_copy(values->routine, target_place(row), place_in(SPACE_SIDE, looped->first_side + i));
-    else routine_copy(values->routine, target_place(row + constraints), pivot);
+    Slot pivot = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    if (row < n) routine_copy(values->routine, target_slot(row), slot_in(SPACE_SIDE, looped->first_side + i));
+    else routine_copy(values->routine, target_slot(row + constraints), pivot);
   }
 }
 
@@ -92,10 +92,10 @@ static bool is_in_tree(const struct Program *program, size_t row) {
 /* Copies the changes and pivots of kinematic trees, which are expressions, to the targets. */
 static void append_trees(const struct Program *program, struct Values *values, const Node *change) {
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
-  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), is_in_tree(program, i) ? change[i] : ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(i), is_in_tree(program, i) ? change[i] : ZERO);
   for (size_t j = 0; j < constraints; j++)
     if (is_in_tree(program, n + j))
-      values_copy(values, target_place(n + constraints + j), program->expressions->corrections.pivot[j]);
+      values_copy(values, target_slot(n + constraints + j), program->expressions->corrections.pivot[j]);
 }
 
 /* Returns the nodes of a correction outside blocks that are factored: slopes, pivots, right sides in trees. */
@@ -121,8 +121,8 @@ static struct Routine *correction_routine(const struct Program *program, struct 
   compute_blocks(program, values, side, further.nodes, further.count);
   append_trees(program, values, side);
   for (size_t j = 0; j < constraints; j++) {
-    values_copy(values, target_place(n + j), side[n + j]);
-    values_copy(values, target_place(n + 2 * constraints + j), slope[j]);
+    values_copy(values, target_slot(n + j), side[n + j]);
+    values_copy(values, target_slot(n + 2 * constraints + j), slope[j]);
   }
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, side, starting);
@@ -150,8 +150,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
   const Node *push = program->expressions->corrections.push;
   size_t n = program->equations->count;
   compute_blocks(program, values, push, push, n);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_place(i), ZERO);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_place(n + i), push[i]);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(i), ZERO);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(n + i), push[i]);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
@@ -159,8 +159,7 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
     append_solved(program, values, b, push, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
-        routine_copy(values->routine, target_place(block->coordinates[i]),
-                     place_in(SPACE_SIDE, looped->first_side + i));
+        routine_copy(values->routine, target_slot(block->coordinates[i]), slot_in(SPACE_SIDE, looped->first_side + i));
   }
   return routine;
 }

@@ -9,16 +9,18 @@ static struct Routine *prepare_routine(const struct Program *program, struct Val
   struct Routine *routine = values_begin(values);
   struct NodeList targets = {0};
   const struct Inertia *inertia = program->equations->inertia;
-  append_nodes(&targets, values->prepared->nodes, values->prepared->count);
+  append_nodes(&targets, values->parameter_constants->nodes, values->parameter_constants->count);
   for (size_t i = 0; i < inertia->pivot_count; i++) {
     const struct Pivot *pivot = &inertia->pivots[i];
-    if (pivot_is_prepared(values->graph, pivot))
+    if (pivot_is_parameter_constants(values->graph, pivot))
       append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
   }
   values_compute(values, targets.nodes, targets.count, true);
   for (size_t i = 0; i < inertia->pivot_count; i++)
-    if (pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
-  for (size_t i = 0; i < values->prepared->count; i++) values_copy(values, target_place(i), values->prepared->nodes[i]);
+    if (pivot_is_parameter_constants(values->graph, &inertia->pivots[i]))
+      append_pivot_check(values, &inertia->pivots[i]);
+  for (size_t i = 0; i < values->parameter_constants->count; i++)
+    values_copy(values, target_slot(i), values->parameter_constants->nodes[i]);
   return routine;
 }
 
@@ -29,8 +31,8 @@ static struct Routine *derivatives_routine(const struct Program *program, struct
   const struct NodeList *rates = &program->equations->rates;
   hold_unknowns(values, program->equations, &program->blocks, program->expressions->unknowns);
   values_compute(values, rates->nodes, rates->count, false);
-  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_STATE, n + i));
-  for (size_t i = 0; i < rates->count; i++) values_copy(values, target_place(2 * n + i), rates->nodes[i]);
+  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_slot(i), slot_in(SPACE_STATE, n + i));
+  for (size_t i = 0; i < rates->count; i++) values_copy(values, target_slot(2 * n + i), rates->nodes[i]);
   return routine;
 }
 
@@ -46,18 +48,18 @@ static void append_needed_accelerations(const struct Program *program, struct Va
 /* The location of each row of K in the blocks that are factored at run time. */
 struct BlockRows {
   size_t *number;
-  Place *side;
+  Slot *side;
   size_t *solved; /* of each block: 1 + the column of the Jacobian whose solution its right side holds; 0 for none */
 };
 
 static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, size_t count) {
-  struct BlockRows rows = {allocate(count, sizeof(size_t)), allocate(count, sizeof(Place)),
+  struct BlockRows rows = {allocate(count, sizeof(size_t)), allocate(count, sizeof(Slot)),
                            allocate(blocks->count, sizeof(size_t))};
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++) {
       rows.number[looped->block->coordinates[i]] = b + 1;
-      rows.side[looped->block->coordinates[i]] = place_in(SPACE_SIDE, looped->first_side + i);
+      rows.side[looped->block->coordinates[i]] = slot_in(SPACE_SIDE, looped->first_side + i);
     }
   }
   return rows;
@@ -83,8 +85,8 @@ static void append_along(const struct Program *program, struct Values *values, s
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
   for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)
-    routine_copy(values->routine, target_place(first + i),
-                 rows.number[i] > 0 ? rows.side[i] : values_place(values, along[i]));
+    routine_copy(values->routine, target_slot(first + i),
+                 rows.number[i] > 0 ? rows.side[i] : values_slot(values, along[i]));
 }
 
 static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
@@ -95,8 +97,8 @@ static struct Routine *directional_routine(const struct Program *program, struct
   append_along(program, values, n, n, expressions->rates_along, rates);
   hold_solutions(values, &program->blocks, expressions->unknowns_along);
   values_compute(values, expressions->rates_along, rates, false);
-  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_place(i), place_in(SPACE_SEED_STATE, n + i));
-  for (size_t i = 0; i < rates; i++) values_copy(values, target_place(2 * n + i), expressions->rates_along[i]);
+  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_slot(i), slot_in(SPACE_SEED_STATE, n + i));
+  for (size_t i = 0; i < rates; i++) values_copy(values, target_slot(2 * n + i), expressions->rates_along[i]);
   return routine;
 }
 
@@ -109,7 +111,7 @@ static void append_multipliers(const struct Program *program, struct Values *val
     for (size_t i = 0; i < block->count; i++) values_compute(values, &gradient->side[block->coordinates[i]], 1, false);
     append_solution(values, &program->blocks, b, gradient->side);
     for (size_t i = 0; i < block->count; i++)
-      values_hold(values, gradient->multiplier[block->coordinates[i]], place_in(SPACE_SIDE, looped->first_side + i));
+      values_hold(values, gradient->multiplier[block->coordinates[i]], slot_in(SPACE_SIDE, looped->first_side + i));
   }
 }
 
@@ -119,7 +121,7 @@ static struct Routine *weighted_gradient_routine(const struct Program *program, 
   append_needed_accelerations(program, values, gradient->elements, gradient->count);
   append_multipliers(program, values);
   values_compute(values, gradient->elements, gradient->count, false);
-  for (size_t i = 0; i < gradient->count; i++) values_copy(values, target_place(i), gradient->elements[i]);
+  for (size_t i = 0; i < gradient->count; i++) values_copy(values, target_slot(i), gradient->elements[i]);
   return routine;
 }
 
@@ -134,14 +136,14 @@ static void append_jacobian_column(const struct Program *program, struct Values 
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e];
     bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
-    values_copy(values, in_block ? rows->side[row - n] : target_place(e), jacobian->value[e]);
+    values_copy(values, in_block ? rows->side[row - n] : target_slot(e), jacobian->value[e]);
   }
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
     if (number == 0) continue;
-    if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Place)(number - 1), 0, 0, 0);
+    if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Slot)(number - 1), 0, 0, 0);
     rows->solved[number - 1] = column + 1;
-    routine_copy(values->routine, target_place(e), rows->side[row - n]);
+    routine_copy(values->routine, target_slot(e), rows->side[row - n]);
   }
 }
 
@@ -178,15 +180,15 @@ static struct Routine *linear_routine(const struct Program *program, struct Valu
   struct Routine *routine = values_begin(values);
   size_t states = linear->states, inputs = linear->inputs, columns = states + inputs + 1;
   for (size_t i = 0; i < states; i++) {
-    for (size_t j = 0; j < states; j++) values_copy(values, target_place(i * columns + j), linear->a[i * states + j]);
+    for (size_t j = 0; j < states; j++) values_copy(values, target_slot(i * columns + j), linear->a[i * states + j]);
     for (size_t j = 0; j < inputs; j++)
-      values_copy(values, target_place(i * columns + states + j), linear->b[i * inputs + j]);
-    values_copy(values, target_place(i * columns + states + inputs), linear->c[i]);
+      values_copy(values, target_slot(i * columns + states + j), linear->b[i * inputs + j]);
+    values_copy(values, target_slot(i * columns + states + inputs), linear->c[i]);
   }
   return routine;
 }
 
-/* Builds start values or their directional derivatives. Uses no prepared values, as prepare() may fail. */
+/* Builds start values or their directional derivatives. Uses no parameter constants, as prepare() may fail. */
 static struct Routine *starts_routine(const struct Program *program, struct Values *values, const Node *nodes) {
   const struct Interface *interface = program->interface;
   struct Routine *routine = values_begin(values);
@@ -194,7 +196,7 @@ static struct Routine *starts_routine(const struct Program *program, struct Valu
   values_compute(values, nodes, count, true);
   for (size_t i = 0; i < count; i++)
     if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
-      values_copy(values, target_place(i), nodes[i]);
+      values_copy(values, target_slot(i), nodes[i]);
   return routine;
 }
 
@@ -210,7 +212,7 @@ static struct Routine *accelerations_routine(const struct Program *program, stru
   struct Routine *routine = values_begin(values);
   append_accelerations(values, program->equations, &program->blocks, true);
   for (size_t i = 0; i < row_count(program->equations); i++)
-    routine_copy(values->routine, target_place(i), place_in(SPACE_ACCELERATION, i));
+    routine_copy(values->routine, target_slot(i), slot_in(SPACE_ACCELERATION, i));
   return routine;
 }
 
@@ -224,7 +226,7 @@ static struct Routine *accelerations_along_routine(const struct Program *program
 struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count) {
   struct Routine *routine = values_begin(values);
   values_compute(values, nodes, count, false);
-  for (size_t i = 0; i < count; i++) values_copy(values, target_place(i), nodes[i]);
+  for (size_t i = 0; i < count; i++) values_copy(values, target_slot(i), nodes[i]);
   return routine;
 }
 
@@ -233,9 +235,9 @@ static struct Routine *indicators_routine(const struct Program *program, struct 
   return targets_routine(values, switching->indicators, switching->indicator_count);
 }
 
-static struct Routine *roundings_routine(const struct Program *program, struct Values *values) {
+static struct Routine *rounding_bounds_routine(const struct Program *program, struct Values *values) {
   const struct SwitchingExpressions *switching = program->equations->switching;
-  return targets_routine(values, switching->roundings, switching->indicator_count);
+  return targets_routine(values, switching->rounding_bounds, switching->indicator_count);
 }
 
 static struct Routine *switching_values_routine(const struct Program *program, struct Values *values) {
@@ -302,8 +304,9 @@ static bool has_results(const struct Program *program) {
 }
 
 const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
-    [FUNCTION_PREPARE] = {"Values that depend on parameters alone", "prepare", "const Real *p, Real *prepared",
-                          "prepared", RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, NULL, prepare_routine},
+    [FUNCTION_PREPARE] = {"Values that depend on parameters alone", "prepare",
+                          "const Real *p, Real *parameter_constants", "parameter_constants", RETURNS_STATUS,
+                          IN_WORKSPACE, IN_LAGRANGIAN, NULL, prepare_routine},
     [FUNCTION_INITIAL_STATE] = {"Start values that follow from parameters", "initial_state",
                                 "const struct Point *point, Real *state", "state", RETURNS_NOTHING, IN_WORKSPACE,
                                 IN_LAGRANGIAN, starts_follow, initial_state_routine},
@@ -352,9 +355,9 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_INDICATORS] = {"Event indicators", "indicators",
                              "const struct Point *point, const Real *a, Real *indicator", "indicator", RETURNS_NOTHING,
                              IN_ARGUMENT, IN_SWITCHES, switches, indicators_routine},
-    [FUNCTION_ROUNDINGS] = {"Rounding error bounds of the event indicators", "roundings",
-                            "const struct Point *point, const Real *a, Real *uncertainty", "uncertainty",
-                            RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, roundings_routine},
+    [FUNCTION_ROUNDING_BOUNDS] = {"Rounding error bounds of the event indicators", "rounding_bounds",
+                                  "const struct Point *point, const Real *a, Real *uncertainty", "uncertainty",
+                                  RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, rounding_bounds_routine},
     [FUNCTION_SWITCHING_VALUES] = {"Values that determine the modes", "switching_values",
                                    "const struct Point *point, const Real *a, Real *value", "value", RETURNS_NOTHING,
                                    IN_ARGUMENT, IN_SWITCHES, switches, switching_values_routine},

@@ -25,7 +25,7 @@ enum FunctionName {
   /* before: struct Lagrangian; from here on: struct SwitchTable, as statements unless switches_are_table */
   LAGRANGIAN_ROUTINES,
   FUNCTION_INDICATORS = LAGRANGIAN_ROUTINES,
-  FUNCTION_ROUNDINGS,
+  FUNCTION_ROUNDING_BOUNDS,
   FUNCTION_SWITCHING_VALUES,
   ROUTINE_COUNT, /* from here on: functions with several instruction lists, or one of several of their kind */
   FUNCTION_START = ROUTINE_COUNT,

@@ -128,9 +128,10 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
                               .interface = expressions->interface,
                               .expressions = expressions};
   struct NodeList targets = expressions_targets(expressions);
-  program->prepared = prepared_create(expressions->model->graph, targets);
+  program->parameter_constants = parameter_constants_create(expressions->model->graph, targets);
   program->blocks = looped_blocks_of(expressions->equations);
-  struct Values *values = values_create(expressions->model->graph, program->prepared, expressions->equations->count);
+  struct Values *values =
+      values_create(expressions->model->graph, program->parameter_constants, expressions->equations->count);
   for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
     if (has_function(program, i)) program->routines[i] = generated_functions[i].build(program, values);
   create_results(program, values);

@@ -24,7 +24,7 @@ struct Program {
   const struct Equations *equations;
   const struct Interface *interface;
   const struct Expressions *expressions;
-  struct Prepared *prepared;
+  struct ParameterConstants *parameter_constants;
   struct LoopedBlocks blocks;
   struct Routine *routines[ROUTINE_COUNT]; /* NULL for a function that the system does not need */
   struct ResultGroups groups;

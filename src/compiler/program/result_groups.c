@@ -62,12 +62,12 @@ static struct Group *find_group(const struct Needs *needs, struct OpenGroups *op
 }
 
 /* Assigns the object with the results first .. first + size - 1 to a group. */
-static void place_thing(struct ResultGroups *groups, struct Needs *needs, const Node *result, size_t first, size_t size,
-                        struct OpenGroups *open) {
+static void slot_thing(struct ResultGroups *groups, struct Needs *needs, const Node *result, size_t first, size_t size,
+                       struct OpenGroups *open) {
   const struct Cone *cone = needs->cone;
   for (size_t i = 0; i < size; i++) {
     groups->leader[first + i] = first;
-    groups->place[first + i] = i;
+    groups->slot[first + i] = i;
   }
   needs_collect(needs, result + first, size, false);
   if (cone->count < LONG_ENOUGH) return;
@@ -75,7 +75,7 @@ static void place_thing(struct ResultGroups *groups, struct Needs *needs, const 
   add_needs(cone, group);
   for (size_t i = 0; i < size; i++) {
     groups->leader[first + i] = group->leader;
-    groups->place[first + i] = group->size++;
+    groups->slot[first + i] = group->size++;
   }
 }
 
@@ -91,14 +91,14 @@ struct ResultGroups result_groups_of(const struct Expressions *expressions) {
     if (variable->entry.kind != VARIABLE_RESULT || variable->is_continued) continue;
     while (i + size < interface->count && variable[size].is_continued) size++;
     bool has_accelerations = graph_depends_on(graph, expressions->result[first], ACCELERATION);
-    place_thing(&groups, needs, expressions->result, first, size, &open[has_accelerations]);
+    slot_thing(&groups, needs, expressions->result, first, size, &open[has_accelerations]);
   }
   return groups;
 }
 
 struct ResultGroups groups_of_one(size_t count) {
   struct ResultGroups groups = {
-      .count = count, .leader = allocate(count, sizeof *groups.leader), .place = allocate(count, sizeof *groups.place)};
+      .count = count, .leader = allocate(count, sizeof *groups.leader), .slot = allocate(count, sizeof *groups.slot)};
   for (size_t i = 0; i < count; i++) groups.leader[i] = i;
   return groups;
 }

@@ -4,8 +4,8 @@
 #include "program/expressions/expressions.h"
 
 struct ResultGroups {
-  size_t count;           /* number of results */
-  size_t *leader, *place; /* of each result: the first one of its group, and its index in the group */
+  size_t count;          /* number of results */
+  size_t *leader, *slot; /* of each result: the first one of its group, and its index in the group */
 };
 
 /*

@@ -30,10 +30,12 @@ static void check_content(const struct Reader *reader) {
                  "a system without coordinates and states has nothing to solve; expected no <solver>");
   if (work != NULL && !model->forces.any)
     report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && work != NULL && (model->given.inputs_move || model->given.drive_count > 0))
+  if (model->constraints.count > 0 && work != NULL &&
+      (model->given.inputs_move || model->given.prescribed_motion_count > 0))
     report_error(reader->diagnostics, work->line, "<work/> beside the constraint '%s' and %s; expected no <work/>",
                  model->constraints.items[0].name,
-                 model->given.drive_count > 0 ? "a driven coordinate" : "an input that moves positions or energies");
+                 model->given.prescribed_motion_count > 0 ? "a driven coordinate"
+                                                          : "an input that moves positions or energies");
   if (work != NULL && model->given.constraint != NULL)
     report_error(reader->diagnostics, work->line,
                  "<work/> beside the constraint '%s', which depends on time and does work; expected no <work/>, or a "
@@ -113,7 +115,7 @@ static void check_quaternions(const struct Reader *reader, const double *values)
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
-    for (size_t k = 0; k < model->mechanism.stillness_count; k++)
+    for (size_t k = 0; k < model->mechanism.regularization_count; k++)
       if (model->mechanism.stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
         report_error(reader->diagnostics, constraint->line,
                      "the quaternion of %.*s is 0 at the start values; expected a norm of 1, such as start=\"1\" of "
@@ -165,19 +167,19 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
   const struct Model *model = reader->model;
   double *rest = values_at_velocities(model, 0, 0), *forth = values_at_velocities(model, 1, odd),
          *back = values_at_velocities(model, -1, -odd);
-  long told = 0;
+  long reported = 0;
   for (size_t i = 0; i < reader->dissipation_count; i++) {
     struct Dissipation *dissipation = &reader->dissipations[i];
     Node node = dissipation->node;
     double growth = (forth[node] - rest[node] + (back[node] - rest[node])) / 2;
     double rounding = 1e-12 * (fabs(forth[node]) + fabs(back[node]) + fabs(rest[node]));
     if (!(growth < -rounding)) continue;
-    if (dissipation->line != told)
+    if (dissipation->line != reported)
       report_warning(reader->diagnostics, dissipation->line,
                      "the dissipation is %g for velocities of +-1 at the start values, and drives the motion; expected "
                      "a positive one, such as b*v^2/2",
                      growth);
-    told = dissipation->line;
+    reported = dissipation->line;
     dissipation->node = ZERO; /* no second warning */
   }
 }

@@ -25,7 +25,7 @@ static size_t count_switches(const struct Model *model) {
   size_t count = 0;
   for (size_t i = 0; i < switches->branch_count; i++) count += cone_has(cone, switches->branches[i].mode);
   for (size_t i = 0; i < switches->contact_count; i++) count += cone_has(cone, switches->contacts[i].mode);
-  for (size_t i = 0; i < switches->friction_count; i++) count += cone_has(cone, switches->frictions[i].told);
+  for (size_t i = 0; i < switches->friction_count; i++) count += cone_has(cone, switches->frictions[i].reported);
   return count;
 }
 

@@ -29,7 +29,7 @@ static struct Vector append_vector(struct Reader *reader, const char *const name
 }
 
 /* Returns the vector from the body's position to the grabbed point; zero for a body without orientation. */
-static struct Vector lever_of(const struct Model *model, const struct Body *body, struct Vector held) {
+static struct Vector jacobian_row_of(const struct Model *model, const struct Body *body, struct Vector held) {
   struct Graph *graph = model->graph;
   if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, held);
   if (!body->has_angle || !body->has_position[0] || !body->has_position[1]) return (struct Vector){{ZERO, ZERO, ZERO}};
@@ -42,9 +42,10 @@ static struct Vector lever_of(const struct Model *model, const struct Body *body
 }
 
 static struct Vector held_point(const struct Model *model, const struct Body *body, struct Vector held) {
-  struct Vector point, lever = lever_of(model, body, held);
+  struct Vector point, jacobian_row = jacobian_row_of(model, body, held);
   for (int axis = 0; axis < 3; axis++)
-    point.along[axis] = body->has_position[axis] ? add(model->graph, body->displaced[axis], lever.along[axis]) : ZERO;
+    point.along[axis] =
+        body->has_position[axis] ? add(model->graph, body->displaced[axis], jacobian_row.along[axis]) : ZERO;
   return point;
 }
 

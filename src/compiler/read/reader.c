@@ -64,8 +64,8 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->displacements.count; i++)
     append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
   for (size_t i = 0; i < model->coordinates.count; i++) {
-    if (!model->given.drives[i].given) continue;
-    model->given.drives[i].reaction = model->reactions.count;
+    if (!model->given.prescribed_motions[i].given) continue;
+    model->given.prescribed_motions[i].reaction = model->reactions.count;
     append_reaction(model, scope, &model->coordinates.items[i], "force of the drive of");
   }
 }

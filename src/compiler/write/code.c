@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 #include "mechanics/switching.h"
-#include "program/facts/block_facts.h"
+#include "program/metadata/block_metadata.h"
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
@@ -30,7 +30,7 @@ static void include_room(FILE *file, const char *room) {
     if (strncmp(*name, room, length) == 0 && (*name)[length] == '/') include_source(file, *name);
 }
 
-static bool has_oblique_block(const struct Program *program) {
+static bool has_nonsymmetric_block(const struct Program *program) {
   bool has = false;
   for (size_t i = 0; i < program->blocks.count; i++) has |= program->blocks.items[i].block->force_count > 0;
   return has;
@@ -46,7 +46,7 @@ static bool has_solver(const struct Program *program, const char *name) {
  */
 static bool has_lanes(const struct Program *program) {
   bool is_taylor = has_solver(program, "taylor") || has_solver(program, "auto");
-  return program->series != NULL && is_taylor && !has_oblique_block(program);
+  return program->series != NULL && is_taylor && !has_nonsymmetric_block(program);
 }
 
 /*
@@ -67,7 +67,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->is_table) include_source(file, "support/instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "support/ldlt.c");
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
-  if (has_oblique_block(program)) include_source(file, "support/oblique.c");
+  if (has_nonsymmetric_block(program)) include_source(file, "support/nonsymmetric.c");
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
   if (program->routines[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
@@ -107,7 +107,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
   if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
-  if (has_oblique_block(program)) fputs("#include \"oblique.h\"\n", file);
+  if (has_nonsymmetric_block(program)) fputs("#include \"nonsymmetric.h\"\n", file);
   if (has_operations(program, LOGISTIC, LOG_COSH)) fputs("#include \"bounded_functions.h\"\n", file);
   if (has_operations(program, UNIFORM, GAUSS)) fputs("#include \"random_numbers.h\"\n", file);
   fputs("\n", file);
@@ -124,11 +124,11 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
  * Subtracts from element (row, j) of K the products K(row, c) L(j, c) over the columns c < j that both rows have; j is
  * the column of the element at place.
  */
-static void write_shared_products(FILE *file, const struct InertiaBlock *block, size_t row, size_t place) {
-  const size_t *start = block->start, *column = block->column, other = column[place];
-  for (size_t a = place; a-- > start[row];)
+static void write_shared_products(FILE *file, const struct InertiaBlock *block, size_t row, size_t slot) {
+  const size_t *start = block->start, *column = block->column, other = column[slot];
+  for (size_t a = slot; a-- > start[row];)
     for (size_t b = start[other]; b + 1 < start[other + 1]; b++)
-      if (column[a] == column[b]) fprintf(file, "  k%zu -= k%zu * factor%zu;\n", place, a, b);
+      if (column[a] == column[b]) fprintf(file, "  k%zu -= k%zu * factor%zu;\n", slot, a, b);
 }
 
 /* Writes the pivot of a row, and the check of it. */
@@ -142,7 +142,7 @@ static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row
     return;
   }
   fprintf(file, ", mobility%zu = REAL(0.0)", row);
-  for (size_t k = first; k < last; k++) fprintf(file, " + saddle_mobility(term%zu)", k);
+  for (size_t k = first; k < last; k++) fprintf(file, " + saddle_delassus(term%zu)", k);
   fprintf(file,
           ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, mobility%zu, weakest))) {\n"
           "    for (size_t k = 0; k < %zu; k++) mass[k] = mass[%zu + k];\n"

@@ -22,7 +22,7 @@ static void write_blocks(FILE *file, const struct Program *program) {
     if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
     else fprintf(file, "start%zu, column%zu, ", i, i);
     fprintf(file, "coordinate%zu, %s},\n", i,
-            looped->block->force_count > 0        ? "oblique_factor, NULL, saddle_least_forces, oblique_solve"
+            looped->block->force_count > 0        ? "nonsymmetric_factor, NULL, saddle_least_forces, nonsymmetric_solve"
             : looped->block->constraint_count > 0 ? "saddle_factor, saddle_solve, saddle_least_forces, NULL"
                                                   : "NULL, NULL, NULL, NULL");
   }
@@ -77,12 +77,12 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
   write_head(file, name, "", routine->operation_count);
   if (!takes(name, "*point"))
     fprintf(file, "  const struct Point values = {.parameter = p%s};\n  const struct Point *point = &values;\n",
-            takes(name, "*c,") ? ", .prepared = c" : "");
+            takes(name, "*c,") ? ", .parameter_constants = c" : "");
   begin_frame(file, takes(name, "*seed"));
   set_base(file, "TARGET", text->target);
   if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
-  if (takes(name, "*prepared"))
-    fprintf(file, "  frame.base[SPACE_LOCAL] = prepared + %zu;\n", program->prepared->count);
+  if (takes(name, "*parameter_constants"))
+    fprintf(file, "  frame.base[SPACE_LOCAL] = parameter_constants + %zu;\n", program->parameter_constants->count);
   if (text->accelerations == IN_TARGET)
     fprintf(file, "  frame.base[SPACE_ACCELERATION] = %s + %zu;\n", text->target, program->equations->count);
   if (name == FUNCTION_START) {
@@ -97,14 +97,14 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
                           struct Routine *const *routines, const struct ResultGroups *groups) {
   const struct GeneratedFunction *text = &generated_functions[name];
   struct RoutineTables tables = encode_all(encoding, routines, groups);
-  const char *type = tables.largest_place <= UINT8_MAX ? "unsigned char" : "uint16_t";
+  const char *type = tables.largest_slot <= UINT8_MAX ? "unsigned char" : "uint16_t";
   write_words(file, text->name, &tables.words);
   write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, groups->count);
-  write_sizes(file, type, format_text("%s_place", text->name), tables.place, groups->count);
+  write_sizes(file, type, format_text("%s_place", text->name), tables.slot, groups->count);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic Real %s(%s, size_t result) {\n", text->comment,
           tables.operation_count, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
-  fprintf(file, "  Real value[%zu] = {REAL(NAN)};\n", tables.largest_place + 1);
+  fprintf(file, "  Real value[%zu] = {REAL(NAN)};\n", tables.largest_slot + 1);
   set_base(file, "TARGET", "value");
   set_base(file, "ACCELERATION", "(Real *)a");
   if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
@@ -138,7 +138,7 @@ static void write_limit(FILE *file, const struct Encoding *encoding) {
     else fputs("NULL", file);
     fputs(", ", file);
     write_c_number(file, check.share);
-    fprintf(file, ", %u, %s, %u},\n", check.exponent, check.is_gated ? "true" : "false", check.opener);
+    fprintf(file, ", %u, %s, %u},\n", check.exponent, check.is_gated ? "true" : "false", check.guard_condition);
   }
   fputs("};\n\n", file);
   write_head(file, FUNCTION_LIMIT, "", checks->count);

@@ -7,10 +7,10 @@
 
 /* Names of the arrays; other spaces are scalars or have two arrays. */
 static const char *const arrays[SPACE_COUNT] = {
-    [SPACE_PARAMETER] = "p",    [SPACE_PREPARED] = "c",           [SPACE_INPUT] = "u",
-    [SPACE_ACCELERATION] = "a", [SPACE_SEED_PARAMETER] = "dp",    [SPACE_SEED_INPUT] = "du",
-    [SPACE_MASS] = "mass",      [SPACE_SEED_ACCELERATION] = "da", [SPACE_SIDE] = "side",
-    [SPACE_ROW] = "w",          [SPACE_STATE_ROW] = "x",          [SPACE_INPUT_ROW] = "input",
+    [SPACE_PARAMETER] = "p",    [SPACE_PARAMETER_CONSTANTS] = "c", [SPACE_INPUT] = "u",
+    [SPACE_ACCELERATION] = "a", [SPACE_SEED_PARAMETER] = "dp",     [SPACE_SEED_INPUT] = "du",
+    [SPACE_MASS] = "mass",      [SPACE_SEED_ACCELERATION] = "da",  [SPACE_SIDE] = "side",
+    [SPACE_ROW] = "w",          [SPACE_STATE_ROW] = "x",           [SPACE_INPUT_ROW] = "input",
     [SPACE_TARGET_ROW] = "y",   [SPACE_SEED_RESULT] = "dy",
 };
 
@@ -20,12 +20,12 @@ static void write_state(FILE *file, const struct Program *program, const char *d
   else fprintf(file, "%sv[%zu]", direction, index - n);
 }
 
-void write_place(FILE *file, const struct Program *program, Place place, enum Role role, const char *target) {
+void write_place(FILE *file, const struct Program *program, Slot slot, enum Role role, const char *target) {
   static const char *const elements[] = {
       [VALUE] = "[0]",    [COEFFICIENT] = "[k]",          [ROW] = "",
       [ROW_OF_PAST] = "", [NEXT_COEFFICIENT] = "[k + 1]", [PAST_COEFFICIENT] = "[k - 1]"};
-  enum Space space = space_of(place);
-  size_t index = index_in(place);
+  enum Space space = space_of(slot);
+  size_t index = index_in(slot);
   if ((int)space == SPACE_SHARED) {
     fprintf(file, "s[%zu]", index);
     return;
@@ -52,10 +52,10 @@ static bool has_only_numbers(const struct Instruction *instruction) {
   return arity > 0;
 }
 
-/* Writes a text of opcode_facts() with the operands of an instruction. */
+/* Writes a text of opcode_metadata() with the operands of an instruction. */
 static void write_text(FILE *file, const struct Program *program, const struct Instruction *instruction,
                        const char *text, const char *target, const char *opening) {
-  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
+  const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
   for (; *text != '\0'; text++) {
     if (*text != '$') {
       fputc(*text, file);
@@ -64,9 +64,9 @@ static void write_text(FILE *file, const struct Program *program, const struct I
     text++;
     if (*text == 'f') fputs(function_in_c(instruction->function), file);
     else if (*text == '(') fputs(opening, file);
-    else if (*text == '0' && facts->result == NUMBER) fprintf(file, "%u", instruction->result);
-    else if (*text == '0') write_place(file, program, instruction->result, facts->result, target);
-    else write_place(file, program, instruction->operands[*text - '1'], facts->operands[*text - '1'], target);
+    else if (*text == '0' && metadata->result == NUMBER) fprintf(file, "%u", instruction->result);
+    else if (*text == '0') write_place(file, program, instruction->result, metadata->result, target);
+    else write_place(file, program, instruction->operands[*text - '1'], metadata->operands[*text - '1'], target);
   }
 }
 
@@ -74,7 +74,7 @@ static void write_expression(FILE *file, const struct Program *program, const st
                              const char *target, const char *opening) {
   bool is_number = has_only_numbers(instruction);
   if (is_number) fputs("REAL(", file);
-  write_text(file, program, instruction, opcode_facts(instruction->opcode)->statement, target, opening);
+  write_text(file, program, instruction, opcode_metadata(instruction->opcode)->statement, target, opening);
   if (is_number) fputs(")", file);
 }
 
@@ -100,10 +100,10 @@ static void write_small_factor_call(FILE *file, const struct Program *program, u
 static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {
   unsigned number = instruction->result;
   const struct InertiaBlock *block = program->blocks.items[number].block;
-  bool has_constraints = block->constraint_count > 0, is_oblique = block->force_count > 0;
+  bool has_constraints = block->constraint_count > 0, is_nonsymmetric = block->force_count > 0;
   if (instruction->opcode == FACTOR) {
     fprintf(file, "const size_t singular%u = ", number);
-    const char *factor = is_oblique ? "oblique_factor" : has_constraints ? "saddle_factor" : "ldlt_factor";
+    const char *factor = is_nonsymmetric ? "nonsymmetric_factor" : has_constraints ? "saddle_factor" : "ldlt_factor";
     if (program_solves_by_statements(program, number)) write_small_factor_call(file, program, number);
     else write_block_call(file, program, factor, has_constraints, number);
     fprintf(file, ");\n  if (singular%u != 0) return coordinate%u[singular%u - 1]", number, number, number);
@@ -114,24 +114,24 @@ static void write_block_statement(FILE *file, const struct Program *program, con
       fprintf(file, "solve%u(mass + %zu, side + %zu)", number, looped->first_mass, looped->first_side);
       return;
     }
-    const char *solve = is_oblique ? "oblique_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
-    write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_oblique, number);
+    const char *solve = is_nonsymmetric ? "nonsymmetric_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
+    write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_nonsymmetric, number);
     fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
   }
 }
 
 static void write_statement(FILE *file, const struct Program *program, const struct Instruction *instruction,
                             const char *target, const char *opening) {
-  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
-  if (facts->result == BLOCK) {
+  const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
+  if (metadata->result == BLOCK) {
     write_block_statement(file, program, instruction);
     return;
   }
-  if (facts->result != NUMBER && space_of(instruction->result) == SPACE_TARGET && target == NULL)
+  if (metadata->result != NUMBER && space_of(instruction->result) == SPACE_TARGET && target == NULL)
     fputs("return ", file);
-  else if (facts->result != NUMBER) {
+  else if (metadata->result != NUMBER) {
     if (space_of(instruction->result) == SPACE_LOCAL) fputs("const Real ", file);
-    write_place(file, program, instruction->result, facts->result == ROW ? COEFFICIENT : facts->result, target);
+    write_place(file, program, instruction->result, metadata->result == ROW ? COEFFICIENT : metadata->result, target);
     fputs(" = ", file);
   }
   write_expression(file, program, instruction, target, opening);

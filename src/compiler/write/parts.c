@@ -11,9 +11,9 @@ struct Local {
   size_t part, shared;
 };
 
-static void note_use(struct Local *locals, Place place, size_t part, size_t *shared_count) {
-  if (space_of(place) != SPACE_LOCAL) return;
-  struct Local *local = &locals[index_in(place)];
+static void note_use(struct Local *locals, Slot slot, size_t part, size_t *shared_count) {
+  if (space_of(slot) != SPACE_LOCAL) return;
+  struct Local *local = &locals[index_in(slot)];
   if (local->part != part && local->shared == 0) local->shared = ++*shared_count;
 }
 
@@ -40,11 +40,11 @@ static struct Local *find_shared(const struct Routine *routine, size_t steady_co
 }
 
 /* Returns the place in a part. keeps_accelerations: they come first in the shared space. */
-static Place placed(const struct Local *locals, bool keeps_accelerations, Place place) {
-  if (space_of(place) == SPACE_ACCELERATION && keeps_accelerations)
-    return place_in((enum Space)SPACE_SHARED, index_in(place));
-  if (space_of(place) != SPACE_LOCAL || locals[index_in(place)].shared == 0) return place;
-  return place_in((enum Space)SPACE_SHARED, locals[index_in(place)].shared - 1);
+static Slot placed(const struct Local *locals, bool keeps_accelerations, Slot slot) {
+  if (space_of(slot) == SPACE_ACCELERATION && keeps_accelerations)
+    return slot_in((enum Space)SPACE_SHARED, index_in(slot));
+  if (space_of(slot) != SPACE_LOCAL || locals[index_in(slot)].shared == 0) return slot;
+  return slot_in((enum Space)SPACE_SHARED, locals[index_in(slot)].shared - 1);
 }
 
 static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, bool keeps_accelerations,
@@ -52,7 +52,7 @@ static struct Routine *part_of(const struct Routine *routine, const struct Local
   struct Routine *part = routine_create();
   for (size_t i = first; i < end; i++) {
     struct Instruction instruction = routine->instructions[i];
-    Place *operands = instruction.operands;
+    Slot *operands = instruction.operands;
     for (int j = 0; j < opcode_arity(instruction.opcode); j++)
       operands[j] = placed(locals, keeps_accelerations, operands[j]);
     if (opcode_has_result(instruction.opcode))

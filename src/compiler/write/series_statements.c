@@ -35,25 +35,25 @@ static void write_series(FILE *file, const struct Program *program) {
 }
 
 static void write_check(FILE *file, const struct Program *program, const struct LimitCheck *check) {
-  const struct LimitFacts *facts = limit_facts(check->rule);
+  const struct LimitMetadata *metadata = limit_metadata(check->rule);
   fputs("  ", file);
   if (check->is_gated) {
     fputs("LIMIT_WHERE(", file);
-    write_place(file, program, check->opener, VALUE, NULL);
+    write_place(file, program, check->guard_condition, VALUE, NULL);
     fputs(" > 0.0, ", file);
   }
-  fprintf(file, "series_limit_%s(limit, ", facts->name);
+  fprintf(file, "series_limit_%s(limit, ", metadata->name);
   write_place(file, program, check->row, ROW, NULL);
-  if (facts->has_two_rows) {
+  if (metadata->has_two_rows) {
     fputs(", ", file);
     write_place(file, program, check->other_row, ROW, NULL);
   }
-  if (facts->has_function) fprintf(file, ", \"%s\"", check->function);
-  if (facts->has_exponent) {
+  if (metadata->has_function) fprintf(file, ", \"%s\"", check->function);
+  if (metadata->has_exponent) {
     fputs(", ", file);
     write_place(file, program, check->exponent, VALUE, NULL);
   }
-  if (facts->has_share) {
+  if (metadata->has_share) {
     fputs(", ", file);
     write_c_number(file, check->share);
   }
@@ -66,8 +66,8 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
   for (size_t i = 0; i < checks->count; i++) {
     const struct LimitCheck *check = &checks->items[i];
     spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
-    if (limit_facts(check->rule)->has_exponent) spaces |= 1u << space_of(check->exponent);
-    if (check->is_gated) spaces |= 1u << space_of(check->opener);
+    if (limit_metadata(check->rule)->has_exponent) spaces |= 1u << space_of(check->exponent);
+    if (check->is_gated) spaces |= 1u << space_of(check->guard_condition);
   }
   return spaces;
 }

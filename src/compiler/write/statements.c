@@ -9,8 +9,8 @@ static bool reads(const struct Routine *routine, enum Space space, size_t from, 
   for (size_t i = 0; i < routine->count; i++) {
     const struct Instruction *instruction = &routine->instructions[i];
     for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
-      Place place = instruction->operands[j];
-      if (space_of(place) == space && index_in(place) >= from && index_in(place) < to) return true;
+      Slot slot = instruction->operands[j];
+      if (space_of(slot) == space && index_in(slot) >= from && index_in(slot) < to) return true;
     }
   }
   return false;
@@ -27,7 +27,7 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
           format_text("point->state + %zu", n));
   declare(file, routine_uses(routine, SPACE_INPUT), "u", "point->input");
   declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
-  declare(file, routine_uses(routine, SPACE_PREPARED), "c", "point->prepared");
+  declare(file, routine_uses(routine, SPACE_PARAMETER_CONSTANTS), "c", "point->parameter_constants");
   declare(file, reads(routine, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
   declare(file, reads(routine, SPACE_SEED_STATE, n, program->interface->state_count), "dv",
           format_text("seed->state + %zu", n));
@@ -125,7 +125,7 @@ void statements_results(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < count; i++) {
     size_t leader = program->groups.leader[i];
     fprintf(file, "  case %zu: return result%zu(point, a", i, leader);
-    if (size_of_group(program, leader) > 1) fprintf(file, ", %zu", program->groups.place[i]);
+    if (size_of_group(program, leader) > 1) fprintf(file, ", %zu", program->groups.slot[i]);
     fputs(");\n", file);
   }
   end_choice(file);

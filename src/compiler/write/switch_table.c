@@ -1,6 +1,6 @@
 #include "write/switch_table.h"
 
-#include "program/facts/switch_facts.h"
+#include "program/metadata/switch_metadata.h"
 #include "write/c_text.h"
 #include "write/description.h"
 #include "write/statements.h"
@@ -15,11 +15,11 @@ static void write_name(FILE *file, const char *name) {
   fputs("}, ", file);
 }
 
-static void write_branches(FILE *file, const struct SwitchTable *facts) {
-  if (facts->branch_count == 0) return;
-  fputs("static const struct BranchFacts branch_facts[] = {", file);
-  for (size_t i = 0; i < facts->branch_count; i++) {
-    const struct BranchFacts *branch = &facts->branches[i];
+static void write_branches(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->branch_count == 0) return;
+  fputs("static const struct BranchMetadata branch_facts[] = {", file);
+  for (size_t i = 0; i < metadata->branch_count; i++) {
+    const struct BranchMetadata *branch = &metadata->branches[i];
     fprintf(file, "{%zu, ", branch->mode);
     write_c_string(file, branch->function);
     fputs(", ", file);
@@ -29,53 +29,54 @@ static void write_branches(FILE *file, const struct SwitchTable *facts) {
   fputs("};\n\n", file);
 }
 
-static void write_contacts(FILE *file, const struct SwitchTable *facts) {
-  if (facts->contact_count == 0) return;
-  fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactFacts contact_facts[] = {", file);
-  for (size_t i = 0; i < facts->contact_count; i++) {
-    fprintf(file, "{%zu, %zu, ", facts->contacts[i].mode, facts->contacts[i].constraint);
-    write_name(file, facts->contacts[i].name);
+static void write_contacts(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->contact_count == 0) return;
+  fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactMetadata contact_facts[] = {",
+        file);
+  for (size_t i = 0; i < metadata->contact_count; i++) {
+    fprintf(file, "{%zu, %zu, ", metadata->contacts[i].mode, metadata->contacts[i].constraint);
+    write_name(file, metadata->contacts[i].name);
   }
   fputs("};\n\n", file);
 }
 
-static const char *friction_laws_of(const struct SwitchTable *facts) {
-  return facts->plane_count > 0 ? "plane_friction_laws" : "friction_laws";
+static const char *friction_laws_of(const struct SwitchTable *metadata) {
+  return metadata->plane_count > 0 ? "plane_friction_laws" : "friction_laws";
 }
 
-static void write_frictions(FILE *file, const struct SwitchTable *facts) {
-  if (facts->friction_count == 0) return;
-  fprintf(file, "extern const struct FrictionLaws %s;\n\nstatic const struct FrictionFacts friction_facts[] = {",
-          friction_laws_of(facts));
-  for (size_t i = 0; i < facts->friction_count; i++) {
-    const struct FrictionFacts *friction = &facts->frictions[i];
-    fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->told, friction->constraint);
+static void write_frictions(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->friction_count == 0) return;
+  fprintf(file, "extern const struct FrictionLaws %s;\n\nstatic const struct FrictionMetadata friction_facts[] = {",
+          friction_laws_of(metadata));
+  for (size_t i = 0; i < metadata->friction_count; i++) {
+    const struct FrictionMetadata *friction = &metadata->frictions[i];
+    fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->reported, friction->constraint);
     write_c_string(file, friction->name);
     fprintf(file, ", %s}, ", name_of(friction->is_given));
   }
   fputs("};\n\n", file);
 }
 
-static void write_planes(FILE *file, const struct SwitchTable *facts) {
-  if (facts->plane_count == 0) return;
-  fputs("static const struct PlaneFacts plane_facts[] = {", file);
-  for (size_t i = 0; i < facts->plane_count; i++) {
-    const struct PlaneFacts *plane = &facts->planes[i];
+static void write_planes(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->plane_count == 0) return;
+  fputs("static const struct PlaneMetadata plane_facts[] = {", file);
+  for (size_t i = 0; i < metadata->plane_count; i++) {
+    const struct PlaneMetadata *plane = &metadata->planes[i];
     fprintf(file, "{%zu, {%zu, %zu}, %zu, %zu}, ", plane->along, plane->heading[0], plane->heading[1], plane->lower,
             plane->upper);
   }
   fputs("};\n\n", file);
 }
 
-static void write_rests(FILE *file, const struct SwitchTable *facts) {
-  if (facts->rests_on == NULL) return;
+static void write_rests(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->rests_on == NULL) return;
   fputs("static const bool rests[] = {", file);
-  for (size_t i = 0; i < facts->friction_count * facts->contact_count; i++)
-    fprintf(file, "%s, ", name_of(facts->rests_on[i]));
+  for (size_t i = 0; i < metadata->friction_count * metadata->contact_count; i++)
+    fprintf(file, "%s, ", name_of(metadata->rests_on[i]));
   fputs("};\n\n", file);
 }
 
-static void write_event(FILE *file, const struct EventFacts *event) {
+static void write_event(FILE *file, const struct EventMetadata *event) {
   static const char *const passages[] = {[PASSAGE_HOLDS] = "PASSAGE_HOLDS",
                                          [PASSAGE_RISES] = "PASSAGE_RISES",
                                          [PASSAGE_FALLS] = "PASSAGE_FALLS",
@@ -86,28 +87,28 @@ static void write_event(FILE *file, const struct EventFacts *event) {
   write_name(file, event->when);
 }
 
-static void write_events(FILE *file, const struct SwitchTable *facts) {
-  if (facts->event_count == 0) return;
-  fputs("static const struct AssignmentFacts assignment_facts[] = {", file);
-  for (size_t i = 0; i < facts->assignment_count; i++)
-    fprintf(file, "{%s, %zu}, ", facts->assignments[i].kind == VARIABLE_MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
-            facts->assignments[i].index);
-  fputs("};\n\nstatic const struct EventFacts event_facts[] = {", file);
-  for (size_t i = 0; i < facts->event_count; i++) write_event(file, &facts->events[i]);
+static void write_events(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->event_count == 0) return;
+  fputs("static const struct AssignmentMetadata assignment_facts[] = {", file);
+  for (size_t i = 0; i < metadata->assignment_count; i++)
+    fprintf(file, "{%s, %zu}, ", metadata->assignments[i].kind == VARIABLE_MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
+            metadata->assignments[i].index);
+  fputs("};\n\nstatic const struct EventMetadata event_facts[] = {", file);
+  for (size_t i = 0; i < metadata->event_count; i++) write_event(file, &metadata->events[i]);
   fputs("};\n\n", file);
 }
 
-static void write_timed(FILE *file, const struct SwitchTable *facts) {
-  if (facts->timed_count == 0) return;
+static void write_timed(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->timed_count == 0) return;
   fputs("extern const struct TimeLaws time_laws;\n\n", file);
-  write_sizes(file, "size_t", "timed", facts->timed, facts->timed_count);
+  write_sizes(file, "size_t", "timed", metadata->timed, metadata->timed_count);
 }
 
-static void write_samples(FILE *file, const struct SwitchTable *facts) {
-  if (facts->sample_count == 0) return;
-  fputs("static const struct SampleFacts sample_facts[] = {", file);
-  for (size_t i = 0; i < facts->sample_count; i++) {
-    const struct SampleFacts *sample = &facts->samples[i];
+static void write_samples(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->sample_count == 0) return;
+  fputs("static const struct SampleMetadata sample_facts[] = {", file);
+  for (size_t i = 0; i < metadata->sample_count; i++) {
+    const struct SampleMetadata *sample = &metadata->samples[i];
     fprintf(file, "{%zu, %zu, %zu, %zu, %zu}, ", sample->event, sample->branch, sample->base, sample->count,
             sample->period);
   }
@@ -118,50 +119,51 @@ static void write_flag(FILE *file, const char *name, bool is_set) {
   if (is_set) fprintf(file, "    .%s = true,\n", name);
 }
 
-static void write_table(FILE *file, const struct Program *program, const struct SwitchTable *facts) {
+static void write_table(FILE *file, const struct Program *program, const struct SwitchTable *metadata) {
   fprintf(file,
           "static const struct SwitchTable switches = {\n    .mode_count = %zu,\n    .branch_count = %zu,\n"
           "    .contact_count = %zu,\n    .friction_count = %zu,\n    .event_count = %zu,\n"
           "    .assignment_count = %zu,\n    .energy_count = %zu,\n",
-          facts->mode_count, facts->branch_count, facts->contact_count, facts->friction_count, facts->event_count,
-          facts->assignment_count, facts->energy_count);
+          metadata->mode_count, metadata->branch_count, metadata->contact_count, metadata->friction_count,
+          metadata->event_count, metadata->assignment_count, metadata->energy_count);
   write_fields(file, program, IN_SWITCHES, IN_SWITCHES);
-  if (facts->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (metadata->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
   if (program->watched_series != NULL)
     fprintf(file,
             "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n",
-            facts->watched_rows, facts->watched_acceleration_row, facts->watched_acceleration_count);
-  write_flag(file, "friction_varies", facts->friction_varies);
-  write_flag(file, "feels_forces", facts->feels_forces);
-  write_flag(file, "has_sides", facts->has_sides);
-  if (facts->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
-  if (facts->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
-  if (facts->friction_count > 0)
-    fprintf(file, "    .frictions = friction_facts,\n    .friction_laws = &%s,\n", friction_laws_of(facts));
-  if (facts->plane_count > 0)
+            metadata->watched_rows, metadata->watched_acceleration_row, metadata->watched_acceleration_count);
+  write_flag(file, "friction_varies", metadata->friction_varies);
+  write_flag(file, "feels_forces", metadata->feels_forces);
+  write_flag(file, "has_sides", metadata->has_sides);
+  if (metadata->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
+  if (metadata->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
+  if (metadata->friction_count > 0)
+    fprintf(file, "    .frictions = friction_facts,\n    .friction_laws = &%s,\n", friction_laws_of(metadata));
+  if (metadata->plane_count > 0)
     fputs("    .planes = plane_facts,\n    .plane_count = sizeof plane_facts / sizeof *plane_facts,\n", file);
-  if (facts->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
-  if (facts->timed_count > 0)
-    fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n", facts->timed_count);
-  if (facts->sample_count > 0)
-    fprintf(file, "    .samples = sample_facts,\n    .sample_count = %zu,\n", facts->sample_count);
+  if (metadata->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
+  if (metadata->timed_count > 0)
+    fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n",
+            metadata->timed_count);
+  if (metadata->sample_count > 0)
+    fprintf(file, "    .samples = sample_facts,\n    .sample_count = %zu,\n", metadata->sample_count);
   fputs("};\n\n", file);
 }
 
 void switching_write(FILE *file, const struct Program *program) {
   if (program->equations->switching == NULL) return;
-  struct SwitchTable facts = switch_facts_of(program);
+  struct SwitchTable metadata = switch_metadata_of(program);
   fputs("extern const struct EventLaws event_laws;\n\n", file);
   for (enum FunctionName i = LAGRANGIAN_ROUTINES; i < ROUTINE_COUNT; i++)
     statements_function(file, program, i, "", program->routines[i]);
   if (program->watched_series != NULL) statements_watched_limit(file, program);
-  write_branches(file, &facts);
-  write_contacts(file, &facts);
-  write_frictions(file, &facts);
-  write_planes(file, &facts);
-  write_rests(file, &facts);
-  write_events(file, &facts);
-  write_timed(file, &facts);
-  write_samples(file, &facts);
-  write_table(file, program, &facts);
+  write_branches(file, &metadata);
+  write_contacts(file, &metadata);
+  write_frictions(file, &metadata);
+  write_planes(file, &metadata);
+  write_rests(file, &metadata);
+  write_events(file, &metadata);
+  write_timed(file, &metadata);
+  write_samples(file, &metadata);
+  write_table(file, program, &metadata);
 }

@@ -114,10 +114,11 @@ static void take_series(struct SingleRun *run, const struct LaneView *lane) {
 /* Loads the lane's run into the instance, in its last step. */
 static void take(struct SingleRun *run, const struct LaneView *lane) {
   take_values(run, lane);
-  take_numbers(run->instance.prepared, lagrangian.prepared_count, lane->prepared, lane->stride);
-  run->instance.prepared_is_stale = false;
-  situation_begin(run->instance.situation, lane->origin);
-  run->instance.situation->last_step.end = lane->origin + lane->reach;
+  take_numbers(run->instance.parameter_constants, lagrangian.parameter_constants_count, lane->parameter_constants,
+               lane->stride);
+  run->instance.parameter_constants_is_stale = false;
+  fmu_state_begin(run->instance.fmu_state, lane->origin);
+  run->instance.fmu_state->last_step.end = lane->origin + lane->reach;
 }
 
 /* --- The functions ---------------------------------------------------------------------------------------------------- */
@@ -142,7 +143,7 @@ struct SingleRun *single_run_create(size_t lanes, double tolerance, double end) 
     free(courses);
     return NULL;
   }
-  run->instance.situation->tolerance = tolerance;
+  run->instance.fmu_state->tolerance = tolerance;
   run->step = (struct CommunicationStep){.start = 0.0, .end = end, .length = end};
   run->courses = courses;
   run->series = (Series *)(run + 1);
@@ -165,17 +166,17 @@ void single_run_destroy(struct SingleRun *run) {
 
 bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
   struct Instance *instance = &run->instance;
-  double tolerance = instance->situation->tolerance;
+  double tolerance = instance->fmu_state->tolerance;
   instance_reset(instance);
-  instance->situation->tolerance = tolerance;
-  instance->situation->stop_time_defined = 1;
-  instance->situation->stop_time = run->step.end;
-  instance->situation->phase = PHASE_INITIALIZATION;
+  instance->fmu_state->tolerance = tolerance;
+  instance->fmu_state->stop_time_defined = 1;
+  instance->fmu_state->stop_time = run->step.end;
+  instance->fmu_state->phase = PHASE_INITIALIZATION;
   take_values(run, lane);
   take_state(run, lane);
-  instance->prepared_is_stale = true;
+  instance->parameter_constants_is_stale = true;
   if (start_find(instance) != STATUS_DONE) return false;
-  instance->situation->phase = PHASE_STEP_COMPLETE;
+  instance->fmu_state->phase = PHASE_STEP_COMPLETE;
   if (evaluate_prepare(instance) != STATUS_DONE || !start_step(instance)) return false;
   instance->solver_memory = run;
   give_state(instance->state, lane);
@@ -187,7 +188,7 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
 enum LaneEvent single_run_find_event(struct SingleRun *run, const struct LaneView *lane, double *time) {
   struct Instance *instance = &run->instance;
   struct LaneCourse *course = &run->courses[lane->number];
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   if (course->progress.count >= EVENT_LIMIT) return EVENT_UNKNOWN;
   take(run, lane);
   take_series(run, lane);

@@ -16,7 +16,7 @@ struct LaneView {
   double origin, reach; /* time of the series' origin, and length of their step, in s */
   double *series;       /* state_count rows of SERIES_LENGTH coefficients */
   double *low;          /* state_count: compensation of the state at the origin */
-  double *parameter, *prepared, *input;
+  double *parameter, *parameter_constants, *input;
 };
 
 /* The result of a search for an event. */

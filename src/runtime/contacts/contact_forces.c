@@ -28,7 +28,7 @@
  * In rounding error bounds: accelerations of a contact whose force has just vanished that count as 0. Such an
  * acceleration is 0 but for several rounding errors, more than the bound covers.
  */
-static const double parting_in_noise = 1e3;
+static const double parting_in_error_bound = 1e3;
 
 /* Relative to the largest free acceleration: the rounding error of an acceleration that other contacts keep at 0. */
 static const double rounded_acceleration = 1e-12;
@@ -51,28 +51,28 @@ struct RestingContacts {
   void *block;
 };
 
-static bool sticks_on(const struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool sticks_on(const struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
   bool sticks = false;
   for (size_t i = 0; i < switches->friction_count; i++)
-    sticks |= rests_on(switches, i, contact) && friction_sticks(settlement, i);
+    sticks |= rests_on(switches, i, contact) && friction_sticks(resolution, i);
   return sticks;
 }
 
 /* Returns the rounding error bound of the acceleration; a larger one for a contact whose force has just vanished. */
-static double noise_of_acceleration(const struct Settlement *settlement, size_t contact) {
-  size_t indicator = contact_indicator(settlement->switches, contact);
-  bool parts = is_hit(settlement, indicator) && settlement->was_opened[contact] != 0.0;
-  double noise = settlement->noise[contact_place(settlement->switches, contact, CONTACT_ACCELERATION)];
-  return (parts ? parting_in_noise : 1.0) * noise;
+static double error_bound_of_acceleration(const struct Resolution *resolution, size_t contact) {
+  size_t indicator = contact_indicator(resolution->switches, contact);
+  bool parts = is_hit(resolution, indicator) && resolution->was_opened[contact] != 0.0;
+  double error_bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
+  return (parts ? parting_in_error_bound : 1.0) * error_bound;
 }
 
 /* True if a contact that its force has opened in this event accelerates towards closing. */
-static bool any_comes_back(const struct Settlement *settlement) {
+static bool any_comes_back(const struct Resolution *resolution) {
   bool any = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    any |= settlement->was_opened[i] > 0.0 && settlement->takes_part[i] != 0.0 && !contact_is_closed(settlement, i) &&
-           contact_value(settlement, i, CONTACT_ACCELERATION) < -noise_of_acceleration(settlement, i);
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    any |= resolution->was_opened[i] > 0.0 && resolution->takes_part[i] != 0.0 && !contact_is_closed(resolution, i) &&
+           contact_value(resolution, i, CONTACT_ACCELERATION) < -error_bound_of_acceleration(resolution, i);
   return any;
 }
 
@@ -80,67 +80,67 @@ static bool any_comes_back(const struct Settlement *settlement) {
  * Selects the contacts at rest without sticking friction and the frictions that slide, in takes_part. True if a
  * selected friction rests on a selected contact.
  */
-static bool choose_resting(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool choose_resting(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t contacts = switches->contact_count;
   bool slides = false;
   for (size_t i = 0; i < contacts; i++)
-    settlement->takes_part[i] = contact_is_at_rest(settlement, i) && !sticks_on(settlement, i) ? 1.0 : 0.0;
+    resolution->takes_part[i] = contact_is_at_rest(resolution, i) && !sticks_on(resolution, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    settlement->takes_part[contacts + i] = friction_sticks(settlement, i) ? 0.0 : 1.0;
+    resolution->takes_part[contacts + i] = friction_sticks(resolution, i) ? 0.0 : 1.0;
     for (size_t k = 0; k < contacts; k++)
-      slides |= settlement->takes_part[k] * settlement->takes_part[contacts + i] != 0.0 && rests_on(switches, i, k);
+      slides |= resolution->takes_part[k] * resolution->takes_part[contacts + i] != 0.0 && rests_on(switches, i, k);
   }
   return slides;
 }
 
 /* Computes the Delassus matrix with the selected contacts open; restores the modes. */
-static bool find_pushes(struct Settlement *settlement, struct Pushes *pushes) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool changed = settlement->changed;
-  settlement_keep_modes(settlement);
+static bool find_pushes(struct Resolution *resolution, struct Pushes *pushes) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool changed = resolution->changed;
+  resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (settlement->takes_part[i] != 0.0) set_contact(settlement, i, false);
-  bool done = pushes_create(settlement, pushes);
-  settlement_restore_modes(settlement);
-  settlement->changed = changed;
+    if (resolution->takes_part[i] != 0.0) set_contact(resolution, i, false);
+  bool done = pushes_create(resolution, pushes);
+  resolution_restore_modes(resolution);
+  resolution->changed = changed;
   return done;
 }
 
 /* Returns S_ij: the acceleration of gap i by a unit force of contact j with its sliding frictions. */
-static double mobility_with_friction(const struct Settlement *settlement, const struct Pushes *pushes, size_t i,
+static double delassus_with_friction(const struct Resolution *resolution, const struct Pushes *pushes, size_t i,
                                      size_t j) {
   size_t contacts = pushes->contact_count;
-  double sum = pushes->mobility[i * pushes->count + j];
+  double sum = pushes->delassus[i * pushes->count + j];
   for (size_t f = 0; f < pushes->friction_count; f++) {
-    double against = sliding_share(settlement, pushes->member[contacts + f]) * pushes->coefficient[f * contacts + j];
-    sum -= against * pushes->mobility[i * pushes->count + contacts + f];
+    double against = sliding_share(resolution, pushes->member[contacts + f]) * pushes->coefficient[f * contacts + j];
+    sum -= against * pushes->delassus[i * pushes->count + contacts + f];
   }
   return sum;
 }
 
 /* Fills S, scaled by the units, and the free accelerations: the present ones less those by the present forces. */
-static void fill_resting(const struct Settlement *settlement, struct RestingContacts *resting) {
+static void fill_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
   const struct Pushes *pushes = &resting->pushes;
   struct RestingForces *forces = &resting->forces;
   size_t n = forces->count;
-  for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(pushes->mobility[i * pushes->count + i]);
+  for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(pushes->delassus[i * pushes->count + i]);
   for (size_t i = 0; i < n; i++) {
-    forces->free[i] = contact_value(settlement, pushes->member[i], CONTACT_ACCELERATION) * resting->unit[i];
+    forces->free[i] = contact_value(resolution, pushes->member[i], CONTACT_ACCELERATION) * resting->unit[i];
     for (size_t j = 0; j < n; j++) {
-      double force = contact_force(settlement, pushes->member[j]);
-      double s = mobility_with_friction(settlement, pushes, i, j) * resting->unit[i] * resting->unit[j];
+      double force = contact_force(resolution, pushes->member[j]);
+      double s = delassus_with_friction(resolution, pushes, i, j) * resting->unit[i] * resting->unit[j];
       forces->s[i * n + j] = s;
-      if (contact_is_closed(settlement, pushes->member[j])) forces->free[i] -= s * force / resting->unit[j];
+      if (contact_is_closed(resolution, pushes->member[j])) forces->free[i] -= s * force / resting->unit[j];
     }
   }
 }
 
-void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact) {
-  log_message(settlement->instance, settlement_status(settlement),
+void contact_forces_refuse_fixed(const struct Resolution *resolution, size_t contact) {
+  log_message(resolution->instance, resolution_status(resolution),
               "time %g: the contact '%s' closes by prescribed motions alone; expected prescribed motions that keep the "
               "gap open, or a free coordinate in the gap",
-              settlement->time, settlement->switches->contacts[contact].name);
+              resolution->time, resolution->switches->contacts[contact].name);
 }
 
 /* Returns the contact whose impulse closes the gap of a row most; the row itself if none does. */
@@ -148,68 +148,68 @@ static size_t find_opponent(const struct Pushes *pushes, size_t row) {
   size_t found = row;
   double most = 0.0;
   for (size_t i = 0; i < pushes->contact_count; i++) {
-    double mobility = pushes->mobility[row * pushes->count + i];
-    if (mobility >= most) continue;
-    most = mobility;
+    double delassus = pushes->delassus[row * pushes->count + i];
+    if (delassus >= most) continue;
+    most = delassus;
     found = i;
   }
   return found;
 }
 
-static void log_crushed(const struct Settlement *settlement, const struct Pushes *pushes, size_t contact) {
-  const struct ContactFacts *contacts = settlement->switches->contacts;
+static void log_crushed(const struct Resolution *resolution, const struct Pushes *pushes, size_t contact) {
+  const struct ContactMetadata *contacts = resolution->switches->contacts;
   size_t row = 0;
   while (pushes->member[row] != contact) row++;
   log_message(
-      settlement->instance, settlement_status(settlement),
+      resolution->instance, resolution_status(resolution),
       "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions close one of them, and no "
       "force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of one",
-      settlement->time, contacts[contact].name, contacts[pushes->member[find_opponent(pushes, row)]].name);
+      resolution->time, contacts[contact].name, contacts[pushes->member[find_opponent(pushes, row)]].name);
 }
 
-const char *contact_forces_refuse_crushed(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
+const char *contact_forces_refuse_crushed(struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
   struct Pushes pushes;
   for (size_t i = 0; i < switches->contact_count; i++)
-    settlement->takes_part[i] = i == contact || is_touching(settlement, i) ? 1.0 : 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 0.0;
-  if (!find_pushes(settlement, &pushes)) return no_pushes;
-  log_crushed(settlement, &pushes, contact);
-  pushes_free(settlement, &pushes);
+    resolution->takes_part[i] = i == contact || is_touching(resolution, i) ? 1.0 : 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 0.0;
+  if (!find_pushes(resolution, &pushes)) return no_pushes;
+  log_crushed(resolution, &pushes, contact);
+  pushes_free(resolution, &pushes);
   return crushed;
 }
 
-static void free_resting(const struct Settlement *settlement, struct RestingContacts *resting) {
-  if (resting->block != NULL) scratch_return(settlement->instance, SCRATCH_RESTING);
-  pushes_free(settlement, &resting->pushes);
+static void free_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
+  if (resting->block != NULL) scratch_return(resolution->instance, SCRATCH_RESTING);
+  pushes_free(resolution, &resting->pushes);
 }
 
 /*
  * Sets up the problem. False, with *problem NULL, if no force changes the gap of a contact; with the reason, if M is
  * singular or memory is missing.
  */
-static bool create_resting(struct Settlement *settlement, struct RestingContacts *resting, const char **problem) {
+static bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
   *problem = NULL;
-  if (!find_pushes(settlement, &resting->pushes)) {
+  if (!find_pushes(resolution, &resting->pushes)) {
     *problem = no_pushes;
     return false;
   }
   size_t n = resting->pushes.contact_count, bytes = resting_forces_bytes(n);
-  resting->block = scratch_take(settlement->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
+  resting->block = scratch_take(resolution->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
   bool moves = true;
-  for (size_t i = 0; i < n; i++) moves &= resting->pushes.mobility[i * resting->pushes.count + i] > DBL_MIN;
+  for (size_t i = 0; i < n; i++) moves &= resting->pushes.delassus[i * resting->pushes.count + i] > DBL_MIN;
   if (resting->block == NULL) {
-    solver_lacks_memory(settlement->instance);
+    solver_lacks_memory(resolution->instance);
     *problem = no_pushes;
   }
   if (resting->block == NULL || !moves) {
-    free_resting(settlement, resting);
+    free_resting(resolution, resting);
     return false;
   }
   resting->unit = resting->block;
   resting->forces = resting_forces_in(resting->unit + n, n);
-  fill_resting(settlement, resting);
+  fill_resting(resolution, resting);
   return true;
 }
 
@@ -217,14 +217,14 @@ static bool create_resting(struct Settlement *settlement, struct RestingContacts
  * Returns the open contact at rest with the largest closing acceleration beyond rounding, such as one opened too early;
  * contact_count if there is none.
  */
-static size_t find_sinking(const struct Settlement *settlement, const struct RestingContacts *resting) {
+static size_t find_sinking(const struct Resolution *resolution, const struct RestingContacts *resting) {
   double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces), most = 0.0;
-  size_t found = settlement->switches->contact_count;
+  size_t found = resolution->switches->contact_count;
   for (size_t i = 0; i < resting->forces.count; i++) {
     size_t contact = resting->pushes.member[i];
-    double acceleration = contact_value(settlement, contact, CONTACT_ACCELERATION);
-    double least = noise_of_acceleration(settlement, contact) + rounding / resting->unit[i];
-    if (contact_is_closed(settlement, contact) || !(acceleration < -least) || acceleration >= most) continue;
+    double acceleration = contact_value(resolution, contact, CONTACT_ACCELERATION);
+    double least = error_bound_of_acceleration(resolution, contact) + rounding / resting->unit[i];
+    if (contact_is_closed(resolution, contact) || !(acceleration < -least) || acceleration >= most) continue;
     most = acceleration;
     found = contact;
   }
@@ -241,103 +241,103 @@ static size_t find_locked(const struct RestingContacts *resting) {
 }
 
 /* Returns the name of the friction that reduces the diagonal element of S most. */
-static const char *locking_friction(const struct Settlement *settlement, const struct Pushes *pushes, size_t contact) {
+static const char *locking_friction(const struct Resolution *resolution, const struct Pushes *pushes, size_t contact) {
   size_t contacts = pushes->contact_count, most = 0;
   double taken = -INFINITY;
   for (size_t f = 0; f < pushes->friction_count; f++) {
-    double takes = sliding_share(settlement, pushes->member[contacts + f]) *
+    double takes = sliding_share(resolution, pushes->member[contacts + f]) *
                    pushes->coefficient[f * contacts + contact] *
-                   pushes->mobility[contact * pushes->count + contacts + f];
+                   pushes->delassus[contact * pushes->count + contacts + f];
     if (takes > taken) most = f;
     taken = fmax(takes, taken);
   }
-  return settlement->switches->frictions[pushes->member[contacts + most]].name;
+  return resolution->switches->frictions[pushes->member[contacts + most]].name;
 }
 
-static const char *refuse_forces(const struct Settlement *settlement, const struct RestingContacts *resting,
+static const char *refuse_forces(const struct Resolution *resolution, const struct RestingContacts *resting,
                                  const char *how_many) {
   const struct Pushes *pushes = &resting->pushes;
   size_t contact = find_locked(resting);
-  log_message(settlement->instance, settlement_status(settlement),
+  log_message(resolution->instance, resolution_status(resolution),
               "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
               "together (Painleve's paradox); expected less friction, or another position",
-              settlement->time, settlement->switches->contacts[pushes->member[contact]].name, how_many,
-              locking_friction(settlement, pushes, contact));
+              resolution->time, resolution->switches->contacts[pushes->member[contact]].name, how_many,
+              locking_friction(resolution, pushes, contact));
   return "forces of contacts with friction are not determined";
 }
 
 /* Lets frictions in planes on a contact that closes slide: they may have lost their force as the contact opened. */
-static void let_slide(struct Settlement *settlement, size_t contact) {
-  for (size_t i = 0; i < settlement->switches->friction_count; i++)
-    if (is_in_plane(settlement->switches, i) && rests_on(settlement->switches, i, contact))
-      set_friction(settlement, i, 1.0);
+static void let_slide(struct Resolution *resolution, size_t contact) {
+  for (size_t i = 0; i < resolution->switches->friction_count; i++)
+    if (is_in_plane(resolution->switches, i) && rests_on(resolution->switches, i, contact))
+      set_friction(resolution, i, 1.0);
 }
 
 /* Opens and closes the contacts according to the solution. True if any changes. */
-static bool take_solution(struct Settlement *settlement, const struct RestingContacts *resting) {
+static bool take_solution(struct Resolution *resolution, const struct RestingContacts *resting) {
   bool changes = false;
   const struct RestingForces *forces = &resting->forces;
   double rounding = rounded_force * largest_free_acceleration(forces);
   for (size_t i = 0; i < forces->count; i++) {
     size_t contact = resting->pushes.member[i];
-    bool is_closed = contact_is_closed(settlement, contact);
+    bool is_closed = contact_is_closed(resolution, contact);
     bool presses = forces->found_force[i] > rounding, parts = forces->found[i] > rounding;
     if (is_closed ? !parts : !presses) continue;
-    set_contact(settlement, contact, !is_closed);
-    if (!is_closed) let_slide(settlement, contact);
-    settlement->was_opened[contact] = is_closed ? 1.0 : -1.0;
+    set_contact(resolution, contact, !is_closed);
+    if (!is_closed) let_slide(resolution, contact);
+    resolution->was_opened[contact] = is_closed ? 1.0 : -1.0;
     changes = true;
   }
   return changes;
 }
 
 /* Warns at most once an instance that the solution may not be unique. */
-static void tell_of_others(const struct Settlement *settlement, const struct RestingContacts *resting) {
+static void report_others(const struct Resolution *resolution, const struct RestingContacts *resting) {
   const struct Pushes *pushes = &resting->pushes;
   size_t contact = find_locked(resting);
-  if (settlement->instance->told_other_forces) return;
-  settlement->instance->told_other_forces = true;
-  log_message(settlement->instance, STATUS_WARNING,
+  if (resolution->instance->reported_other_forces) return;
+  resolution->instance->reported_other_forces = true;
+  log_message(resolution->instance, STATUS_WARNING,
               "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another "
               "solution: too many contacts are coupled to exclude it",
-              settlement->time, settlement->switches->contacts[pushes->member[contact]].name,
-              locking_friction(settlement, pushes, contact));
+              resolution->time, resolution->switches->contacts[pushes->member[contact]].name,
+              locking_friction(resolution, pushes, contact));
 }
 
-const char *contact_forces_settle(struct Settlement *settlement, bool *again) {
+const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   struct RestingContacts resting;
   *again = false;
   const char *problem = NULL;
-  bool slides = choose_resting(settlement);
-  if (!slides && !any_comes_back(settlement)) return NULL;
-  if (!create_resting(settlement, &resting, &problem)) return problem;
-  size_t sinking = find_sinking(settlement, &resting);
-  bool closes = sinking < settlement->switches->contact_count;
+  bool slides = choose_resting(resolution);
+  if (!slides && !any_comes_back(resolution)) return NULL;
+  if (!create_resting(resolution, &resting, &problem)) return problem;
+  size_t sinking = find_sinking(resolution, &resting);
+  bool closes = sinking < resolution->switches->contact_count;
   enum RestingSolutions solutions = slides || closes ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
   if (!slides && solutions >= PERHAPS_NONE) {
-    log_crushed(settlement, &resting.pushes, sinking);
+    log_crushed(resolution, &resting.pushes, sinking);
     problem = crushed;
   } else if (numbers_of_solutions[solutions] != NULL)
-    problem = refuse_forces(settlement, &resting, numbers_of_solutions[solutions]);
-  else if (closes) *again = take_solution(settlement, &resting);
-  if (solutions == PERHAPS_OTHERS) tell_of_others(settlement, &resting);
-  free_resting(settlement, &resting);
+    problem = refuse_forces(resolution, &resting, numbers_of_solutions[solutions]);
+  else if (closes) *again = take_solution(resolution, &resting);
+  if (solutions == PERHAPS_OTHERS) report_others(resolution, &resting);
+  free_resting(resolution, &resting);
   return problem;
 }
 
-bool contact_forces_explain(struct Settlement *settlement) {
+bool contact_forces_explain(struct Resolution *resolution) {
   struct RestingContacts resting;
   const char *problem;
-  if (!choose_resting(settlement) || !create_resting(settlement, &resting, &problem)) return false;
+  if (!choose_resting(resolution) || !create_resting(resolution, &resting, &problem)) return false;
   size_t contact = find_locked(&resting);
   bool jams = resting.forces.s[contact * resting.forces.count + contact] < jamming_share;
   if (jams)
     log_message(
-        settlement->instance, STATUS_DISCARD,
+        resolution->instance, STATUS_DISCARD,
         "time %g: the friction '%s' slides and presses the contact '%s' together ever more strongly, up to a jam "
         "(Painleve's paradox); expected less friction, or another position",
-        settlement->time, locking_friction(settlement, &resting.pushes, contact),
-        settlement->switches->contacts[resting.pushes.member[contact]].name);
-  free_resting(settlement, &resting);
+        resolution->time, locking_friction(resolution, &resting.pushes, contact),
+        resolution->switches->contacts[resting.pushes.member[contact]].name);
+  free_resting(resolution, &resting);
   return jams;
 }

@@ -2,25 +2,25 @@
 #ifndef CONTACT_FORCES_H
 #define CONTACT_FORCES_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * Opens and closes contacts at rest according to the solution for their forces; sets *again if any changed. Warns once
  * if the solution was not shown to be the only one. Returns NULL, or, after logging contact and friction, the reason
  * why the motion cannot go on.
  */
-const char *contact_forces_settle(struct Settlement *settlement, bool *again);
+const char *contact_forces_resolve(struct Resolution *resolution, bool *again);
 
 /*
  * Logs a contact that closes whatever its impulse, and one that opposes it: prescribed motions crush a body between
  * them. Returns the reason why the motion cannot go on.
  */
-const char *contact_forces_refuse_crushed(struct Settlement *settlement, size_t contact);
+const char *contact_forces_refuse_crushed(struct Resolution *resolution, size_t contact);
 
 /* Logs a contact that closes and whose gap no force changes. */
-void contact_forces_refuse_fixed(const struct Settlement *settlement, size_t contact);
+void contact_forces_refuse_fixed(const struct Resolution *resolution, size_t contact);
 
 /* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */
-bool contact_forces_explain(struct Settlement *settlement);
+bool contact_forces_explain(struct Resolution *resolution);
 
 #endif

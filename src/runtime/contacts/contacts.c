@@ -6,7 +6,7 @@
  * and the motion ends.
  *
  * act_once() makes one change a round: it opens contacts that were lifted or part, or takes an impact, or closes those
- * that come to rest, or projects out penetrations, or opens the closed contact that pulls most. settle.c repeats the
+ * that come to rest, or projects out penetrations, or opens the closed contact that pulls most. resolve.c repeats the
  * rounds until none changes anything.
  *
  * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
@@ -24,7 +24,7 @@
 #include "evaluation/services.h"
 #include "events/continuity.h"
 #include "events/indicators.h"
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * IMPACT_LIMIT: impacts of an event that are taken one after another. LIFT_LIMIT: projections of penetrated contacts,
@@ -43,8 +43,8 @@ static const double largest_penetration = 1e-9;
 /* Relative to the largest coordinate: start values with four digits penetrate a contact by no more. */
 static const double rounded_start = 1e-4;
 
-/* In rounding error bounds: a negative gap up to this is not located again, as the search allows FLOOR_IN_NOISE. */
-static const double found_again = 0.25 * FLOOR_IN_NOISE;
+/* In rounding error bounds: a negative gap up to this is not located again, as the search allows FLOOR_IN_ERROR_BOUND. */
+static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 
 /* Relative to the largest rate of the gap in this event: impulses by iteration may leave smaller closing rates. */
 static const double unresolved_share = 1e-6;
@@ -58,39 +58,39 @@ static const char no_impact[] = "an impact of a contact has no solution";
  * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding do not count, but for
  * the contact whose zero was located, before its first impact.
  */
-static size_t find_impact(const struct Settlement *settlement) {
-  size_t found = settlement->switches->contact_count;
+static size_t find_impact(const struct Resolution *resolution) {
+  size_t found = resolution->switches->contact_count;
   double fastest = 0.0;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    size_t rate = contact_place(settlement->switches, i, CONTACT_RATE);
-    bool is_open = !contact_is_closed(settlement, i) && settlement->was_opened[i] == 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    size_t rate = contact_slot(resolution->switches, i, CONTACT_RATE);
+    bool is_open = !contact_is_closed(resolution, i) && resolution->was_opened[i] == 0.0;
     bool is_hit_first =
-        is_hit(settlement, contact_indicator(settlement->switches, i)) && is_open && settlement->impacts == 0;
-    bool closes = settlement->value[rate] < (is_hit_first ? 0.0 : -settlement->noise[rate]);
-    if (!closes || !is_touching(settlement, i) || settlement->value[rate] >= fastest) continue;
-    fastest = settlement->value[rate];
+        is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
+    bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -resolution->error_bound[rate]);
+    if (!closes || !is_touching(resolution, i) || resolution->value[rate] >= fastest) continue;
+    fastest = resolution->value[rate];
     found = i;
   }
   return found;
 }
 
 /* True if a contact still closes after an impact of all that touch. */
-static bool closes_clearly(const struct Settlement *settlement, size_t contact) {
-  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
-  return settlement->value[rate] < -unresolved_share * settlement->largest[rate];
+static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
+  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
+  return resolution->value[rate] < -unresolved_share * resolution->largest[rate];
 }
 
-static void open_all(struct Settlement *settlement) {
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) set_contact(settlement, i, false);
+static void open_all(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) set_contact(resolution, i, false);
 }
 
 /* Logs a restitution outside of 0 to 1, and returns false. */
-static bool check_restitution(const struct Settlement *settlement, size_t contact) {
-  double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
+static bool check_restitution(const struct Resolution *resolution, size_t contact) {
+  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
   if (restitution >= 0.0 && restitution <= 1.0) return true;
-  log_message(settlement->instance, STATUS_DISCARD,
-              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", settlement->time,
-              settlement->switches->contacts[contact].name, restitution);
+  log_message(resolution->instance, STATUS_DISCARD,
+              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", resolution->time,
+              resolution->switches->contacts[contact].name, restitution);
   return false;
 }
 
@@ -98,83 +98,83 @@ static bool check_restitution(const struct Settlement *settlement, size_t contac
  * Selects the contacts that are hit as fast as one, within rounding, and all frictions; beyond IMPACT_LIMIT all
  * touching contacts. False after logging an invalid restitution.
  */
-static bool choose_hit(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
-  size_t place = contact_place(switches, contact, CONTACT_RATE);
-  double fastest = settlement->value[place], noise = settlement->noise[place];
-  bool bounces = settlement->impacts < IMPACT_LIMIT, is_fine = true;
+static bool choose_hit(struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t slot = contact_slot(switches, contact, CONTACT_RATE);
+  double fastest = resolution->value[slot], error_bound = resolution->error_bound[slot];
+  bool bounces = resolution->impacts < IMPACT_LIMIT, is_fine = true;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t rate = contact_place(switches, i, CONTACT_RATE);
-    double slower = settlement->value[rate] - fastest;
-    bool is_tied = slower <= noise + settlement->noise[rate] - equal_share * fastest;
-    settlement->takes_part[i] = is_touching(settlement, i) && (is_tied || !bounces) ? 1.0 : 0.0;
-    if (settlement->takes_part[i] == 0.0) continue;
-    is_fine &= check_restitution(settlement, i);
-    settlement->was_opened[i] = 0.0;
+    size_t rate = contact_slot(switches, i, CONTACT_RATE);
+    double slower = resolution->value[rate] - fastest;
+    bool is_tied = slower <= error_bound + resolution->error_bound[rate] - equal_share * fastest;
+    resolution->takes_part[i] = is_touching(resolution, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    if (resolution->takes_part[i] == 0.0) continue;
+    is_fine &= check_restitution(resolution, i);
+    resolution->was_opened[i] = 0.0;
   }
-  for (size_t i = 0; i < switches->friction_count; i++) settlement->takes_part[switches->contact_count + i] = 1.0;
+  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 1.0;
   return is_fine;
 }
 
 /* Lets sticking frictions slide whose contacts are all open. */
-static void let_go(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static void let_go(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
     bool rests = false, presses = false;
     for (size_t k = 0; k < switches->contact_count; k++) {
       if (!rests_on(switches, i, k)) continue;
       rests = true;
-      presses |= contact_is_closed(settlement, k);
+      presses |= contact_is_closed(resolution, k);
     }
-    if (!rests || presses || !friction_sticks(settlement, i)) continue;
-    set_friction(settlement, i, 1.0);
+    if (!rests || presses || !friction_sticks(resolution, i)) continue;
+    set_friction(resolution, i, 1.0);
   }
 }
 
-static void let_all_slide(struct Settlement *settlement) {
-  for (size_t i = 0; i < settlement->switches->friction_count; i++) set_friction(settlement, i, 1.0);
+static void let_all_slide(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
 }
 
 /*
  * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
  * be evaluated.
  */
-static bool let_stopped_head(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool let_stopped_head(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   if (switches->plane_count == 0) return true;
-  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
-  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
-  switches->switching_values(&point, settlement->acceleration, settlement->value);
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  switches->switching_values(&point, resolution->acceleration, resolution->value);
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along;
-    if (!friction_sticks(settlement, along) && !(speed_in_plane(settlement, along) > least_speed))
-      set_friction(settlement, along, 1.0);
+    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
+      set_friction(resolution, along, 1.0);
   }
   return true;
 }
 
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
-static bool take_impact(struct Settlement *settlement, size_t contact) {
-  if (!choose_hit(settlement, contact)) return false;
-  settlement_keep_modes(settlement);
-  let_all_slide(settlement);
-  open_all(settlement);
-  bool done = impacts_take(settlement, settlement->impacts < IMPACT_LIMIT);
-  settlement_restore_modes(settlement);
-  open_all(settlement);
-  let_go(settlement);
-  settlement->jumped = true;
-  settlement->impacts++;
-  return done && let_stopped_head(settlement);
+static bool take_impact(struct Resolution *resolution, size_t contact) {
+  if (!choose_hit(resolution, contact)) return false;
+  resolution_keep_modes(resolution);
+  let_all_slide(resolution);
+  open_all(resolution);
+  bool done = impacts_take(resolution, resolution->impacts < IMPACT_LIMIT);
+  resolution_restore_modes(resolution);
+  open_all(resolution);
+  let_go(resolution);
+  resolution->jumped = true;
+  resolution->impacts++;
+  return done && let_stopped_head(resolution);
 }
 
 /* Logs singular equations, which name no contact by themselves; other reasons have been logged. */
-static const char *refuse_singular_impact(const struct Settlement *settlement, size_t contact) {
-  if (settlement->instance->singular != 0)
-    log_message(settlement->instance, settlement_status(settlement),
+static const char *refuse_singular_impact(const struct Resolution *resolution, size_t contact) {
+  if (resolution->instance->singular != 0)
+    log_message(resolution->instance, resolution_status(resolution),
                 "time %g: the impact of the contact '%s' has no solution, as the equations of motion are singular "
                 "without contacts; expected masses for all coordinates",
-                settlement->time, settlement->switches->contacts[contact].name);
+                resolution->time, resolution->switches->contacts[contact].name);
   return no_impact;
 }
 
@@ -185,44 +185,46 @@ static const double largest_step_error = 1e-4;
  * True if an importer reaches the ground while the contact still parts: the error of its first step after the last impact exceeds the
  * height of the bounce, as that of the next first step would.
  */
-static bool is_overtaken(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
-  const double *value = &settlement->value[gap], *noise = &settlement->noise[gap];
-  bool has_jumped = settlement->jumped || settlement->moved || settlement->switched != NULL || settlement->set_mode;
-  if (settlement->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -noise[CONTACT_GAP])) return false;
+static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  const double *value = &resolution->value[gap], *error_bound = &resolution->error_bound[gap];
+  bool has_jumped = resolution->jumped || resolution->moved || resolution->switched != NULL || resolution->set_mode;
+  if (resolution->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -error_bound[CONTACT_GAP]))
+    return false;
   double height = 0.5 * value[CONTACT_RATE] * value[CONTACT_RATE] / -value[CONTACT_ACCELERATION];
-  return value[CONTACT_RATE] > noise[CONTACT_RATE] &&
-         height <= largest_step_error * largest_scale(settlement->state, 0);
+  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] &&
+         height <= largest_step_error * largest_scale(resolution->state, 0);
 }
 
 /* True if an open contact touches, accelerates towards closing, and would only make bounces that errors hide. */
-static bool comes_to_rest(const struct Settlement *settlement, size_t contact) {
-  size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
-  if (settlement->was_opened[contact] != 0.0 || !is_touching(settlement, contact)) return false;
-  if (!(-settlement->value[acceleration] > settlement->noise[acceleration])) return false;
-  return is_overtaken(settlement, contact) ||
-         bounce_is_lost(settlement, contact, contact_value(settlement, contact, CONTACT_RATE));
+static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
+  size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
+  if (resolution->was_opened[contact] != 0.0 || !is_touching(resolution, contact)) return false;
+  if (!(-resolution->value[acceleration] > resolution->error_bound[acceleration])) return false;
+  return is_overtaken(resolution, contact) ||
+         bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
 }
 
 /* Lets frictions slide that stick at a velocity that an impact has set, before the velocities are projected. */
-static void let_moving_slide(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  for (size_t i = 0; i < switches->friction_count && settlement->jumped; i++) {
-    size_t place = friction_place(switches, i, FRICTION_VELOCITY);
-    double velocity = settlement->value[place];
-    if (!friction_sticks(settlement, i) || fabs(velocity) <= settlement_noise(settlement, place, place + FRICTION_RATE))
+static void let_moving_slide(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count && resolution->jumped; i++) {
+    size_t slot = friction_slot(switches, i, FRICTION_VELOCITY);
+    double velocity = resolution->value[slot];
+    if (!friction_sticks(resolution, i) ||
+        fabs(velocity) <= resolution_error_bound(resolution, slot, slot + FRICTION_RATE))
       continue;
-    set_friction(settlement, i, velocity < 0.0 ? -1.0 : 1.0);
+    set_friction(resolution, i, velocity < 0.0 ? -1.0 : 1.0);
   }
 }
 
 /* Lets frictions stick that do not slide as the contact comes to rest: the projection of the gap would move them. */
-static void let_stick(struct Settlement *settlement, size_t contact) {
-  const struct SwitchTable *switches = settlement->switches;
+static void let_stick(struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t velocity = friction_place(switches, i, FRICTION_VELOCITY);
-    bool slides = sliding_speed(settlement, i) > settlement->noise[velocity];
-    if (rests_on(switches, i, contact) && !slides) set_friction(settlement, i, 0.0);
+    size_t velocity = friction_slot(switches, i, FRICTION_VELOCITY);
+    bool slides = sliding_speed(resolution, i) > resolution->error_bound[velocity];
+    if (rests_on(switches, i, contact) && !slides) set_friction(resolution, i, 0.0);
   }
 }
 
@@ -231,114 +233,114 @@ static void let_stick(struct Settlement *settlement, size_t contact) {
  * rounding errors, and the last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
  * contact that pulled before the others came to rest may rest too.
  */
-static bool rests_with_others(const struct Settlement *settlement, size_t contact) {
-  size_t acceleration = contact_place(settlement->switches, contact, CONTACT_ACCELERATION);
-  if (!is_touching(settlement, contact)) return false;
-  if (settlement->value[acceleration] > settlement->noise[acceleration]) return false;
-  return bounce_is_lost(settlement, contact, 0.5 * contact_value(settlement, contact, CONTACT_RATE));
+static bool rests_with_others(const struct Resolution *resolution, size_t contact) {
+  size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
+  if (!is_touching(resolution, contact)) return false;
+  if (resolution->value[acceleration] > resolution->error_bound[acceleration]) return false;
+  return bounce_is_lost(resolution, contact, 0.5 * contact_value(resolution, contact, CONTACT_RATE));
 }
 
-static bool close_those(struct Settlement *settlement, bool (*rests)(const struct Settlement *, size_t)) {
+static bool close_those(struct Resolution *resolution, bool (*rests)(const struct Resolution *, size_t)) {
   bool closes = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    if (contact_is_closed(settlement, i) || !rests(settlement, i)) continue;
-    set_contact(settlement, i, true);
-    let_stick(settlement, i);
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (contact_is_closed(resolution, i) || !rests(resolution, i)) continue;
+    set_contact(resolution, i, true);
+    let_stick(resolution, i);
     closes = true;
   }
   return closes;
 }
 
 /* Closes all contacts that come to rest, and, in this round and the next, those that stay with them. True if any. */
-static bool close_contacts(struct Settlement *settlement) {
-  bool comes = close_those(settlement, comes_to_rest), shares = comes || settlement->came_to_rest;
-  settlement->came_to_rest = comes;
-  if (!(shares && close_those(settlement, rests_with_others)) && !comes) return false;
-  let_moving_slide(settlement);
+static bool close_contacts(struct Resolution *resolution) {
+  bool comes = close_those(resolution, comes_to_rest), shares = comes || resolution->came_to_rest;
+  resolution->came_to_rest = comes;
+  if (!(shares && close_those(resolution, rests_with_others)) && !comes) return false;
+  let_moving_slide(resolution);
   return true;
 }
 
-static const char *refuse_rest(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static const char *refuse_rest(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t contact = 0;
-  while (contact + 1 < switches->contact_count && !is_touching(settlement, contact)) contact++;
-  log_message(settlement->instance, settlement_status(settlement),
+  while (contact + 1 < switches->contact_count && !is_touching(resolution, contact)) contact++;
+  log_message(resolution->instance, resolution_status(resolution),
               "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
               "fewer constraints",
-              settlement->time, switches->contacts[contact].name);
+              resolution->time, switches->contacts[contact].name);
   return no_impact;
 }
 
 /*
  * Returns a closed contact that accelerates towards closing although no force changes its gap; contact_count for none.
  */
-static size_t find_prescribed(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static size_t find_prescribed(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t contact = 0;
   while (contact < switches->contact_count &&
-         (!contact_is_closed(settlement, contact) ||
-          settlement_moves(settlement, switches->contacts[contact].constraint) ||
-          contact_value(settlement, contact, CONTACT_ACCELERATION) >=
-              -settlement->noise[contact_place(switches, contact, CONTACT_ACCELERATION)]))
+         (!contact_is_closed(resolution, contact) ||
+          resolution_moves(resolution, switches->contacts[contact].constraint) ||
+          contact_value(resolution, contact, CONTACT_ACCELERATION) >=
+              -resolution->error_bound[contact_slot(switches, contact, CONTACT_ACCELERATION)]))
     contact++;
   return contact;
 }
 
 /* Projects the velocities onto the contacts that have come to rest. NULL, or the reason why that fails. */
-static const char *let_rest(struct Settlement *settlement) {
-  if (!settlement_push(settlement)) return refuse_rest(settlement);
-  size_t fixed = find_prescribed(settlement);
-  if (fixed < settlement->switches->contact_count) {
-    contact_forces_refuse_fixed(settlement, fixed);
+static const char *let_rest(struct Resolution *resolution) {
+  if (!resolution_push(resolution)) return refuse_rest(resolution);
+  size_t fixed = find_prescribed(resolution);
+  if (fixed < resolution->switches->contact_count) {
+    contact_forces_refuse_fixed(resolution, fixed);
     return no_impact;
   }
-  return let_stopped_head(settlement) ? NULL : refuse_rest(settlement);
+  return let_stopped_head(resolution) ? NULL : refuse_rest(resolution);
 }
 
 /* Returns the gap beyond which a closed contact was moved apart; larger for importers, whose states drift more. */
-static double largest_drift(const struct Settlement *settlement) {
-  return (settlement->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(settlement->state, 0);
+static double largest_drift(const struct Resolution *resolution) {
+  return (resolution->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(resolution->state, 0);
 }
 
 /* Opens closed contacts that were moved apart. True if any. */
-static bool open_lifted(struct Settlement *settlement) {
+static bool open_lifted(struct Resolution *resolution) {
   bool opens = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    if (!contact_is_closed(settlement, i) || contact_value(settlement, i, CONTACT_GAP) <= largest_drift(settlement))
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (!contact_is_closed(resolution, i) || contact_value(resolution, i, CONTACT_GAP) <= largest_drift(resolution))
       continue;
-    set_contact(settlement, i, false);
+    set_contact(resolution, i, false);
     opens = true;
   }
   return opens;
 }
 
 /* Opens closed contacts whose gap opens faster than errors, at a switch such as an edge or by an event. True if any. */
-static bool open_parting(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  double drift = continuity_allowed_share(settlement) * largest_scale(settlement->state, lagrangian.coordinate_count);
+static bool open_parting(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  double drift = continuity_allowed_share(resolution) * largest_scale(resolution->state, lagrangian.coordinate_count);
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t place = contact_place(switches, i, CONTACT_RATE);
-    double rate = settlement->value[place], least = settlement->thrown ? settlement->noise[place] : drift;
-    if (!contact_is_closed(settlement, i) || !(rate > least)) continue;
-    set_contact(settlement, i, false);
-    settlement->was_opened[i] = 1.0;
+    size_t slot = contact_slot(switches, i, CONTACT_RATE);
+    double rate = resolution->value[slot], least = resolution->thrown ? resolution->error_bound[slot] : drift;
+    if (!contact_is_closed(resolution, i) || !(rate > least)) continue;
+    set_contact(resolution, i, false);
+    resolution->was_opened[i] = 1.0;
     opens = true;
   }
   return opens;
 }
 
-static bool part(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  open_lifted(settlement);
+static bool part(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  open_lifted(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = contact_value(settlement, i, CONTACT_GAP);
-    if (contact_is_closed(settlement, i) || gap >= -largest_drift(settlement)) continue;
+    double gap = contact_value(resolution, i, CONTACT_GAP);
+    if (contact_is_closed(resolution, i) || gap >= -largest_drift(resolution)) continue;
     log_message(
-        settlement->instance, STATUS_DISCARD,
+        resolution->instance, STATUS_DISCARD,
         "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
         "expected values for which it is not negative",
-        settlement->time, switches->contacts[i].name, gap);
+        resolution->time, switches->contacts[i].name, gap);
     return false;
   }
   return true;
@@ -349,103 +351,103 @@ static bool part(struct Settlement *settlement) {
  * see a zero of an indicator that stays negative. At an event this concerns a contact without speed, or one that has
  * just opened and that the projection onto other constraints has left penetrated; it would be located again and again.
  */
-static bool has_to_lift(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
-  const double *value = settlement->value, *noise = settlement->noise;
-  if (contact_is_closed(settlement, contact) || !(value[gap] < -noise[gap])) return false;
-  if (!(value[gap] >= -largest_drift(settlement))) return false;
-  bool has_stopped = settlement->jumped && value[rate] <= noise[rate];
-  bool is_stuck = is_hit(settlement, contact_indicator(settlement->switches, contact)) && value[rate] >= 0.0;
-  bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * noise[gap];
-  return settlement->occasion == IN_EXCHANGE || (settlement->occasion == AT_EVENT && comes_again);
+static bool has_to_lift(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
+  const double *value = resolution->value, *error_bound = resolution->error_bound;
+  if (contact_is_closed(resolution, contact) || !(value[gap] < -error_bound[gap])) return false;
+  if (!(value[gap] >= -largest_drift(resolution))) return false;
+  bool has_stopped = resolution->jumped && value[rate] <= error_bound[rate];
+  bool is_stuck = is_hit(resolution, contact_indicator(resolution->switches, contact)) && value[rate] >= 0.0;
+  bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * error_bound[gap];
+  return resolution->occasion == IN_EXCHANGE || (resolution->occasion == AT_EVENT && comes_again);
 }
 
 /* Projects the penetrations of all such contacts to 0; *lifts if there are any. False if the projection fails. */
-static bool lift(struct Settlement *settlement, bool *lifts) {
+static bool lift(struct Resolution *resolution, bool *lifts) {
   *lifts = false;
-  if (settlement->moved || settlement->lifts == LIFT_LIMIT) return true;
-  settlement_keep_modes(settlement);
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    if (!has_to_lift(settlement, i)) continue;
-    set_contact(settlement, i, true);
+  if (resolution->moved || resolution->lifts == LIFT_LIMIT) return true;
+  resolution_keep_modes(resolution);
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (!has_to_lift(resolution, i)) continue;
+    set_contact(resolution, i, true);
     *lifts = true;
   }
   if (!*lifts) return true;
-  settlement->lifts++;
-  bool done = settlement_move(settlement);
-  settlement_restore_modes(settlement);
+  resolution->lifts++;
+  bool done = resolution_move(resolution);
+  resolution_restore_modes(resolution);
   return done;
 }
 
 /* Undoes a projection at the start that has moved a fixed coordinate. True if it has. */
-static bool undo_move_of_fixed(struct Settlement *settlement) {
+static bool undo_move_of_fixed(struct Resolution *resolution) {
   const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
   bool moves = false;
   for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++)
-    moves |= is_fixed[i] && fabs(settlement->correction[i]) > largest_penetration * scale_of(settlement->state, i);
-  for (size_t i = 0; i < lagrangian.coordinate_count && moves; i++) settlement->state[i] -= settlement->correction[i];
+    moves |= is_fixed[i] && fabs(resolution->correction[i]) > largest_penetration * scale_of(resolution->state, i);
+  for (size_t i = 0; i < lagrangian.coordinate_count && moves; i++) resolution->state[i] -= resolution->correction[i];
   return moves;
 }
 
 /* True if the penetration of a contact may come from rounded start values. */
-static bool is_rounded(const struct Settlement *settlement, size_t contact) {
-  double gap = contact_value(settlement, contact, CONTACT_GAP);
-  return gap < -largest_penetration && gap >= -rounded_start * largest_scale(settlement->state, 0);
+static bool is_rounded(const struct Resolution *resolution, size_t contact) {
+  double gap = contact_value(resolution, contact, CONTACT_GAP);
+  return gap < -largest_penetration && gap >= -rounded_start * largest_scale(resolution->state, 0);
 }
 
 /*
  * Projects out penetrations by rounded start values; takes_part keeps the most negative gap of each contact. True if
  * there are any, and they can be moved.
  */
-static bool part_at_start(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool part_at_start(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   bool parts = false;
-  settlement_keep_modes(settlement);
+  resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    if (!is_rounded(settlement, i)) continue;
-    settlement->takes_part[i] = fmin(settlement->takes_part[i], contact_value(settlement, i, CONTACT_GAP));
-    set_contact(settlement, i, true);
+    if (!is_rounded(resolution, i)) continue;
+    resolution->takes_part[i] = fmin(resolution->takes_part[i], contact_value(resolution, i, CONTACT_GAP));
+    set_contact(resolution, i, true);
     parts = true;
   }
-  parts = parts && settlement_move(settlement) && !undo_move_of_fixed(settlement);
-  settlement_restore_modes(settlement);
+  parts = parts && resolution_move(resolution) && !undo_move_of_fixed(resolution);
+  resolution_restore_modes(resolution);
   return parts;
 }
 
-static void log_parted(const struct Settlement *settlement) {
-  for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    if (settlement->takes_part[i] < 0.0 && !is_rounded(settlement, i))
-      log_message(settlement->instance, STATUS_DONE,
-                  "time %g: the start values are moved to open the contact '%s', whose gap was %g", settlement->time,
-                  settlement->switches->contacts[i].name, settlement->takes_part[i]);
+static void log_parted(const struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (resolution->takes_part[i] < 0.0 && !is_rounded(resolution, i))
+      log_message(resolution->instance, STATUS_DONE,
+                  "time %g: the start values are moved to open the contact '%s', whose gap was %g", resolution->time,
+                  resolution->switches->contacts[i].name, resolution->takes_part[i]);
 }
 
-static bool lift_start(struct Settlement *settlement) {
+static bool lift_start(struct Resolution *resolution) {
   int count = 0;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) settlement->takes_part[i] = 0.0;
-  while (count < LIFT_LIMIT && part_at_start(settlement)) {
-    if (!settlement_evaluate(settlement)) return false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) resolution->takes_part[i] = 0.0;
+  while (count < LIFT_LIMIT && part_at_start(resolution)) {
+    if (!resolution_evaluate(resolution)) return false;
     count++;
   }
-  log_parted(settlement);
-  return count == 0 || settlement_push(settlement);
+  log_parted(resolution);
+  return count == 0 || resolution_push(resolution);
 }
 
 /*
  * Returns the closed contact that pulls most; else one whose force has just reached 0, once an event; contact_count for
  * none.
  */
-static size_t find_pulling(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static size_t find_pulling(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t found = switches->contact_count;
   double most = 0.0;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    if (!contact_is_closed(settlement, i)) continue;
-    double force = contact_force(settlement, i);
+    if (!contact_is_closed(resolution, i)) continue;
+    double force = contact_force(resolution, i);
     /* An importer stops at a zero or beyond it, and does not say of which indicator. */
-    bool is_reached = is_hit(settlement, contact_indicator(settlement->switches, i)) ||
-                      (settlement->occasion == IN_EXCHANGE && force <= 0.0);
-    bool parts = is_reached && settlement->was_opened[i] == 0.0 && !settlement->jumped;
+    bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, i)) ||
+                      (resolution->occasion == IN_EXCHANGE && force <= 0.0);
+    bool parts = is_reached && resolution->was_opened[i] == 0.0 && !resolution->jumped;
     if (!(force < 0.0) && !parts) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);
@@ -458,34 +460,34 @@ static size_t find_pulling(const struct Settlement *settlement) {
  * Logs a contact whose gap, or whose rate where it touches, is not finite. Returns NULL if there is none, else the
  * reason to stop.
  */
-static const char *check_values(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static const char *check_values(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    bool has_gap = isfinite(contact_value(settlement, i, CONTACT_GAP));
-    bool needs_rate = contact_is_closed(settlement, i) || is_touching(settlement, i);
-    if (has_gap && (!needs_rate || isfinite(contact_value(settlement, i, CONTACT_RATE)))) continue;
-    log_message(settlement->instance, settlement_status(settlement),
+    bool has_gap = isfinite(contact_value(resolution, i, CONTACT_GAP));
+    bool needs_rate = contact_is_closed(resolution, i) || is_touching(resolution, i);
+    if (has_gap && (!needs_rate || isfinite(contact_value(resolution, i, CONTACT_RATE)))) continue;
+    log_message(resolution->instance, resolution_status(resolution),
                 "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; "
                 "expected a gap that is finite",
-                settlement->time, switches->contacts[i].name, has_gap ? "rate" : "value");
+                resolution->time, switches->contacts[i].name, has_gap ? "rate" : "value");
     return "a contact has no finite gap";
   }
   return NULL;
 }
 
-static const char *check_gaps(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  const char *problem = check_values(settlement);
+static const char *check_gaps(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  const char *problem = check_values(resolution);
   if (problem != NULL) return problem;
-  bool starts = settlement->occasion == AT_START, moved = settlement->moved;
-  double allowed = starts || moved ? largest_penetration : largest_drift(settlement);
+  bool starts = resolution->occasion == AT_START, moved = resolution->moved;
+  double allowed = starts || moved ? largest_penetration : largest_drift(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
-    double gap = contact_value(settlement, i, CONTACT_GAP);
+    double gap = contact_value(resolution, i, CONTACT_GAP);
     if (gap >= -allowed) continue;
     log_message(
-        settlement->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+        resolution->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
         "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
-        settlement->time, switches->contacts[i].name,
+        resolution->time, switches->contacts[i].name,
         starts  ? "the start"
         : moved ? "an event that sets coordinates"
                 : "an event that switches the gap",
@@ -498,36 +500,36 @@ static const char *check_gaps(const struct Settlement *settlement) {
   return NULL;
 }
 
-static const char *act_once(struct Settlement *settlement, bool *again) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool may_turn = may_turn_gaps(settlement) && settlement->occasion != AT_START;
+static const char *act_once(struct Resolution *resolution, bool *again) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool may_turn = may_turn_gaps(resolution) && resolution->occasion != AT_START;
   *again = true;
-  const char *problem = check_values(settlement);
+  const char *problem = check_values(resolution);
   if (problem != NULL) return problem;
-  if ((settlement->moved || may_turn || settlement->occasion == IN_EXCHANGE) && open_lifted(settlement)) return NULL;
-  if (may_turn && !settlement->jumped) problem = check_gaps(settlement);
+  if ((resolution->moved || may_turn || resolution->occasion == IN_EXCHANGE) && open_lifted(resolution)) return NULL;
+  if (may_turn && !resolution->jumped) problem = check_gaps(resolution);
   if (problem != NULL) return problem;
-  if (((may_turn && !settlement->jumped) || settlement->thrown) && open_parting(settlement)) return NULL;
-  size_t contact = find_impact(settlement);
-  bool hits = contact<switches->contact_count, is_tried = settlement->impacts> IMPACT_LIMIT;
-  if (hits && is_tried && closes_clearly(settlement, contact))
-    return contact_forces_refuse_crushed(settlement, contact);
-  if (hits && !is_tried) return take_impact(settlement, contact) ? NULL : refuse_singular_impact(settlement, contact);
-  if (close_contacts(settlement)) return let_rest(settlement);
+  if (((may_turn && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
+  size_t contact = find_impact(resolution);
+  bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT;
+  if (hits && is_tried && closes_clearly(resolution, contact))
+    return contact_forces_refuse_crushed(resolution, contact);
+  if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : refuse_singular_impact(resolution, contact);
+  if (close_contacts(resolution)) return let_rest(resolution);
   bool lifts;
-  if (!lift(settlement, &lifts)) return refuse_rest(settlement);
+  if (!lift(resolution, &lifts)) return refuse_rest(resolution);
   if (lifts) return NULL;
-  size_t pulling = find_pulling(settlement);
+  size_t pulling = find_pulling(resolution);
   *again = pulling < switches->contact_count;
   if (!*again) return NULL;
-  settlement->was_opened[pulling] = 1.0;
-  set_contact(settlement, pulling, false);
-  let_go(settlement);
+  resolution->was_opened[pulling] = 1.0;
+  set_contact(resolution, pulling, false);
+  let_go(resolution);
   return NULL;
 }
 
 const struct ContactLaws contact_laws = {.act = act_once,
-                                         .settle_forces = contact_forces_settle,
+                                         .resolve_forces = contact_forces_resolve,
                                          .share_load = contacts_share_load,
                                          .part = part,
                                          .lift_start = lift_start,

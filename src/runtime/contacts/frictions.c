@@ -40,74 +40,74 @@ static const char neither[] = "a friction chatters";
 /* What determines the mode of a friction. began: its mode before the event. */
 struct FrictionState {
   double mode, began, velocity, rate;
-  double force;                                /* of its constraint, if it sticks: towards the nearer limit */
-  double direction;                            /* -1 or 1: in which it slides, or would slide beyond that limit */
-  double stiction;                             /* in this direction */
-  double noise, noise_of_rate, noise_of_force; /* rounding error bounds */
-  double largest_rate;                         /* since the start of the event */
-  bool is_hit;                                 /* the zero of its velocity was located, or its limit was reached */
-  bool is_first;                               /* it has not switched in this event resolution */
-  bool may_jump;                               /* its velocity may have jumped, or the simulation starts */
-  bool is_moving;                              /* faster than rounding errors */
-  bool has_no_force;                           /* as with mu = 0: rounding would decide on sticking */
+  double force;     /* of its constraint, if it sticks: towards the nearer limit */
+  double direction; /* -1 or 1: in which it slides, or would slide beyond that limit */
+  double stiction;  /* in this direction */
+  double error_bound, error_bound_of_rate, error_bound_of_force; /* rounding error bounds */
+  double largest_rate;                                           /* since the start of the event */
+  bool is_hit;       /* the zero of its velocity was located, or its limit was reached */
+  bool is_first;     /* it has not switched in this event resolution */
+  bool may_jump;     /* its velocity may have jumped, or the simulation starts */
+  bool is_moving;    /* faster than rounding errors */
+  bool has_no_force; /* as with mu = 0: rounding would decide on sticking */
 };
 
-static void take_direction(const struct Settlement *settlement, size_t friction, struct FrictionState *state) {
-  size_t place = friction_place(settlement->switches, friction, 0);
-  const double *value = &settlement->value[place], *noise = &settlement->noise[place];
+static void take_direction(const struct Resolution *resolution, size_t friction, struct FrictionState *state) {
+  size_t slot = friction_slot(resolution->switches, friction, 0);
+  const double *value = &resolution->value[slot], *error_bound = &resolution->error_bound[slot];
   double force =
-      settlement->acceleration[lagrangian.coordinate_count + settlement->switches->frictions[friction].constraint];
+      resolution->acceleration[lagrangian.coordinate_count + resolution->switches->frictions[friction].constraint];
   double middle = 0.5 * (value[FRICTION_STICTION] - value[FRICTION_STICTION_BACK]);
   state->direction = state->mode != 0.0 ? state->mode : force > middle ? 1.0 : -1.0;
   size_t stiction = state->direction < 0.0 ? FRICTION_STICTION_BACK : FRICTION_STICTION;
   state->stiction = fmax(value[stiction], 0.0); /* may be negative by rounding where mu |N| passes through 0 */
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
-  state->noise_of_force = settlement->force_noise[friction] + noise[stiction];
+  state->error_bound_of_force = resolution->force_error_bound[friction] + error_bound[stiction];
 }
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method may make it. */
-static bool is_off_zero(const struct Settlement *settlement, double velocity) {
-  double scale = largest_scale(settlement->state, lagrangian.coordinate_count);
-  return fabs(velocity) > continuity_allowed_share(settlement) * scale;
+static bool is_off_zero(const struct Resolution *resolution, double velocity) {
+  double scale = largest_scale(resolution->state, lagrangian.coordinate_count);
+  return fabs(velocity) > continuity_allowed_share(resolution) * scale;
 }
 
-static struct FrictionState friction_state(const struct Settlement *settlement, size_t friction) {
-  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
-  size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
-  size_t indicator = friction_indicator(settlement->switches, friction);
-  const double *value = &settlement->value[place], *noise = &settlement->noise[place];
-  struct FrictionState state = {.mode = mode_of(settlement, facts->mode),
-                                .began = settlement->began[friction],
+static struct FrictionState friction_state(const struct Resolution *resolution, size_t friction) {
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  size_t slot = friction_slot(resolution->switches, friction, FRICTION_VELOCITY);
+  size_t indicator = friction_indicator(resolution->switches, friction);
+  const double *value = &resolution->value[slot], *error_bound = &resolution->error_bound[slot];
+  struct FrictionState state = {.mode = mode_of(resolution, metadata->mode),
+                                .began = resolution->began[friction],
                                 .velocity = value[FRICTION_VELOCITY],
                                 .rate = value[FRICTION_RATE],
-                                .noise = noise[FRICTION_VELOCITY],
-                                .noise_of_rate = noise[FRICTION_RATE],
-                                .largest_rate = settlement->largest[place + FRICTION_RATE],
-                                .is_hit = is_hit(settlement, indicator),
-                                .is_first = settlement->flips[indicator] == 0.0,
+                                .error_bound = error_bound[FRICTION_VELOCITY],
+                                .error_bound_of_rate = error_bound[FRICTION_RATE],
+                                .largest_rate = resolution->largest[slot + FRICTION_RATE],
+                                .is_hit = is_hit(resolution, indicator),
+                                .is_first = resolution->flips[indicator] == 0.0,
                                 .may_jump =
-                                    settlement->jumped || settlement->occasion == AT_START ||
-                                    (may_turn_gaps(settlement) && is_off_zero(settlement, value[FRICTION_VELOCITY]))};
-  take_direction(settlement, friction, &state);
+                                    resolution->jumped || resolution->occasion == AT_START ||
+                                    (may_turn_gaps(resolution) && is_off_zero(resolution, value[FRICTION_VELOCITY]))};
+  take_direction(resolution, friction, &state);
   /* A friction force that varies passes through 0 and is nonzero the next moment. */
-  bool may_stay = settlement->switches->rests_on != NULL || !settlement->switches->friction_varies;
+  bool may_stay = resolution->switches->rests_on != NULL || !resolution->switches->friction_varies;
   state.has_no_force = may_stay && value[FRICTION_STICTION] == 0.0 && value[FRICTION_FORCE] == 0.0 &&
                        value[FRICTION_STICTION_BACK] == 0.0 && value[FRICTION_FORCE_BACK] == 0.0;
   /* Rounding of the time, at the largest rate of this velocity. */
-  double noise_in_time = 8.0 * DBL_EPSILON * fabs(settlement->time * settlement->largest[place + FRICTION_RATE]);
+  double error_bound_in_time = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->largest[slot + FRICTION_RATE]);
   /* Once the velocity has reached 0, its rest counts as rounding, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
-  state.is_moving = fabs(state.velocity) > state.noise + noise_in_time && (state.may_jump || !is_at_zero);
+  state.is_moving = fabs(state.velocity) > state.error_bound + error_bound_in_time && (state.may_jump || !is_at_zero);
   return state;
 }
 
 /* Returns the mode of a friction without force, which never sticks. */
 static double mode_without_force(const struct FrictionState *state) {
-  double next = state->is_moving                           ? state->velocity
-                : fabs(state->rate) > state->noise_of_rate ? state->rate
-                : state->is_hit && state->is_first         ? -state->mode
-                                                           : state->mode;
+  double next = state->is_moving                                 ? state->velocity
+                : fabs(state->rate) > state->error_bound_of_rate ? state->rate
+                : state->is_hit && state->is_first               ? -state->mode
+                                                                 : state->mode;
   return next < 0.0 ? -1.0 : 1.0;
 }
 
@@ -118,46 +118,46 @@ static double mode_without_force(const struct FrictionState *state) {
  */
 static double mode_without_hold(const struct FrictionState *state) {
   bool goes_on = fabs(state->rate) > friction_held_share * state->largest_rate,
-       is_told = fabs(state->rate) > state->noise_of_rate;
-  bool is_rounding = fabs(state->force) <= least_certainty * state->noise_of_force;
-  double most = goes_on ? state->noise_of_force : state->force;
+       is_told = fabs(state->rate) > state->error_bound_of_rate;
+  bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
+  double most = goes_on ? state->error_bound_of_force : state->force;
   if (state->is_first || state->began == 0.0) return 0.0;
   if (goes_on && is_told) return state->rate > 0.0 ? 1.0 : -1.0;
   return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
 /* Returns the mode of a friction that sticks: 0, or the direction in which it begins to slide. */
-static double mode_from_rest(const struct Settlement *settlement, const struct FrictionState *state) {
+static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
   double passing = mode_without_hold(state);
   if (passing != 0.0) return passing;
   /* At the limit a friction sticks; an importer stops beyond it. After coming to rest there rounding may exceed it. */
-  double limit = state->stiction + (state->is_hit && !state->is_first ? state->noise_of_force : 0.0);
-  bool slips = state->force > limit || (state->is_hit && state->is_first && !settlement->jumped);
+  double limit = state->stiction + (state->is_hit && !state->is_first ? state->error_bound_of_force : 0.0);
+  bool slips = state->force > limit || (state->is_hit && state->is_first && !resolution->jumped);
   return slips ? state->direction : 0.0;
 }
 
 /* Returns the mode of a friction that slides at a velocity that has not jumped. */
-static double mode_from_sliding(const struct Settlement *settlement, const struct FrictionState *state) {
+static double mode_from_sliding(const struct Resolution *resolution, const struct FrictionState *state) {
   bool turns = (state->is_moving && state->mode * state->velocity < 0.0) || state->is_hit;
   if (state->is_moving && !turns) return state->mode;
-  if (settlement->occasion == AT_START && state->is_first) return 0.0;
-  double least_rate = -state->noise_of_rate - state->noise / shortest_slip;
+  if (resolution->occasion == AT_START && state->is_first) return 0.0;
+  double least_rate = -state->error_bound_of_rate - state->error_bound / shortest_slip;
   bool leaves = !state->is_moving && state->mode * state->rate >= least_rate && (!turns || !state->is_first);
   return leaves ? state->mode : 0.0;
 }
 
 /* Returns the mode that agrees with Coulomb's law; the present one if nothing contradicts it. */
-static double friction_mode(const struct Settlement *settlement, const struct FrictionState *state) {
+static double friction_mode(const struct Resolution *resolution, const struct FrictionState *state) {
   if (state->has_no_force) return mode_without_force(state);
   if (state->is_moving && state->may_jump) return state->velocity > 0.0 ? 1.0 : -1.0;
-  return state->mode == 0.0 ? mode_from_rest(settlement, state) : mode_from_sliding(settlement, state);
+  return state->mode == 0.0 ? mode_from_rest(resolution, state) : mode_from_sliding(resolution, state);
 }
 
 /* Returns by how many rounding error bounds a friction leaves its mode. */
 static double certainty_of(const struct FrictionState *state) {
   if (state->is_moving) return INFINITY;
   double excess = state->force - state->stiction;
-  return state->mode == 0.0 ? excess / state->noise_of_force : fabs(state->rate) / state->noise_of_rate;
+  return state->mode == 0.0 ? excess / state->error_bound_of_force : fabs(state->rate) / state->error_bound_of_rate;
 }
 
 /*
@@ -165,149 +165,149 @@ static double certainty_of(const struct FrictionState *state) {
  * contact constrains slides without moving if its share of their common load would exceed its limit; its rate is then a
  * rounding error.
  */
-static bool would_go_back(const struct Settlement *settlement, size_t friction, double mode, double certainty) {
-  return settlement->last.friction == friction && settlement->last.mode == mode &&
-         settlement->last.certainty > certainty;
+static bool would_go_back(const struct Resolution *resolution, size_t friction, double mode, double certainty) {
+  return resolution->last.friction == friction && resolution->last.mode == mode &&
+         resolution->last.certainty > certainty;
 }
 
-const char *frictions_refuse(const struct Settlement *settlement, size_t friction) {
-  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
+const char *frictions_refuse(const struct Resolution *resolution, size_t friction) {
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
   bool is_weaker =
       value[FRICTION_STICTION] < value[FRICTION_FORCE] || value[FRICTION_STICTION_BACK] < value[FRICTION_FORCE_BACK];
-  log_message(settlement->instance, STATUS_DISCARD,
+  log_message(resolution->instance, STATUS_DISCARD,
               "time %g: the friction '%s' neither sticks nor slides; expected %sless friction, or another position",
-              settlement->time, settlement->switches->frictions[friction].name,
+              resolution->time, resolution->switches->frictions[friction].name,
               is_weaker ? "a stiction of at least the force while it slides, " : "");
   return neither;
 }
 
-void frictions_blame(const struct Settlement *settlement, const char *missing) {
-  const struct SwitchTable *switches = settlement->switches;
+void frictions_blame(const struct Resolution *resolution, const char *missing) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t worst = 0;
   for (size_t i = 1; i < switches->friction_count; i++)
-    if (settlement->flips[friction_indicator(switches, i)] > settlement->flips[friction_indicator(switches, worst)])
+    if (resolution->flips[friction_indicator(switches, i)] > resolution->flips[friction_indicator(switches, worst)])
       worst = i;
-  log_message(settlement->instance, STATUS_DISCARD,
+  log_message(resolution->instance, STATUS_DISCARD,
               "time %g: no %s are found for the frictions, of which '%s' switched most; expected less friction, or "
               "another position",
-              settlement->time, missing, switches->frictions[worst].name);
+              resolution->time, missing, switches->frictions[worst].name);
 }
 
-const char *frictions_act(struct Settlement *settlement, bool *switched) {
-  const struct SwitchTable *switches = settlement->switches;
+const char *frictions_act(struct Resolution *resolution, bool *switched) {
+  const struct SwitchTable *switches = resolution->switches;
   *switched = false;
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     if (is_in_plane(switches, i) || switches->frictions[i].is_given) continue;
-    struct FrictionState state = friction_state(settlement, i);
-    double mode = friction_mode(settlement, &state);
+    struct FrictionState state = friction_state(resolution, i);
+    double mode = friction_mode(resolution, &state);
     if (mode == state.mode) continue;
     double certainty = certainty_of(&state);
-    if (would_go_back(settlement, i, mode, certainty)) continue;
-    if (++settlement->flips[friction_indicator(settlement->switches, i)] > FRICTION_FLIP_LIMIT) {
-      *switched = jams_resolve(settlement);
-      return *switched ? NULL : settlement->has_several_motions ? neither : frictions_refuse(settlement, i);
+    if (would_go_back(resolution, i, mode, certainty)) continue;
+    if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
+      *switched = jams_resolve(resolution);
+      return *switched ? NULL : resolution->has_several_motions ? neither : frictions_refuse(resolution, i);
     }
-    settlement_set_mode(settlement, switches->frictions[i].mode, mode);
-    settlement->last.friction = i;
-    settlement->last.mode = state.mode;
-    settlement->last.certainty = certainty;
+    resolution_set_mode(resolution, switches->frictions[i].mode, mode);
+    resolution->last.friction = i;
+    resolution->last.mode = state.mode;
+    resolution->last.certainty = certainty;
     *switched = true;
   }
   return NULL;
 }
 
-void frictions_release(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+void frictions_release(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    double velocity = settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
-    if (switches->frictions[i].is_given || !friction_sticks(settlement, i) || !is_off_zero(settlement, velocity))
+    double velocity = resolution->value[friction_slot(switches, i, FRICTION_VELOCITY)];
+    if (switches->frictions[i].is_given || !friction_sticks(resolution, i) || !is_off_zero(resolution, velocity))
       continue;
-    set_friction(settlement, i, velocity < 0.0 ? -1.0 : 1.0);
+    set_friction(resolution, i, velocity < 0.0 ? -1.0 : 1.0);
   }
 }
 
 /* Returns the number of active constraints that depend on others; SIZE_MAX if that cannot be determined. */
-static size_t count_redundant(struct Settlement *settlement) {
-  struct Instance *instance = settlement->instance;
+static size_t count_redundant(struct Resolution *resolution) {
+  struct Instance *instance = resolution->instance;
   if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
-  struct Point point = solver_point(instance, settlement->time, settlement->state);
-  instance->singular = lagrangian.constraints.correct_velocities(&point, settlement->correction);
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  instance->singular = lagrangian.constraints.correct_velocities(&point, resolution->correction);
   if (instance->singular != 0) return SIZE_MAX;
-  const double *pivot = settlement->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
+  const double *pivot = resolution->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
   size_t count = 0;
-  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && settlement_moves(settlement, j);
+  for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && resolution_moves(resolution, j);
   return count;
 }
 
-bool frictions_find_held(struct Settlement *settlement, size_t friction, bool *held) {
-  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
-  double *mode = &settlement->instance->parameter[facts->mode], kept = *mode;
-  size_t without = count_redundant(settlement);
+bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *held) {
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  double *mode = &resolution->instance->parameter[metadata->mode], kept = *mode;
+  size_t without = count_redundant(resolution);
   *mode = 0.0;
-  settlement->instance->prepared_is_stale = true;
-  size_t with = count_redundant(settlement), velocities = settlement_moves(settlement, facts->constraint);
-  if (is_in_plane(settlement->switches, friction)) velocities += settlement_moves(settlement, facts[1].constraint);
+  resolution->instance->parameter_constants_is_stale = true;
+  size_t with = count_redundant(resolution), velocities = resolution_moves(resolution, metadata->constraint);
+  if (is_in_plane(resolution->switches, friction)) velocities += resolution_moves(resolution, metadata[1].constraint);
   *mode = kept;
-  settlement->instance->prepared_is_stale = true;
+  resolution->instance->parameter_constants_is_stale = true;
   *held = with >= without + velocities;
   /* Later steps, such as projections, need the values for the restored modes. */
-  bool is_restored = evaluate_prepare(settlement->instance) == STATUS_DONE;
+  bool is_restored = evaluate_prepare(resolution->instance) == STATUS_DONE;
   return is_restored && with != SIZE_MAX && without != SIZE_MAX;
 }
 
 /* True if the velocity of a sliding friction only passes through 0. */
-static bool leaves_rest(const struct Settlement *settlement, size_t friction) {
-  size_t rate = friction_place(settlement->switches, friction, FRICTION_RATE);
-  double least = fmax(settlement->noise[rate], friction_held_share * settlement->largest[rate]);
-  return fabs(settlement->value[rate]) > least;
+static bool leaves_rest(const struct Resolution *resolution, size_t friction) {
+  size_t rate = friction_slot(resolution->switches, friction, FRICTION_RATE);
+  double least = fmax(resolution->error_bound[rate], friction_held_share * resolution->largest[rate]);
+  return fabs(resolution->value[rate]) > least;
 }
 
 /* Reports as sticking what slides without moving: others constrain its velocity, and forces are not unique. */
-bool frictions_tell(struct Settlement *settlement, bool *again) {
-  const struct SwitchTable *switches = settlement->switches;
-  double slowest = resting_speed(settlement);
+bool frictions_report(struct Resolution *resolution, bool *again) {
+  const struct SwitchTable *switches = resolution->switches;
+  double slowest = resting_speed(resolution);
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    const struct FrictionFacts *facts = &switches->frictions[i];
+    const struct FrictionMetadata *metadata = &switches->frictions[i];
     bool is_planar = is_in_plane(switches, i);
-    double mode = is_planar ? fabs(mode_of(settlement, facts->mode)) : mode_of(settlement, facts->mode);
+    double mode = is_planar ? fabs(mode_of(resolution, metadata->mode)) : mode_of(resolution, metadata->mode);
     double velocity =
-        is_planar ? speed_in_plane(settlement, i) : settlement->value[friction_place(switches, i, FRICTION_VELOCITY)];
+        is_planar ? speed_in_plane(resolution, i) : resolution->value[friction_slot(switches, i, FRICTION_VELOCITY)];
     bool held = false,
-         may_rest = mode != 0.0 && !facts->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
-    if (!is_planar) may_rest &= !leaves_rest(settlement, i);
-    if (may_rest && !frictions_find_held(settlement, i, &held)) return false;
+         may_rest = mode != 0.0 && !metadata->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
+    if (!is_planar) may_rest &= !leaves_rest(resolution, i);
+    if (may_rest && !frictions_find_held(resolution, i, &held)) return false;
     if (is_planar) i++; /* the friction across has the same mode */
     if (held) mode = 0.0;
-    if (mode == mode_of(settlement, facts->told)) continue;
-    settlement_set_mode(settlement, facts->told, mode);
+    if (mode == mode_of(resolution, metadata->reported)) continue;
+    resolution_set_mode(resolution, metadata->reported, mode);
     *again = true;
   }
   return true;
 }
 
 /* Returns the rounding error of forces in which the largest one cancels. */
-static double rounding_left_of_forces(const struct Settlement *settlement) {
+static double rounding_left_of_forces(const struct Resolution *resolution) {
   double largest = 0.0;
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    largest = fmax(largest, fabs(settlement->acceleration[lagrangian.coordinate_count + j]));
+    largest = fmax(largest, fabs(resolution->acceleration[lagrangian.coordinate_count + j]));
   return negligible_force * largest;
 }
 
 /* Returns the part of value[] with the force in the direction of sliding; at rest that of the smaller force. */
-static size_t weaker_force(const struct Settlement *settlement, size_t friction) {
-  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
-  double mode = mode_of(settlement, settlement->switches->frictions[friction].mode);
+static size_t weaker_force(const struct Resolution *resolution, size_t friction) {
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
+  double mode = mode_of(resolution, resolution->switches->frictions[friction].mode);
   bool is_back = mode == 0.0 ? value[FRICTION_FORCE_BACK] < value[FRICTION_FORCE] : mode < 0.0;
   return is_back ? FRICTION_FORCE_BACK : FRICTION_FORCE;
 }
 
 /* Perturbs all of the state by the tolerance, in one of two patterns. */
-static void err_by_tolerance(const struct Settlement *settlement, bool otherwise, double *state) {
-  double share = settlement->instance->situation->tolerance;
+static void err_by_tolerance(const struct Resolution *resolution, bool otherwise, double *state) {
+  double share = resolution->instance->fmu_state->tolerance;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double change = share * fmax(fabs(settlement->state[i]), lagrangian.steps.nominal[i]);
-    state[i] = settlement->state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
+    double change = share * fmax(fabs(resolution->state[i]), lagrangian.steps.nominal[i]);
+    state[i] = resolution->state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }
 }
 
@@ -315,26 +315,26 @@ static void err_by_tolerance(const struct Settlement *settlement, bool otherwise
  * True if errors of the tolerance in the state can make this value 0, such as mu |N| where N passes through 0 and its
  * branch has not switched yet.
  */
-static bool is_within_error(struct Settlement *settlement, size_t place) {
-  double most = 0.0, *value = settlement->other_noise;
+static bool is_within_error(struct Resolution *resolution, size_t slot) {
+  double most = 0.0, *value = resolution->other_error_bound;
   for (int otherwise = 0; otherwise < 2; otherwise++) {
-    err_by_tolerance(settlement, otherwise != 0, settlement->rounded);
-    if (settlement_values(settlement, settlement->rounded, value))
-      most = fmax(most, fabs(value[place] - settlement->value[place]));
+    err_by_tolerance(resolution, otherwise != 0, resolution->rounded);
+    if (resolution_values(resolution, resolution->rounded, value))
+      most = fmax(most, fabs(value[slot] - resolution->value[slot]));
   }
-  return fabs(settlement->value[place]) <= least_certainty * most;
+  return fabs(resolution->value[slot]) <= least_certainty * most;
 }
 
 /* A negative friction force is a mistake of the model, such as a wrong sign of a force in it. */
-const char *frictions_check(struct Settlement *settlement) {
-  double rounding = rounding_left_of_forces(settlement);
-  for (size_t i = 0; i < settlement->switches->friction_count; i++) {
-    size_t place = friction_place(settlement->switches, i, weaker_force(settlement, i));
-    double force = settlement->value[place];
-    if (!(force < -settlement->noise[place] - rounding) || is_within_error(settlement, place)) continue;
-    log_message(settlement->instance, settlement_status(settlement),
-                "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...)", settlement->time,
-                settlement->switches->frictions[i].name, force);
+const char *frictions_check(struct Resolution *resolution) {
+  double rounding = rounding_left_of_forces(resolution);
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) {
+    size_t slot = friction_slot(resolution->switches, i, weaker_force(resolution, i));
+    double force = resolution->value[slot];
+    if (!(force < -resolution->error_bound[slot] - rounding) || is_within_error(resolution, slot)) continue;
+    log_message(resolution->instance, resolution_status(resolution),
+                "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...)", resolution->time,
+                resolution->switches->frictions[i].name, force);
     return "the force of a friction is negative";
   }
   return NULL;
@@ -343,61 +343,61 @@ const char *frictions_check(struct Settlement *settlement) {
 /*
  * True if the force of a friction, and the indicator of a branch if there is one, depend on the force of a constraint.
  */
-static bool follows_from(struct Settlement *settlement, size_t friction, size_t branch, size_t constraint) {
-  const double *without = settlement->value, *with = settlement->other_noise;
-  size_t place = friction_place(settlement->switches, friction, weaker_force(settlement, friction));
-  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
-  settlement_values_of_force(settlement, &point, constraint, 0.0, settlement->value);
-  settlement_values_of_force(settlement, &point, constraint, 1.0, settlement->other_noise);
-  bool turns = branch == settlement->switches->branch_count || with[branch] != without[branch];
-  return turns && with[place] != without[place];
+static bool follows_from(struct Resolution *resolution, size_t friction, size_t branch, size_t constraint) {
+  const double *without = resolution->value, *with = resolution->other_error_bound;
+  size_t slot = friction_slot(resolution->switches, friction, weaker_force(resolution, friction));
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  resolution_values_of_force(resolution, &point, constraint, 0.0, resolution->value);
+  resolution_values_of_force(resolution, &point, constraint, 1.0, resolution->other_error_bound);
+  bool turns = branch == resolution->switches->branch_count || with[branch] != without[branch];
+  return turns && with[slot] != without[slot];
 }
 
 /* Returns the largest constraint force; INFINITY if accelerations do not exist. */
-static double largest_force(struct Settlement *settlement) {
+static double largest_force(struct Resolution *resolution) {
   double largest = 0.0;
-  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return INFINITY;
-  if (!settlement_values(settlement, settlement->state, settlement->other_noise)) return INFINITY;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return INFINITY;
+  if (!resolution_values(resolution, resolution->state, resolution->other_error_bound)) return INFINITY;
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    largest = fmax(largest, fabs(settlement->acceleration[lagrangian.coordinate_count + j]));
+    largest = fmax(largest, fabs(resolution->acceleration[lagrangian.coordinate_count + j]));
   return largest;
 }
 
 /* True if forces are finite while the friction sticks, and infinite or much larger while it slides. */
-static bool is_freed_by_sticking(struct Settlement *settlement, size_t friction) {
-  double *mode = &settlement->instance->parameter[settlement->switches->frictions[friction].mode], kept = *mode;
-  double sliding = largest_force(settlement);
+static bool is_freed_by_sticking(struct Resolution *resolution, size_t friction) {
+  double *mode = &resolution->instance->parameter[resolution->switches->frictions[friction].mode], kept = *mode;
+  double sliding = largest_force(resolution);
   *mode = 0.0;
-  settlement->instance->prepared_is_stale = true;
-  double sticking = largest_force(settlement);
+  resolution->instance->parameter_constants_is_stale = true;
+  double sticking = largest_force(resolution);
   *mode = kept;
-  settlement->instance->prepared_is_stale = true;
+  resolution->instance->parameter_constants_is_stale = true;
   return isfinite(sticking) && sliding > jammed_force * sticking;
 }
 
-bool frictions_explain_jam(struct Settlement *settlement, size_t branch) {
-  const struct SwitchTable *switches = settlement->switches;
+bool frictions_explain_jam(struct Resolution *resolution, size_t branch) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t friction = 0, constraint = 0, pairs = switches->friction_count * lagrangian.constraints.count;
   bool jams = false;
-  if (evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   for (size_t pair = 0; pair < pairs && !jams; pair++) {
     friction = pair / lagrangian.constraints.count;
     constraint = pair % lagrangian.constraints.count;
-    jams = mode_of(settlement, switches->frictions[friction].mode) != 0.0 &&
-           follows_from(settlement, friction, branch, constraint) &&
-           sliding_speed(settlement, friction) > resting_speed(settlement);
+    jams = mode_of(resolution, switches->frictions[friction].mode) != 0.0 &&
+           follows_from(resolution, friction, branch, constraint) &&
+           sliding_speed(resolution, friction) > resting_speed(resolution);
   }
-  if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(settlement, friction))) return false;
-  log_message(settlement->instance, settlement_status(settlement),
+  if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(resolution, friction))) return false;
+  log_message(resolution->instance, resolution_status(resolution),
               "time %g: the force of the %s '%s' has no solution, as the friction '%s', which follows from it, slides, "
               "and both jam each other (Painleve's paradox); expected less friction, or another load",
-              settlement->time, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
+              resolution->time, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
               switches->frictions[friction].name);
   return true;
 }
 
 const struct FrictionLaws friction_laws = {.act = frictions_act,
-                                           .tell = frictions_tell,
+                                           .report = frictions_report,
                                            .blame = frictions_blame,
                                            .check = frictions_check,
                                            .release = frictions_release,

@@ -34,9 +34,9 @@ static bool is_contact_in(const struct Combination *combination, size_t row) {
   return row < combination->pushes->contact_count;
 }
 
-static double mobility_between(const struct Combination *combination, size_t i, size_t j) {
+static double delassus_between(const struct Combination *combination, size_t i, size_t j) {
   const struct Pushes *pushes = combination->pushes;
-  return pushes->mobility[i * pushes->count + j] * combination->unit[i] * combination->unit[j];
+  return pushes->delassus[i * pushes->count + j] * combination->unit[i] * combination->unit[j];
 }
 
 /* Returns the friction limit by a unit impulse of a contact. */
@@ -58,16 +58,16 @@ static double limit_in(const struct Combination *combination, size_t friction) {
 static double rate_behind_in(const struct Combination *combination, size_t row) {
   double rate = combination->rate[row];
   for (size_t j = 0; j < combination->pushes->count; j++)
-    rate += mobility_between(combination, row, j) * combination->impulse[j];
+    rate += delassus_between(combination, row, j) * combination->impulse[j];
   return rate;
 }
 
 /* Returns the change of a rate by a unit impulse that is sought, with the sliding frictions on it. */
 static double effect_in(const struct Combination *combination, size_t row, size_t push) {
-  double sum = mobility_between(combination, row, push);
+  double sum = delassus_between(combination, row, push);
   for (size_t f = combination->pushes->contact_count;
        f < combination->pushes->count && is_contact_in(combination, push); f++)
-    sum -= combination->way[f] * coefficient_of(combination, f, push) * mobility_between(combination, row, f);
+    sum -= combination->way[f] * coefficient_of(combination, f, push) * delassus_between(combination, row, f);
   return sum;
 }
 
@@ -115,7 +115,7 @@ static void fill_units(struct Combination *combination, const double *rate) {
   const struct Pushes *pushes = combination->pushes;
   double largest = 0.0;
   for (size_t i = 0; i < pushes->count; i++) {
-    double own = pushes->mobility[i * pushes->count + i];
+    double own = pushes->delassus[i * pushes->count + i];
     combination->unit[i] = own > DBL_MIN ? 1.0 / sqrt(own) : 0.0;
     combination->rate[i] = rate[i] * combination->unit[i];
     combination->way[i] = is_contact_in(combination, i) ? 0 : -1;
@@ -127,9 +127,9 @@ static void fill_units(struct Combination *combination, const double *rate) {
   }
 }
 
-bool impact_has_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool impact_has_others(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                        const double *impulse) {
-  (void)settlement;
+  (void)resolution;
   if (pushes->count > MOST_PUSHES) return false;
   struct Combination combination = {.pushes = pushes};
   bool is_other = false;

@@ -9,7 +9,7 @@
  * FrictionLaws. Tries all combinations of contacts that open or press and frictions that stick or slide. False for more
  * than eight impulses, which have too many combinations.
  */
-bool impact_has_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool impact_has_others(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                        const double *impulse);
 
 #endif

@@ -66,10 +66,10 @@ static size_t first_row(const struct ImpactProblem *problem, size_t part) {
 }
 
 /* Fills the elements of a pair of impulses; a friction has two rows, along and against its velocity. */
-static void fill_mobility(struct ImpactProblem *problem, size_t i, size_t j) {
+static void fill_delassus(struct ImpactProblem *problem, size_t i, size_t j) {
   const struct Pushes *pushes = problem->pushes;
   size_t contacts = pushes->contact_count, frictions = pushes->friction_count, n = problem->count;
-  double value = pushes->mobility[i * pushes->count + j] * problem->unit[i] * problem->unit[j];
+  double value = pushes->delassus[i * pushes->count + j] * problem->unit[i] * problem->unit[j];
   for (size_t side = 0; side < (i < contacts ? 1u : 2u); side++)
     for (size_t other = 0; other < (j < contacts ? 1u : 2u); other++)
       problem->matrix[(i + side * frictions) * n + j + other * frictions] = side == other ? value : -value;
@@ -88,13 +88,13 @@ static void fill_friction(struct ImpactProblem *problem, size_t friction) {
 }
 
 /* Sets up the matrix. False if a contact cannot be moved, or memory is missing. */
-static bool create_problem(struct Settlement *settlement, const struct Pushes *pushes, struct ImpactProblem *problem) {
+static bool create_problem(struct Resolution *resolution, const struct Pushes *pushes, struct ImpactProblem *problem) {
   size_t n = pushes->contact_count + 3 * pushes->friction_count, count = pushes->count;
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
-  problem->block = scratch_take(settlement->instance, SCRATCH_IMPACT, numbers * sizeof(double));
+  problem->block = scratch_take(resolution->instance, SCRATCH_IMPACT, numbers * sizeof(double));
   if (problem->block == NULL) {
-    solver_lacks_memory(settlement->instance);
+    solver_lacks_memory(resolution->instance);
     return false;
   }
   problem->unit = problem->block;
@@ -107,12 +107,12 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
   problem->work = problem->next + n;
   bool moves = true;
   for (size_t i = 0; i < count; i++) {
-    double mobility = pushes->mobility[i * count + i];
-    problem->unit[i] = mobility > DBL_MIN ? 1.0 / sqrt(mobility) : 0.0;
+    double delassus = pushes->delassus[i * count + i];
+    problem->unit[i] = delassus > DBL_MIN ? 1.0 / sqrt(delassus) : 0.0;
     moves &= i >= pushes->contact_count || problem->unit[i] > 0.0;
   }
   for (size_t i = 0; i < count; i++)
-    for (size_t j = 0; j < count; j++) fill_mobility(problem, i, j);
+    for (size_t j = 0; j < count; j++) fill_delassus(problem, i, j);
   for (size_t f = 0; f < pushes->friction_count; f++) fill_friction(problem, f);
   return moves;
 }
@@ -121,27 +121,27 @@ static bool create_problem(struct Settlement *settlement, const struct Pushes *p
  * Returns the restitution of a contact; 0 if the bounce would be lost in errors. The friction of a bounce that is cut
  * short is then that of rest, whose impulse equals the sum of all further bounces.
  */
-static double restitution_of(const struct Settlement *settlement, size_t contact) {
-  double restitution = contact_value(settlement, contact, CONTACT_RESTITUTION);
-  double rate = -restitution * contact_value(settlement, contact, CONTACT_RATE);
-  return bounce_is_lost(settlement, contact, rate) ? 0.0 : restitution;
+static double restitution_of(const struct Resolution *resolution, size_t contact) {
+  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
+  double rate = -restitution * contact_value(resolution, contact, CONTACT_RATE);
+  return bounce_is_lost(resolution, contact, rate) ? 0.0 : restitution;
 }
 
 /* Returns the factor of a rate before the impact in its complementarity condition: 1 + share e if the gap closes. */
-static double rise_by_restitution(const struct Settlement *settlement, const struct Pushes *pushes, size_t push,
+static double rise_by_restitution(const struct Resolution *resolution, const struct Pushes *pushes, size_t push,
                                   double share) {
-  double bounce = push < pushes->contact_count ? restitution_of(settlement, pushes->member[push]) : 0.0;
+  double bounce = push < pushes->contact_count ? restitution_of(resolution, pushes->member[push]) : 0.0;
   return 1.0 + (pushes->rate[push] < 0.0 ? share * bounce : 0.0);
 }
 
 /* Fills the constant terms of the conditions, relative to the largest one. Returns this. */
-static double fill_rates(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
+static double fill_rates(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
   double largest = 0.0;
   memset(problem->rate, 0, problem->count * sizeof *problem->rate);
   for (size_t i = 0; i < pushes->count; i++) {
     bool is_contact = i < pushes->contact_count;
-    double rate = pushes->rate[i] * problem->unit[i] * rise_by_restitution(settlement, pushes, i, share);
+    double rate = pushes->rate[i] * problem->unit[i] * rise_by_restitution(resolution, pushes, i, share);
     problem->rate[i] = rate;
     if (!is_contact) problem->rate[i + pushes->friction_count] = -rate;
     largest = fmax(largest, fabs(rate));
@@ -182,32 +182,32 @@ static bool solve_regularized(struct ImpactProblem *problem, double regularizati
 }
 
 /* Returns the row of the first friction that acts in a plane; their number if there is none. */
-static size_t find_plane(const struct Settlement *settlement, const struct Pushes *pushes) {
+static size_t find_plane(const struct Resolution *resolution, const struct Pushes *pushes) {
   size_t row = pushes->contact_count;
-  while (row < pushes->count && !is_in_plane(settlement->switches, pushes->member[row])) row++;
+  while (row < pushes->count && !is_in_plane(resolution->switches, pushes->member[row])) row++;
   return row;
 }
 
 /* Fills the constant terms of the conditions, unscaled, for the contacts and frictions. */
-static void fill_plain_rates(const struct Settlement *settlement, struct ImpactProblem *problem) {
+static void fill_plain_rates(const struct Resolution *resolution, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
   for (size_t i = 0; i < pushes->count; i++)
-    problem->rate[i] = pushes->rate[i] * rise_by_restitution(settlement, pushes, i, problem->share);
+    problem->rate[i] = pushes->rate[i] * rise_by_restitution(resolution, pushes, i, problem->share);
 }
 
 /* Finds the impulses with frictions in planes. Their conditions are not linear. */
-static bool find_impulses_in_planes(const struct Settlement *settlement, struct ImpactProblem *problem) {
+static bool find_impulses_in_planes(const struct Resolution *resolution, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
-  fill_plain_rates(settlement, problem);
-  return settlement->switches->friction_laws->find_impulses(settlement, pushes, problem->rate, problem->impulse);
+  fill_plain_rates(resolution, problem);
+  return resolution->switches->friction_laws->find_impulses(resolution, pushes, problem->rate, problem->impulse);
 }
 
 /* Finds the impulses with a factor of the restitutions. False if none are found. */
-static bool find_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
+static bool find_impulses(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
   const struct Pushes *pushes = problem->pushes;
   problem->share = share;
-  if (find_plane(settlement, pushes) < pushes->count) return find_impulses_in_planes(settlement, problem);
-  double scale = fill_rates(settlement, problem, share);
+  if (find_plane(resolution, pushes) < pushes->count) return find_impulses_in_planes(resolution, problem);
+  double scale = fill_rates(resolution, problem, share);
   bool is_solved = false;
   for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
     is_solved = solve_regularized(problem, regularizations[i]);
@@ -223,7 +223,7 @@ static bool gains_energy(const struct Pushes *pushes, const double *impulse) {
   double work = 0.0, size = 0.0;
   for (size_t i = 0; i < pushes->count; i++) {
     double change = 0.0;
-    for (size_t j = 0; j < pushes->count; j++) change += pushes->mobility[i * pushes->count + j] * impulse[j];
+    for (size_t j = 0; j < pushes->count; j++) change += pushes->delassus[i * pushes->count + j] * impulse[j];
     work += impulse[i] * (pushes->rate[i] + 0.5 * change);
     size += fabs(impulse[i]) * (fabs(pushes->rate[i]) + 0.5 * fabs(change));
   }
@@ -236,7 +236,7 @@ static double energy_made(const struct Pushes *pushes, const double *impulse, co
   for (size_t i = 0; i < pushes->count; i++)
     for (size_t j = 0; j < pushes->count; j++)
       sum +=
-          (impulse[i] - share * other[i]) * pushes->mobility[i * pushes->count + j] * (impulse[j] - share * other[j]);
+          (impulse[i] - share * other[i]) * pushes->delassus[i * pushes->count + j] * (impulse[j] - share * other[j]);
   return sum;
 }
 
@@ -245,107 +245,107 @@ bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const 
   return energy_made(pushes, impulse, found, 1.0) > differing_share * size && !gains_energy(pushes, impulse);
 }
 
-static bool is_fine(const struct Settlement *settlement, struct ImpactProblem *problem, double share) {
-  return find_impulses(settlement, problem, share) && !gains_energy(problem->pushes, problem->impulse);
+static bool is_fine(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
+  return find_impulses(resolution, problem, share) && !gains_energy(problem->pushes, problem->impulse);
 }
 
 /* Finds the impulses with the largest factor of the restitutions that gains no energy, by bisection. */
-static bool find_fine_impulses(const struct Settlement *settlement, struct ImpactProblem *problem, bool bounces) {
-  if (!bounces) return find_impulses(settlement, problem, 0.0);
-  if (is_fine(settlement, problem, 1.0)) return true;
+static bool find_fine_impulses(const struct Resolution *resolution, struct ImpactProblem *problem, bool bounces) {
+  if (!bounces) return find_impulses(resolution, problem, 0.0);
+  if (is_fine(resolution, problem, 1.0)) return true;
   double fine = 0.0, too_much = 1.0;
   for (int i = 0; i < HALVINGS; i++) {
     double middle = 0.5 * (fine + too_much);
-    if (is_fine(settlement, problem, middle)) fine = middle;
+    if (is_fine(resolution, problem, middle)) fine = middle;
     else too_much = middle;
   }
-  return find_impulses(settlement, problem, fine);
+  return find_impulses(resolution, problem, fine);
 }
 
-static void add_impulses(struct Settlement *settlement, const struct Pushes *pushes, const double *impulse) {
-  double *velocity = settlement->state + lagrangian.coordinate_count;
+static void add_impulses(struct Resolution *resolution, const struct Pushes *pushes, const double *impulse) {
+  double *velocity = resolution->state + lagrangian.coordinate_count;
   for (size_t i = 0; i < pushes->count; i++)
     for (size_t k = 0; k < lagrangian.coordinate_count; k++)
       velocity[k] += impulse[i] * pushes->velocities[i * lagrangian.coordinate_count + k];
 }
 
 /* Applies the impulse of one contact without friction: p = max(-(1 + e) u- / W, 0). */
-static bool take_one(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
-  double bounce = bounces ? restitution_of(settlement, pushes->member[0]) : 0.0;
-  double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->mobility[0], 0.0);
-  if (!(pushes->mobility[0] > DBL_MIN)) {
-    contact_forces_refuse_fixed(settlement, pushes->member[0]);
+static bool take_one(struct Resolution *resolution, const struct Pushes *pushes, bool bounces) {
+  double bounce = bounces ? restitution_of(resolution, pushes->member[0]) : 0.0;
+  double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->delassus[0], 0.0);
+  if (!(pushes->delassus[0] > DBL_MIN)) {
+    contact_forces_refuse_fixed(resolution, pushes->member[0]);
     return false;
   }
-  add_impulses(settlement, pushes, &impulse);
+  add_impulses(resolution, pushes, &impulse);
   return true;
 }
 
 /* Returns the first contact whose gap no impulse changes; their number if there is none. */
 static size_t find_fixed(const struct Pushes *pushes) {
   size_t row = 0;
-  while (row < pushes->contact_count && pushes->mobility[row * pushes->count + row] > DBL_MIN) row++;
+  while (row < pushes->contact_count && pushes->delassus[row * pushes->count + row] > DBL_MIN) row++;
   return row;
 }
 
-static void refuse_impact(const struct Settlement *settlement, const struct Pushes *pushes) {
-  const struct SwitchTable *switches = settlement->switches;
-  size_t row = find_plane(settlement, pushes);
+static void refuse_impact(const struct Resolution *resolution, const struct Pushes *pushes) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t row = find_plane(resolution, pushes);
   size_t fixed = find_fixed(pushes);
-  if (fixed < pushes->contact_count) contact_forces_refuse_fixed(settlement, pushes->member[fixed]);
+  if (fixed < pushes->contact_count) contact_forces_refuse_fixed(resolution, pushes->member[fixed]);
   else if (row < pushes->count)
     log_message(
-        settlement->instance, STATUS_DISCARD,
+        resolution->instance, STATUS_DISCARD,
         "time %g: no impulses were found for an impact with the friction '%s', which acts in a plane; expected less "
         "friction, or another position",
-        settlement->time, switches->frictions[pushes->member[row]].name);
+        resolution->time, switches->frictions[pushes->member[row]].name);
   else
-    log_message(settlement->instance, STATUS_DISCARD,
+    log_message(resolution->instance, STATUS_DISCARD,
                 "time %g: no impulses were found for an impact of the contact '%s'; expected less friction, or another "
                 "position",
-                settlement->time, switches->contacts[pushes->member[0]].name);
+                resolution->time, switches->contacts[pushes->member[0]].name);
 }
 
 /* True if all rates are those of rest: the impact is a rounding error. */
-static bool is_hit_at_rest(const struct Settlement *settlement, const struct Pushes *pushes) {
+static bool is_hit_at_rest(const struct Resolution *resolution, const struct Pushes *pushes) {
   double fastest = 0.0;
   for (size_t i = 0; i < pushes->count; i++) fastest = fmax(fastest, fabs(pushes->rate[i]));
-  return fastest <= resting_share * largest_scale(settlement->state, lagrangian.coordinate_count);
+  return fastest <= resting_share * largest_scale(resolution->state, lagrangian.coordinate_count);
 }
 
 /* Warns at most once an instance that the impact has several outcomes. */
-static void tell_of_other_outcomes(const struct Settlement *settlement, struct ImpactProblem *problem) {
+static void report_other_outcomes(const struct Resolution *resolution, struct ImpactProblem *problem) {
   const struct Pushes *pushes = problem->pushes;
-  const struct SwitchTable *switches = settlement->switches;
-  if (pushes->friction_count == 0 || settlement->instance->told_other_impulses) return;
-  if (is_hit_at_rest(settlement, pushes)) return;
-  fill_plain_rates(settlement, problem);
-  if (!switches->friction_laws->has_other_impulses(settlement, pushes, problem->rate, problem->impulse)) return;
-  settlement->instance->told_other_impulses = true;
-  log_message(settlement->instance, STATUS_WARNING,
+  const struct SwitchTable *switches = resolution->switches;
+  if (pushes->friction_count == 0 || resolution->instance->reported_other_impulses) return;
+  if (is_hit_at_rest(resolution, pushes)) return;
+  fill_plain_rates(resolution, problem);
+  if (!switches->friction_laws->has_other_impulses(resolution, pushes, problem->rate, problem->impulse)) return;
+  resolution->instance->reported_other_impulses = true;
+  log_message(resolution->instance, STATUS_WARNING,
               "time %g: an impact, such as of the contact '%s' with the friction '%s', has more than one solution; one "
               "of them is taken",
-              settlement->time, switches->contacts[pushes->member[0]].name,
+              resolution->time, switches->contacts[pushes->member[0]].name,
               switches->frictions[pushes->member[pushes->contact_count]].name);
 }
 
-static bool take_several(struct Settlement *settlement, const struct Pushes *pushes, bool bounces) {
+static bool take_several(struct Resolution *resolution, const struct Pushes *pushes, bool bounces) {
   struct ImpactProblem problem;
-  bool is_done = create_problem(settlement, pushes, &problem) && find_fine_impulses(settlement, &problem, bounces);
+  bool is_done = create_problem(resolution, pushes, &problem) && find_fine_impulses(resolution, &problem, bounces);
   if (is_done) {
-    tell_of_other_outcomes(settlement, &problem);
-    add_impulses(settlement, pushes, problem.impulse);
-  } else refuse_impact(settlement, pushes);
-  if (problem.block != NULL) scratch_return(settlement->instance, SCRATCH_IMPACT);
+    report_other_outcomes(resolution, &problem);
+    add_impulses(resolution, pushes, problem.impulse);
+  } else refuse_impact(resolution, pushes);
+  if (problem.block != NULL) scratch_return(resolution->instance, SCRATCH_IMPACT);
   return is_done;
 }
 
-bool impacts_take(struct Settlement *settlement, bool bounces) {
+bool impacts_take(struct Resolution *resolution, bool bounces) {
   struct Pushes pushes;
-  if (!pushes_create(settlement, &pushes)) return false;
+  if (!pushes_create(resolution, &pushes)) return false;
   bool is_done =
-      pushes.count == 1 ? take_one(settlement, &pushes, bounces) : take_several(settlement, &pushes, bounces);
-  pushes_free(settlement, &pushes);
-  settlement->changed = true;
+      pushes.count == 1 ? take_one(resolution, &pushes, bounces) : take_several(resolution, &pushes, bounces);
+  pushes_free(resolution, &pushes);
+  resolution->changed = true;
   return is_done;
 }

@@ -2,13 +2,13 @@
 #ifndef IMPACTS_H
 #define IMPACTS_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * Changes the velocities by the impulses of the contacts that take part; by Newton's law of restitution if bounces,
  * else without restitution. False, after logging the cause, if no impulses are found.
  */
-bool impacts_take(struct Settlement *settlement, bool bounces);
+bool impacts_take(struct Resolution *resolution, bool bounces);
 
 struct Pushes;
 

@@ -23,7 +23,7 @@ enum { MOST_COMBINATIONS = 729 };
 static const double same_share = 1e-9;
 
 struct JamSearch {
-  struct Settlement *settlement;
+  struct Resolution *resolution;
   double *kept;        /* accelerations of the motion that was found, in workspace */
   size_t found;        /* combination of that motion */
   size_t combinations; /* their number */
@@ -32,11 +32,11 @@ struct JamSearch {
 };
 
 /* Returns the sign of the velocity of a friction along a line; 0 at rest within rounding, NAN for other frictions. */
-static double direction_of(const struct Settlement *settlement, size_t friction) {
-  size_t place = friction_place(settlement->switches, friction, FRICTION_VELOCITY);
-  double velocity = settlement->value[place];
-  if (settlement->switches->frictions[friction].is_given || is_in_plane(settlement->switches, friction)) return NAN;
-  if (!(fabs(velocity) > settlement_noise(settlement, place, place + FRICTION_RATE))) return 0.0;
+static double direction_of(const struct Resolution *resolution, size_t friction) {
+  size_t slot = friction_slot(resolution->switches, friction, FRICTION_VELOCITY);
+  double velocity = resolution->value[slot];
+  if (resolution->switches->frictions[friction].is_given || is_in_plane(resolution->switches, friction)) return NAN;
+  if (!(fabs(velocity) > resolution_error_bound(resolution, slot, slot + FRICTION_RATE))) return 0.0;
   return velocity < 0.0 ? -1.0 : 1.0;
 }
 
@@ -44,29 +44,29 @@ static double direction_of(const struct Settlement *settlement, size_t friction)
  * At the start, where all frictions slide forwards, sets moving frictions to the sign of their velocities. Returns the
  * last one that changed; friction_count for none.
  */
-static size_t turn_moving(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static size_t turn_moving(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t turned = switches->friction_count;
-  for (size_t i = 0; i < switches->friction_count && settlement->occasion == AT_START; i++) {
-    double direction = direction_of(settlement, i);
-    if (!(direction * mode_of(settlement, switches->frictions[i].mode) < 0.0)) continue;
-    settlement_set_mode(settlement, switches->frictions[i].mode, direction);
+  for (size_t i = 0; i < switches->friction_count && resolution->occasion == AT_START; i++) {
+    double direction = direction_of(resolution, i);
+    if (!(direction * mode_of(resolution, switches->frictions[i].mode) < 0.0)) continue;
+    resolution_set_mode(resolution, switches->frictions[i].mode, direction);
     turned = i;
   }
   return turned;
 }
 
-static bool is_tried_branch(const struct Settlement *settlement, size_t branch) {
-  return !settlement->switches->branches[branch].is_side && settlement->flips[branch] > 0.0;
+static bool is_tried_branch(const struct Resolution *resolution, size_t branch) {
+  return !resolution->switches->branches[branch].is_side && resolution->flips[branch] > 0.0;
 }
 
 /* Counts a switch of each branch whose indicator depends on forces or accelerations, so that it is tried. */
-static void mark_branches(struct Settlement *settlement) {
-  double *value = settlement->noise; /* recomputed for each combination */
-  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
-  settlement_values_of_force(settlement, &point, lagrangian.constraints.count, 0.0, value);
-  for (size_t i = 0; i < settlement->switches->branch_count; i++)
-    if (value[i] != settlement->value[i]) settlement->flips[i] = fmax(settlement->flips[i], 1.0);
+static void mark_branches(struct Resolution *resolution) {
+  double *value = resolution->error_bound; /* recomputed for each combination */
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  resolution_values_of_force(resolution, &point, lagrangian.constraints.count, 0.0, value);
+  for (size_t i = 0; i < resolution->switches->branch_count; i++)
+    if (value[i] != resolution->value[i]) resolution->flips[i] = fmax(resolution->flips[i], 1.0);
 }
 
 /*
@@ -74,67 +74,67 @@ static void mark_branches(struct Settlement *settlement) {
  * or no friction is in question.
  */
 static bool begin_search(struct JamSearch *search) {
-  struct Settlement *settlement = search->settlement;
-  const struct SwitchTable *switches = settlement->switches;
+  struct Resolution *resolution = search->resolution;
+  const struct SwitchTable *switches = resolution->switches;
   search->combinations = 1;
-  search->friction = turn_moving(settlement);
+  search->friction = turn_moving(resolution);
   for (size_t i = 0; i < switches->friction_count; i++) {
-    bool is_tried = direction_of(settlement, i) == 0.0;
-    settlement->takes_part[switches->contact_count + i] = is_tried ? 1.0 : 0.0;
+    bool is_tried = direction_of(resolution, i) == 0.0;
+    resolution->takes_part[switches->contact_count + i] = is_tried ? 1.0 : 0.0;
     if (!is_tried) continue;
     search->friction = i;
     search->combinations *= 3;
     if (search->combinations > MOST_COMBINATIONS) return false;
   }
-  mark_branches(settlement);
+  mark_branches(resolution);
   for (size_t i = 0; i < switches->branch_count; i++) {
-    if (is_tried_branch(settlement, i)) search->combinations *= 2;
+    if (is_tried_branch(resolution, i)) search->combinations *= 2;
     if (search->combinations > MOST_COMBINATIONS) return false;
   }
   return search->friction < switches->friction_count;
 }
 
 /* Sets the modes of a combination: its digits, base 3 for frictions, then base 2 for branches. */
-static void set_combination(struct Settlement *settlement, size_t combination) {
-  const struct SwitchTable *switches = settlement->switches;
+static void set_combination(struct Resolution *resolution, size_t combination) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    if (settlement->takes_part[switches->contact_count + i] == 0.0) continue;
-    settlement_set_mode(settlement, switches->frictions[i].mode, (double)(combination % 3) - 1.0);
+    if (resolution->takes_part[switches->contact_count + i] == 0.0) continue;
+    resolution_set_mode(resolution, switches->frictions[i].mode, (double)(combination % 3) - 1.0);
     combination /= 3;
   }
   for (size_t i = 0; i < switches->branch_count; i++) {
-    if (!is_tried_branch(settlement, i)) continue;
-    settlement_set_mode(settlement, switches->branches[i].mode, combination % 2 == 0 ? -1.0 : 1.0);
+    if (!is_tried_branch(resolution, i)) continue;
+    resolution_set_mode(resolution, switches->branches[i].mode, combination % 2 == 0 ? -1.0 : 1.0);
     combination /= 2;
   }
 }
 
-static bool friction_agrees(const struct Settlement *settlement, size_t friction) {
-  const double *value = &settlement->value[friction_place(settlement->switches, friction, 0)];
-  const double *noise = &settlement->noise[friction_place(settlement->switches, friction, 0)];
-  const struct FrictionFacts *facts = &settlement->switches->frictions[friction];
-  double mode = mode_of(settlement, facts->mode), rounding = settlement->force_noise[friction];
-  double force = settlement->acceleration[lagrangian.coordinate_count + facts->constraint];
-  if (mode != 0.0) return mode * value[FRICTION_RATE] > noise[FRICTION_RATE];
-  return force <= value[FRICTION_STICTION] + noise[FRICTION_STICTION] + rounding &&
-         -force <= value[FRICTION_STICTION_BACK] + noise[FRICTION_STICTION_BACK] + rounding;
+static bool friction_agrees(const struct Resolution *resolution, size_t friction) {
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
+  const double *error_bound = &resolution->error_bound[friction_slot(resolution->switches, friction, 0)];
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  double mode = mode_of(resolution, metadata->mode), rounding = resolution->force_error_bound[friction];
+  double force = resolution->acceleration[lagrangian.coordinate_count + metadata->constraint];
+  if (mode != 0.0) return mode * value[FRICTION_RATE] > error_bound[FRICTION_RATE];
+  return force <= value[FRICTION_STICTION] + error_bound[FRICTION_STICTION] + rounding &&
+         -force <= value[FRICTION_STICTION_BACK] + error_bound[FRICTION_STICTION_BACK] + rounding;
 }
 
 /* True if accelerations and forces agree with the modes. */
-static bool combination_agrees(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool agrees = settlement_evaluate(settlement);
+static bool combination_agrees(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool agrees = resolution_evaluate(resolution);
   for (size_t i = 0; i < switches->branch_count && agrees; i++)
-    agrees = !is_tried_branch(settlement, i) ||
-             mode_of(settlement, switches->branches[i].mode) * settlement->value[i] >= -settlement->noise[i];
+    agrees = !is_tried_branch(resolution, i) ||
+             mode_of(resolution, switches->branches[i].mode) * resolution->value[i] >= -resolution->error_bound[i];
   for (size_t i = 0; i < switches->friction_count && agrees; i++)
-    agrees = settlement->takes_part[switches->contact_count + i] == 0.0 || friction_agrees(settlement, i);
+    agrees = resolution->takes_part[switches->contact_count + i] == 0.0 || friction_agrees(resolution, i);
   return agrees;
 }
 
 /* Records a combination that agrees, unless its motion is the one that was found before. */
 static void take_motion(struct JamSearch *search, size_t combination) {
-  const double *present = search->settlement->acceleration;
+  const double *present = search->resolution->acceleration;
   double largest = 0.0, difference = 0.0;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     largest = fmax(largest, fmax(fabs(present[i]), fabs(search->kept[i])));
@@ -147,39 +147,39 @@ static void take_motion(struct JamSearch *search, size_t combination) {
 }
 
 static void log_several(const struct JamSearch *search) {
-  const struct Settlement *settlement = search->settlement;
-  log_message(settlement->instance, settlement_status(settlement),
+  const struct Resolution *resolution = search->resolution;
+  log_message(resolution->instance, resolution_status(resolution),
               "time %g: the friction '%s', whose force follows from constraint forces, can stick or slide in more than "
               "one way (Painleve's paradox); expected less friction, or another load",
-              settlement->time, settlement->switches->frictions[search->friction].name);
+              resolution->time, resolution->switches->frictions[search->friction].name);
 }
 
 /* Sets the switch counters of what was tried to 1: later rounds treat these modes as chosen in this event. */
-static void count_frictions(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static void count_frictions(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (settlement->takes_part[switches->contact_count + i] != 0.0)
-      settlement->flips[friction_indicator(switches, i)] = 1.0;
+    if (resolution->takes_part[switches->contact_count + i] != 0.0)
+      resolution->flips[friction_indicator(switches, i)] = 1.0;
   for (size_t i = 0; i < switches->branch_count; i++)
-    if (is_tried_branch(settlement, i)) settlement->flips[i] = 1.0;
+    if (is_tried_branch(resolution, i)) resolution->flips[i] = 1.0;
 }
 
-bool jams_resolve(struct Settlement *settlement) {
-  struct JamSearch search = {.settlement = settlement, .kept = settlement->correction};
-  if (settlement->has_searched_jam || !settlement->switches->feels_forces) return false;
-  settlement->has_searched_jam = true;
+bool jams_resolve(struct Resolution *resolution) {
+  struct JamSearch search = {.resolution = resolution, .kept = resolution->correction};
+  if (resolution->has_searched_jam || !resolution->switches->feels_forces) return false;
+  resolution->has_searched_jam = true;
   if (!begin_search(&search)) return false;
-  settlement_keep_modes(settlement);
+  resolution_keep_modes(resolution);
   for (size_t i = 0; i < search.combinations && search.motions < 2; i++) {
-    set_combination(settlement, i);
-    if (combination_agrees(settlement)) take_motion(&search, i);
+    set_combination(resolution, i);
+    if (combination_agrees(resolution)) take_motion(&search, i);
   }
-  settlement_restore_modes(settlement);
-  settlement->instance->singular = 0;
-  settlement->has_several_motions = search.motions > 1;
+  resolution_restore_modes(resolution);
+  resolution->instance->singular = 0;
+  resolution->has_several_motions = search.motions > 1;
   if (search.motions > 1) log_several(&search);
   if (search.motions != 1) return false;
-  set_combination(settlement, search.found);
-  count_frictions(settlement);
+  set_combination(resolution, search.found);
+  count_frictions(resolution);
   return true;
 }

@@ -2,13 +2,13 @@
 #ifndef JAMS_H
 #define JAMS_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * Sets the modes of frictions at rest, and of branches that have switched, to those of the only consistent motion; once
  * an event resolution. False if there is none, if there are too many combinations, if no branch depends on a force, or
  * if there are several motions, which it logs.
  */
-bool jams_resolve(struct Settlement *settlement);
+bool jams_resolve(struct Resolution *resolution);
 
 #endif

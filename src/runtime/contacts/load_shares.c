@@ -16,99 +16,99 @@
 #include "evaluation/evaluate.h"
 
 /* Returns the largest gap that the projection leaves at a contact that touches; larger for importers. */
-static double narrowest(const struct Settlement *settlement) {
-  double share = settlement->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
-  return share * largest_scale(settlement->state, 0);
+static double narrowest(const struct Resolution *resolution) {
+  double share = resolution->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
+  return share * largest_scale(resolution->state, 0);
 }
 
 /* True if no friction on the contact slides. */
-static bool is_held_aside(const struct Settlement *settlement, size_t contact, double slowest) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool is_held_aside(const struct Resolution *resolution, size_t contact, double slowest) {
+  const struct SwitchTable *switches = resolution->switches;
   bool slides = false;
   for (size_t i = 0; i < switches->friction_count; i++)
-    slides |= rests_on(switches, i, contact) && sliding_speed(settlement, i) > slowest;
+    slides |= rests_on(switches, i, contact) && sliding_speed(resolution, i) > slowest;
   return !slides;
 }
 
 /* Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any beside a closed contact. */
-static bool find_idle(struct Settlement *settlement) {
-  double narrow = narrowest(settlement), slowest = resting_speed(settlement);
+static bool find_idle(struct Resolution *resolution) {
+  double narrow = narrowest(resolution), slowest = resting_speed(resolution);
   bool is_held = false, is_idle = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) {
-    bool is_closed = contact_is_closed(settlement, i);
-    bool touches = fabs(contact_value(settlement, i, CONTACT_GAP)) <= narrow;
-    bool is_still = fabs(contact_value(settlement, i, CONTACT_RATE)) <= slowest;
-    bool rests = !is_closed && touches && is_still && is_held_aside(settlement, i, slowest);
-    settlement->takes_part[i] = rests ? 1.0 : 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    bool is_closed = contact_is_closed(resolution, i);
+    bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= narrow;
+    bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= slowest;
+    bool rests = !is_closed && touches && is_still && is_held_aside(resolution, i, slowest);
+    resolution->takes_part[i] = rests ? 1.0 : 0.0;
     is_held |= is_closed;
     is_idle |= rests;
   }
   return is_held && is_idle;
 }
 
-static void close_idle(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static void close_idle(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++) {
-    if (settlement->takes_part[i] == 0.0) continue;
-    set_contact(settlement, i, true);
+    if (resolution->takes_part[i] == 0.0) continue;
+    set_contact(resolution, i, true);
     for (size_t f = 0; f < switches->friction_count; f++)
-      if (rests_on(switches, f, i)) set_friction(settlement, f, 0.0);
+      if (rests_on(switches, f, i)) set_friction(resolution, f, 0.0);
   }
 }
 
 /* Returns the contact with the least force, of those that were closed here and do not press; contact_count for none. */
-static size_t find_useless(const struct Settlement *settlement) {
-  size_t count = settlement->switches->contact_count, found = count;
+static size_t find_useless(const struct Resolution *resolution) {
+  size_t count = resolution->switches->contact_count, found = count;
   double largest = 0.0, least = INFINITY;
   for (size_t i = 0; i < count; i++)
-    if (contact_is_closed(settlement, i)) largest = fmax(largest, fabs(contact_force(settlement, i)));
+    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
   for (size_t i = 0; i < count; i++) {
-    double force = contact_force(settlement, i);
-    if (settlement->takes_part[i] == 0.0 || force > rounded_force * largest || force >= least) continue;
+    double force = contact_force(resolution, i);
+    if (resolution->takes_part[i] == 0.0 || force > rounded_force * largest || force >= least) continue;
     least = force;
     found = i;
   }
   return found;
 }
 
-static bool any_takes_part(const struct Settlement *settlement) {
+static bool any_takes_part(const struct Resolution *resolution) {
   bool any = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++) any |= settlement->takes_part[i] != 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) any |= resolution->takes_part[i] != 0.0;
   return any;
 }
 
-static bool any_pulls(const struct Settlement *settlement) {
+static bool any_pulls(const struct Resolution *resolution) {
   bool pulls = false;
-  for (size_t i = 0; i < settlement->switches->contact_count; i++)
-    pulls |= contact_is_closed(settlement, i) && contact_force(settlement, i) < 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    pulls |= contact_is_closed(resolution, i) && contact_force(resolution, i) < 0.0;
   return pulls;
 }
 
 /*
  * Closes the contacts that take part and press. True if all closed contacts press then; else the caller restores modes.
  */
-static bool close_useful(struct Settlement *settlement) {
-  size_t count = settlement->switches->contact_count, useless;
+static bool close_useful(struct Resolution *resolution) {
+  size_t count = resolution->switches->contact_count, useless;
   do {
-    settlement_restore_modes(settlement);
-    if (!any_takes_part(settlement)) return false;
-    close_idle(settlement);
-    if (!settlement_evaluate(settlement)) return false;
-    useless = find_useless(settlement);
-    if (useless < count) settlement->takes_part[useless] = 0.0;
+    resolution_restore_modes(resolution);
+    if (!any_takes_part(resolution)) return false;
+    close_idle(resolution);
+    if (!resolution_evaluate(resolution)) return false;
+    useless = find_useless(resolution);
+    if (useless < count) resolution->takes_part[useless] = 0.0;
   } while (useless < count);
-  return !any_pulls(settlement);
+  return !any_pulls(resolution);
 }
 
-const char *contacts_share_load(struct Settlement *settlement, bool *again) {
-  bool changed = settlement->changed;
+const char *contacts_share_load(struct Resolution *resolution, bool *again) {
+  bool changed = resolution->changed;
   *again = false;
-  if (settlement->has_shared || !find_idle(settlement)) return NULL;
-  settlement->has_shared = true;
-  settlement_keep_modes(settlement);
-  *again = close_useful(settlement);
+  if (resolution->has_shared || !find_idle(resolution)) return NULL;
+  resolution->has_shared = true;
+  resolution_keep_modes(resolution);
+  *again = close_useful(resolution);
   if (*again) return NULL;
-  settlement_restore_modes(settlement);
-  settlement->changed = changed;
-  return settlement_evaluate(settlement) ? NULL : "the accelerations do not exist after an event";
+  resolution_restore_modes(resolution);
+  resolution->changed = changed;
+  return resolution_evaluate(resolution) ? NULL : "the accelerations do not exist after an event";
 }

@@ -2,12 +2,12 @@
 #ifndef LOAD_SHARES_H
 #define LOAD_SHARES_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * Closes contacts that touch at rest without a force, because others carry the load, if they press once all share it;
  * at most once per event. Sets *again if there are any. Returns NULL, or the reason why the motion cannot go on.
  */
-const char *contacts_share_load(struct Settlement *settlement, bool *again);
+const char *contacts_share_load(struct Resolution *resolution, bool *again);
 
 #endif

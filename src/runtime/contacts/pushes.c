@@ -13,69 +13,71 @@ static const double shortest_flight = 1000.0;
 /* In units of the method's error: bounces lower than this are lost in it, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
-bool is_touching(const struct Settlement *settlement, size_t contact) {
-  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
-  double noise = settlement_noise(settlement, gap, gap + CONTACT_RATE);
-  return settlement->value[gap] <= noise || is_hit(settlement, contact_indicator(settlement->switches, contact));
+bool is_touching(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  double error_bound = resolution_error_bound(resolution, gap, gap + CONTACT_RATE);
+  return resolution->value[gap] <= error_bound || is_hit(resolution, contact_indicator(resolution->switches, contact));
 }
 
-bool contact_is_at_rest(const struct Settlement *settlement, size_t contact) {
-  size_t rate = contact_place(settlement->switches, contact, CONTACT_RATE);
-  if (contact_is_closed(settlement, contact)) return true;
-  return is_touching(settlement, contact) && settlement->value[rate] <= settlement->noise[rate];
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
+  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
+  if (contact_is_closed(resolution, contact)) return true;
+  return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
 }
 
 /* Returns the height of bounces that the method's error hides; 0 if rounding is the only error. */
-static double lost_height(const struct Settlement *settlement) {
-  return settlement->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(settlement->instance);
+static double lost_height(const struct Resolution *resolution) {
+  return resolution->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(resolution->instance);
 }
 
-bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate) {
-  size_t gap = contact_place(settlement->switches, contact, CONTACT_GAP);
-  double fall = -settlement->value[gap + CONTACT_ACCELERATION];
-  double start = settlement->instance->situation->start_time;
-  double resolution = DBL_EPSILON * fmax(fabs(settlement->time), fabs(settlement->time - start));
-  if (rate <= settlement->noise[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * resolution * fall) return true;
+bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  double fall = -resolution->value[gap + CONTACT_ACCELERATION];
+  double start = resolution->instance->fmu_state->start_time;
+  double time_resolution = DBL_EPSILON * fmax(fabs(resolution->time), fabs(resolution->time - start));
+  if (rate <= resolution->error_bound[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * time_resolution * fall)
+    return true;
   /* Rounding, and even more an importer, leaves the gap slightly negative: a flight that ends there has no zero. */
-  double depth = settlement->occasion == IN_EXCHANGE ? 10.0 : 1.0;
-  double lost = fmax(4.0 * settlement_noise(settlement, gap, gap + CONTACT_RATE), -depth * settlement->value[gap]);
-  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(settlement));
+  double depth = resolution->occasion == IN_EXCHANGE ? 10.0 : 1.0;
+  double lost =
+      fmax(4.0 * resolution_error_bound(resolution, gap, gap + CONTACT_RATE), -depth * resolution->value[gap]);
+  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution));
 }
 
-void set_friction(struct Settlement *settlement, size_t friction, double mode) {
-  const struct SwitchTable *switches = settlement->switches;
+void set_friction(struct Resolution *resolution, size_t friction, double mode) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);
-  if (plane < switches->plane_count) switches->friction_laws->set_plane(settlement, plane, mode != 0.0);
-  else settlement_set_mode(settlement, switches->frictions[friction].mode, mode);
+  if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
+  else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
 }
 
-double sliding_share(const struct Settlement *settlement, size_t friction) {
-  const struct SwitchTable *switches = settlement->switches;
+double sliding_share(const struct Resolution *resolution, size_t friction) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);
-  double mode = mode_of(settlement, switches->frictions[friction].mode);
+  double mode = mode_of(resolution, switches->frictions[friction].mode);
   if (plane == switches->plane_count) return mode;
-  const struct PlaneFacts *facts = &switches->planes[plane];
-  double speed = speed_in_plane(settlement, facts->along);
-  bool has_heading = mode < 0.0 && (speed == 0.0 || mode_of(settlement, facts->upper) > 0.0);
-  if (has_heading) return mode_of(settlement, facts->heading[friction - facts->along]);
-  return settlement->value[friction_place(switches, friction, FRICTION_VELOCITY)] / speed;
+  const struct PlaneMetadata *metadata = &switches->planes[plane];
+  double speed = speed_in_plane(resolution, metadata->along);
+  bool has_heading = mode < 0.0 && (speed == 0.0 || mode_of(resolution, metadata->upper) > 0.0);
+  if (has_heading) return mode_of(resolution, metadata->heading[friction - metadata->along]);
+  return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
   return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
 }
 
-static bool contact_takes_part(const struct Settlement *settlement, size_t contact) {
-  return settlement->takes_part[contact] != 0.0;
+static bool contact_takes_part(const struct Resolution *resolution, size_t contact) {
+  return resolution->takes_part[contact] != 0.0;
 }
 
-static bool friction_takes_part(const struct Settlement *settlement, size_t friction) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool friction_takes_part(const struct Resolution *resolution, size_t friction) {
+  const struct SwitchTable *switches = resolution->switches;
   bool rests = false;
   for (size_t i = 0; i < switches->contact_count; i++)
-    rests |= contact_takes_part(settlement, i) && rests_on(switches, friction, i);
+    rests |= contact_takes_part(resolution, i) && rests_on(switches, friction, i);
   return rests && !switches->frictions[friction].is_given &&
-         settlement->takes_part[switches->contact_count + friction] != 0.0;
+         resolution->takes_part[switches->contact_count + friction] != 0.0;
 }
 
 static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTable *switches, size_t row) {
@@ -87,40 +89,40 @@ static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTabl
  * Computes the effect of each unit impulse: in lever (count rows) the generalized impulses, rows of J, and in
  * pushes->velocities M^-1 J^T; then their products W. False if M is singular.
  */
-static bool respond_to_pushes(struct Settlement *settlement, struct Pushes *pushes, double *lever, double *impulse,
-                              double *response) {
-  struct Instance *instance = settlement->instance;
+static bool respond_to_pushes(struct Resolution *resolution, struct Pushes *pushes, double *jacobian_row,
+                              double *impulse, double *response) {
+  struct Instance *instance = resolution->instance;
   size_t n = lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  struct Point point = solver_point(instance, settlement->time, settlement->state);
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
   for (size_t row = 0; row < pushes->count; row++) {
-    size_t place = n + constraint_of(pushes, settlement->switches, row);
-    impulse[place] = 1.0;
+    size_t slot = n + constraint_of(pushes, resolution->switches, row);
+    impulse[slot] = 1.0;
     instance->singular = lagrangian.constraints.respond(&point, impulse, response);
-    impulse[place] = 0.0;
+    impulse[slot] = 0.0;
     if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
     memcpy(pushes->velocities + row * n, response, n * sizeof *response);
-    memcpy(lever + row * n, response + n, n * sizeof *response);
+    memcpy(jacobian_row + row * n, response + n, n * sizeof *response);
   }
   for (size_t i = 0; i < pushes->count; i++)
     for (size_t j = 0; j < pushes->count; j++) {
-      double *mobility = &pushes->mobility[i * pushes->count + j];
-      *mobility = 0.0;
-      for (size_t k = 0; k < n; k++) *mobility += lever[i * n + k] * pushes->velocities[j * n + k];
+      double *delassus = &pushes->delassus[i * pushes->count + j];
+      *delassus = 0.0;
+      for (size_t k = 0; k < n; k++) *delassus += jacobian_row[i * n + k] * pushes->velocities[j * n + k];
     }
   return true;
 }
 
 /* Computes the friction limits by unit contact forces: differences to the limits without force, as these are linear. */
-static void find_coefficients(struct Settlement *settlement, struct Pushes *pushes, double *force, double *value) {
-  struct Point point = solver_point(settlement->instance, settlement->time, settlement->state);
+static void find_coefficients(struct Resolution *resolution, struct Pushes *pushes, double *force, double *value) {
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
   size_t contacts = pushes->contact_count, n = lagrangian.coordinate_count;
   for (size_t i = 0; i <= contacts && pushes->friction_count > 0; i++) {
-    if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 1.0;
-    settlement->switches->switching_values(&point, force, value);
-    if (i < contacts) force[n + constraint_of(pushes, settlement->switches, i)] = 0.0;
+    if (i < contacts) force[n + constraint_of(pushes, resolution->switches, i)] = 1.0;
+    resolution->switches->switching_values(&point, force, value);
+    if (i < contacts) force[n + constraint_of(pushes, resolution->switches, i)] = 0.0;
     for (size_t f = 0; f < pushes->friction_count; f++) {
-      double sliding = value[friction_place(settlement->switches, pushes->member[contacts + f], FRICTION_FORCE)];
+      double sliding = value[friction_slot(resolution->switches, pushes->member[contacts + f], FRICTION_FORCE)];
       if (i < contacts) pushes->coefficient[f * contacts + i] = sliding;
       else /* without any contact force */
         for (size_t k = 0; k < contacts; k++)
@@ -129,53 +131,53 @@ static void find_coefficients(struct Settlement *settlement, struct Pushes *push
   }
 }
 
-static void find_rates(const struct Settlement *settlement, struct Pushes *pushes) {
+static void find_rates(const struct Resolution *resolution, struct Pushes *pushes) {
   for (size_t row = 0; row < pushes->count; row++) {
     size_t member = pushes->member[row];
-    size_t place = row < pushes->contact_count ? contact_place(settlement->switches, member, CONTACT_RATE)
-                                               : friction_place(settlement->switches, member, FRICTION_VELOCITY);
-    pushes->rate[row] = settlement->value[place];
-    pushes->rounding = fmax(pushes->rounding, settlement->noise[place]);
+    size_t slot = row < pushes->contact_count ? contact_slot(resolution->switches, member, CONTACT_RATE)
+                                              : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
+    pushes->rate[row] = resolution->value[slot];
+    pushes->rounding = fmax(pushes->rounding, resolution->error_bound[slot]);
   }
 }
 
-bool pushes_create(struct Settlement *settlement, struct Pushes *pushes) {
-  const struct SwitchTable *switches = settlement->switches;
+bool pushes_create(struct Resolution *resolution, struct Pushes *pushes) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraints.count;
-  size_t values = settlement_value_count(switches), contacts = 0, frictions = 0;
-  for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(settlement, i) ? 1 : 0;
-  for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(settlement, i) ? 1 : 0;
+  size_t values = resolution_value_count(switches), contacts = 0, frictions = 0;
+  for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(resolution, i) ? 1 : 0;
+  for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(resolution, i) ? 1 : 0;
   *pushes = (struct Pushes){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
   size_t count = pushes->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
   size_t scratch = rows + 2 * n + values;
   pushes->block =
-      scratch_take(settlement->instance, SCRATCH_PUSHES, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+      scratch_take(resolution->instance, SCRATCH_PUSHES, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
   if (pushes->block == NULL) {
-    solver_lacks_memory(settlement->instance);
+    solver_lacks_memory(resolution->instance);
     return false;
   }
   pushes->velocities = pushes->block;
-  double *lever = pushes->velocities + count * n;
-  pushes->mobility = lever + count * n;
-  pushes->rate = pushes->mobility + count * count;
+  double *jacobian_row = pushes->velocities + count * n;
+  pushes->delassus = jacobian_row + count * n;
+  pushes->rate = pushes->delassus + count * count;
   pushes->coefficient = pushes->rate + count;
   double *force = pushes->coefficient + frictions * contacts, *response = force + rows, *value = response + 2 * n;
   pushes->member = (size_t *)(value + values);
   size_t next = 0;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (contact_takes_part(settlement, i)) pushes->member[next++] = i;
+    if (contact_takes_part(resolution, i)) pushes->member[next++] = i;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (friction_takes_part(settlement, i)) pushes->member[next++] = i;
-  if (respond_to_pushes(settlement, pushes, lever, force, response)) {
-    find_coefficients(settlement, pushes, force, value);
-    find_rates(settlement, pushes);
+    if (friction_takes_part(resolution, i)) pushes->member[next++] = i;
+  if (respond_to_pushes(resolution, pushes, jacobian_row, force, response)) {
+    find_coefficients(resolution, pushes, force, value);
+    find_rates(resolution, pushes);
     return true;
   }
-  pushes_free(settlement, pushes);
+  pushes_free(resolution, pushes);
   return false;
 }
 
-void pushes_free(const struct Settlement *settlement, struct Pushes *pushes) {
-  scratch_return(settlement->instance, SCRATCH_PUSHES);
+void pushes_free(const struct Resolution *resolution, struct Pushes *pushes) {
+  scratch_return(resolution->instance, SCRATCH_PUSHES);
   pushes->block = NULL;
 }

@@ -5,14 +5,14 @@
 #ifndef PUSHES_H
 #define PUSHES_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 #include "instance/held.h"
 
 struct Pushes {
   size_t contact_count, friction_count, count; /* count: the sum of both */
   size_t *member;                              /* indices of contacts, then of frictions, in the switch table */
   double *velocities;                          /* count rows: change of the velocities by each unit impulse */
-  double *mobility;                            /* count rows: Delassus matrix */
+  double *delassus;                            /* count rows: Delassus matrix */
   double *rate;                                /* of the gaps, and the velocities of the frictions */
   double rounding;                             /* rounding error bound of the rates */
   double *coefficient; /* friction_count rows: friction limit by a unit impulse of each contact */
@@ -20,53 +20,53 @@ struct Pushes {
 };
 
 /*
- * Collects the contacts that take part, and the frictions on them that do, at the rates in settlement->value; active
+ * Collects the contacts that take part, and the frictions on them that do, at the rates in resolution->value; active
  * constraints hold. False, and nothing is allocated, if M is singular or memory is missing.
  */
-bool pushes_create(struct Settlement *settlement, struct Pushes *pushes);
-void pushes_free(const struct Settlement *settlement, struct Pushes *pushes);
+bool pushes_create(struct Resolution *resolution, struct Pushes *pushes);
+void pushes_free(const struct Resolution *resolution, struct Pushes *pushes);
 
-static inline bool contact_is_closed(const struct Settlement *settlement, size_t contact) {
-  return contact_holds(settlement->instance, contact);
+static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {
+  return contact_holds(resolution->instance, contact);
 }
 
-static inline void set_contact(struct Settlement *settlement, size_t contact, bool is_closed) {
-  settlement_set_mode(settlement, settlement->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
+static inline void set_contact(struct Resolution *resolution, size_t contact, bool is_closed) {
+  resolution_set_mode(resolution, resolution->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
 }
 
-static inline double contact_value(const struct Settlement *settlement, size_t contact, size_t part) {
-  return settlement->value[contact_place(settlement->switches, contact, part)];
+static inline double contact_value(const struct Resolution *resolution, size_t contact, size_t part) {
+  return resolution->value[contact_slot(resolution->switches, contact, part)];
 }
 
 /* Returns the force of a closed contact; negative if it pulls. */
-static inline double contact_force(const struct Settlement *settlement, size_t contact) {
-  size_t constraint = settlement->switches->contacts[contact].constraint;
-  return settlement->acceleration[lagrangian.coordinate_count + constraint];
+static inline double contact_force(const struct Resolution *resolution, size_t contact) {
+  size_t constraint = resolution->switches->contacts[contact].constraint;
+  return resolution->acceleration[lagrangian.coordinate_count + constraint];
 }
 
-static inline bool friction_sticks(const struct Settlement *settlement, size_t friction) {
-  return friction_holds(settlement->instance, friction);
+static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
+  return friction_holds(resolution->instance, friction);
 }
 
 /* Sets the mode of a friction: the sign of its velocity, which one in a plane ignores, or 0 for sticking. */
-void set_friction(struct Settlement *settlement, size_t friction, double mode);
+void set_friction(struct Resolution *resolution, size_t friction, double mode);
 
 /* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */
-double sliding_share(const struct Settlement *settlement, size_t friction);
+double sliding_share(const struct Resolution *resolution, size_t friction);
 
 /* True if the friction follows from the force of the contact. */
 bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
 
 /* True if the gap is at most 0 within rounding, or its zero has been located at this event. */
-bool is_touching(const struct Settlement *settlement, size_t contact);
+bool is_touching(const struct Resolution *resolution, size_t contact);
 
 /* True if the contact is closed, or touches and does not open faster than rounding. */
-bool contact_is_at_rest(const struct Settlement *settlement, size_t contact);
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
 
 /*
  * True if the bounce of a contact that opens at this rate is smaller than the errors of rounding and of the method, in
  * its height or its duration.
  */
-bool bounce_is_lost(const struct Settlement *settlement, size_t contact, double rate);
+bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate);
 
 #endif

@@ -69,21 +69,21 @@ void log_singularity(struct Instance *instance, enum Status status, double time)
 }
 
 enum Status discard_for_singularity(struct Instance *instance) {
-  uint64_t situation = situation_checksum(instance->situation);
-  if (situation != instance->told_singularity) log_singularity(instance, STATUS_DISCARD, instance->situation->time);
-  instance->told_singularity = situation;
+  uint64_t fmu_state = fmu_state_checksum(instance->fmu_state);
+  if (fmu_state != instance->reported_singularity) log_singularity(instance, STATUS_DISCARD, instance->fmu_state->time);
+  instance->reported_singularity = fmu_state;
   return STATUS_DISCARD;
 }
 
 enum Status evaluate_prepare(struct Instance *instance) {
   if (lagrangian.event_laws != NULL && is_before_start(instance) && !instance->modes_stay) {
     lagrangian.event_laws->guess(instance);
-    instance->prepared_is_stale = true;
+    instance->parameter_constants_is_stale = true;
   }
-  if (!instance->prepared_is_stale) return STATUS_DONE;
-  instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
+  if (!instance->parameter_constants_is_stale) return STATUS_DONE;
+  instance->singular = lagrangian.prepare(instance->parameter, instance->parameter_constants);
   if (instance->singular != 0) return discard_for_singularity(instance);
-  instance->prepared_is_stale = false;
+  instance->parameter_constants_is_stale = false;
   return STATUS_DONE;
 }
 
@@ -99,7 +99,7 @@ static bool come_back(struct Instance *instance, struct Point *point) {
   return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->come_back(instance, point);
 }
 
-enum Status evaluate_situation(struct Instance *instance, double *derivative) {
+enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   struct Point point = instance_point(instance);
@@ -122,7 +122,7 @@ const double *evaluate_accelerations_along(struct Instance *instance, const stru
   return instance->singular == 0 ? along : NULL;
 }
 
-/* Evaluates a result at a point with current prepared values. False if accelerations that it needs do not exist. */
+/* Evaluates a result at a point with current parameter constants. False if accelerations that it needs do not exist. */
 static bool evaluate_result_at(struct Instance *instance, const struct Point *point, size_t result, double *value) {
   const double *acceleration = NULL;
   if (lagrangian.results.uses_acceleration[result]) {
@@ -150,7 +150,7 @@ static enum Status evaluate_state_derivative(struct Instance *instance, size_t s
     *value = instance->state[lagrangian.coordinate_count + state];
     return STATUS_DONE;
   }
-  enum Status status = evaluate_situation(instance, instance->work);
+  enum Status status = evaluate_fmu_state(instance, instance->work);
   if (status == STATUS_DONE) *value = instance->work[state];
   return status;
 }
@@ -166,7 +166,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   double result = 0.0;
   enum Status status = STATUS_DONE;
   switch (variable->kind) {
-  case VARIABLE_TIME: result = instance->situation->time; break;
+  case VARIABLE_TIME: result = instance->fmu_state->time; break;
   case VARIABLE_STATE: result = instance->state[variable->index]; break;
   case VARIABLE_INPUT: result = instance->input[variable->index]; break;
   case VARIABLE_PARAMETER:
@@ -179,7 +179,7 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
   }
   if (status == STATUS_DONE && !isfinite(result)) {
     log_message(instance, STATUS_DISCARD, "time %g: '%s' has no finite value; try other parameters or states",
-                instance->situation->time, variable->name);
+                instance->fmu_state->time, variable->name);
     status = STATUS_DISCARD;
   }
   if (status == STATUS_DONE) *value = result;

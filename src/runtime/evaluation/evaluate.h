@@ -38,13 +38,13 @@ void log_unkept(const struct Instance *instance, enum Status status, double time
 enum Status evaluate_prepare(struct Instance *instance);
 
 /*
- * Computes derivative[state_count] at a point with current prepared values. False if it is not finite or the mass
+ * Computes derivative[state_count] at a point with current parameter constants. False if it is not finite or the mass
  * matrix is singular; instance->singular names the coordinate.
  */
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
 
-/* The same at the instance's state, prepared values included. Discards after logging why there is no derivative. */
-enum Status evaluate_situation(struct Instance *instance, double *derivative);
+/* The same at the instance's state, parameter constants included. Discards after logging why there is no derivative. */
+enum Status evaluate_fmu_state(struct Instance *instance, double *derivative);
 
 /* Returns the name of a state whose rate is not finite at the instance's state; NULL if there is none. */
 const char *evaluate_rate_without_value(struct Instance *instance);

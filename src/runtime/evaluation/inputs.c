@@ -1,7 +1,7 @@
 #include "evaluation/inputs.h"
 
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
-  double s = time - instance->situation->time;
+  double s = time - instance->fmu_state->time;
   size_t n = lagrangian.input_count;
   const double *d = instance->input_derivatives + i;
   coefficient[0] = instance->input[i] + s * (d[0] + s / 2 * (d[n] + s / 3 * d[2 * n]));
@@ -19,7 +19,7 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
 }
 
 void evaluate_advance_inputs(struct Instance *instance, double end) {
-  if (!instance->situation->input_derivatives_set) return;
+  if (!instance->fmu_state->input_derivatives_set) return;
   size_t n = lagrangian.input_count;
   for (size_t i = 0; i < n; i++) {
     double coefficient[INPUT_ORDER + 1], *derivative = instance->input_derivatives + i;
@@ -28,5 +28,5 @@ void evaluate_advance_inputs(struct Instance *instance, double end) {
     derivative[0] = coefficient[1];
     derivative[n] = 2.0 * coefficient[2];
   }
-  instance->situation->changed = CHANGED_COURSE;
+  instance->fmu_state->changed = CHANGED_COURSE;
 }

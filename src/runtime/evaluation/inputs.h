@@ -4,7 +4,7 @@
 
 #include "instance/instance.h"
 
-/* Computes the Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at situation->time. */
+/* Computes the Taylor coefficients 0 to INPUT_ORDER at time of input i, a polynomial that starts at fmu_state->time. */
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient);
 
 /* Computes input[input_count] at time. */

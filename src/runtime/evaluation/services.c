@@ -14,7 +14,7 @@ const char solver_resting[] = "the step size fell below the resolution of time, 
 void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state) {
   point->time = time;
   point->state = state;
-  if (instance->situation->input_derivatives_set) {
+  if (instance->fmu_state->input_derivatives_set) {
     evaluate_inputs(instance, time, instance->work);
     point->input = instance->work;
   }
@@ -37,7 +37,7 @@ bool solver_interpolate(const struct Solver *solver, struct Instance *instance, 
 
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative) {
   struct Point point = solver_point(instance, time, state);
-  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  instance->fmu_state->statistics[STATISTIC_DERIVATIVES]++;
   return evaluate_derivatives(instance, &point, derivative);
 }
 
@@ -62,14 +62,14 @@ static int jacobian_by_directions(struct Instance *instance, const struct Point 
 
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values) {
   struct Point point = solver_point(instance, time, state);
-  instance->situation->statistics[STATISTIC_JACOBIANS]++;
+  instance->fmu_state->statistics[STATISTIC_JACOBIANS]++;
   instance->singular = lagrangian.implicit.jacobian != NULL ? lagrangian.implicit.jacobian(&point, values)
                                                             : jacobian_by_directions(instance, &point, values);
   return instance->singular == 0;
 }
 
 bool solver_take_state(struct Instance *instance, double time) {
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   bool is_at_event = lagrangian.event_laws != NULL && last->start == last->end && last->end == time;
   if (is_at_event) memcpy(instance->state, instance->event_state, lagrangian.state_count * sizeof(double));
   else if (!lagrangian.solver->interpolate(instance, time, instance->state)) return false;
@@ -94,7 +94,7 @@ const char *solver_project(struct Instance *instance, double time, double *state
   static const char problem[] = "a constraint cannot be fulfilled";
   if (!solver_is_held(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
-  bool is_kept = moved <= 1000.0 * fmax(instance->situation->tolerance, 1e-10);
+  bool is_kept = moved <= 1000.0 * fmax(instance->fmu_state->tolerance, 1e-10);
   instance->unkept = is_kept ? 0 : 1 + lagrangian.constraints.projection->unkept(instance, time);
   return is_kept ? NULL : problem;
 }
@@ -119,5 +119,5 @@ double solver_error(const struct Instance *instance) {
   if (solver->finer == NULL) return 0.0;
   double smallest = INFINITY;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
-  return instance->situation->tolerance * smallest;
+  return instance->fmu_state->tolerance * smallest;
 }

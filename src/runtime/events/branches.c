@@ -18,17 +18,17 @@ static const char jammed[] = "a friction and a constraint jam each other";
 /* In s: an importer that is back at a zero sooner makes no progress. */
 static const double soonest_return = 1e-6;
 
-static double sign_with_noise(double value, double noise) {
-  return value > noise ? 1.0 : value < -noise ? -1.0 : 0.0;
+static double sign_with_error_bound(double value, double error_bound) {
+  return value > error_bound ? 1.0 : value < -error_bound ? -1.0 : 0.0;
 }
 
 /* True if the indicator is the velocity of a friction with prescribed motion, which moved when the event began. */
-static bool is_driven(const struct Settlement *settlement, size_t branch) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool is_driven(const struct Resolution *resolution, size_t branch) {
+  const struct SwitchTable *switches = resolution->switches;
   bool is_driven = false;
   for (size_t i = 0; i < switches->friction_count; i++)
     is_driven |= switches->frictions[i].is_given && switches->frictions[i].mode == switches->branches[branch].mode &&
-                 settlement->began[i] != 0.0;
+                 resolution->began[i] != 0.0;
   return is_driven;
 }
 
@@ -36,101 +36,101 @@ static bool is_driven(const struct Settlement *settlement, size_t branch) {
  * Returns the rounding error bound of a branch. At a located zero it includes the floor of the search. It also does for
  * a prescribed motion that has come to rest, whose velocity has the rounding error of its path.
  */
-static double noise_of_branch(const struct Settlement *settlement, size_t branch) {
-  double noise = settlement_noise(settlement, branch, branch_rate_place(settlement->switches, branch));
-  bool is_rough = is_hit(settlement, branch) || is_driven(settlement, branch);
-  return noise * (is_rough ? FLOOR_IN_NOISE : 1.0);
+static double error_bound_of_branch(const struct Resolution *resolution, size_t branch) {
+  double error_bound = resolution_error_bound(resolution, branch, branch_rate_slot(resolution->switches, branch));
+  bool is_rough = is_hit(resolution, branch) || is_driven(resolution, branch);
+  return error_bound * (is_rough ? FLOOR_IN_ERROR_BOUND : 1.0);
 }
 
 /* True if an event has left it a little beyond 0, and its rate leads back to the sign of its mode. */
-static bool comes_back(const struct Settlement *settlement, size_t branch, double mode, double noise) {
-  size_t rate = branch_rate_place(settlement->switches, branch);
-  double value = settlement->value[branch];
-  return mode * sign_with_noise(value, noise) < 0.0 && fabs(value) <= FLOOR_IN_NOISE * noise &&
-         mode * settlement->value[rate] > settlement->noise[rate];
+static bool comes_back(const struct Resolution *resolution, size_t branch, double mode, double error_bound) {
+  size_t rate = branch_rate_slot(resolution->switches, branch);
+  double value = resolution->value[branch];
+  return mode * sign_with_error_bound(value, error_bound) < 0.0 && fabs(value) <= FLOOR_IN_ERROR_BOUND * error_bound &&
+         mode * resolution->value[rate] > resolution->error_bound[rate];
 }
 
 /* True if a branch at a located zero crosses it. The sign of an event's expression stays after other changes. */
-static bool passes(const struct Settlement *settlement, size_t branch) {
-  bool rests = settlement->switches->branches[branch].is_side && settlement->changed;
-  return is_hit(settlement, branch) && settlement->flips[branch] == 0.0 && !settlement->jumped && !rests;
+static bool passes(const struct Resolution *resolution, size_t branch) {
+  bool rests = resolution->switches->branches[branch].is_side && resolution->changed;
+  return is_hit(resolution, branch) && resolution->flips[branch] == 0.0 && !resolution->jumped && !rests;
 }
 
 /*
  * True if an indicator at 0 without a rate stays there: a friction has begun to stick in this event, or a prescribed
  * motion has come to rest.
  */
-static bool stays_at_zero(const struct Settlement *settlement, size_t branch) {
-  const struct SwitchTable *switches = settlement->switches;
-  bool rests = is_driven(settlement, branch);
+static bool stays_at_zero(const struct Resolution *resolution, size_t branch) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool rests = is_driven(resolution, branch);
   for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_side; i++)
-    rests |= settlement->began[i] != 0.0 && friction_holds(settlement->instance, i);
+    rests |= resolution->began[i] != 0.0 && friction_holds(resolution->instance, i);
   return rests;
 }
 
 /* Returns the next sign of an indicator: its own, or at 0 that of its rate. */
-static double branch_mode(const struct Settlement *settlement, size_t branch) {
-  size_t rate = branch_rate_place(settlement->switches, branch);
-  double mode = mode_of(settlement, settlement->switches->branches[branch].mode);
-  double noise = noise_of_branch(settlement, branch);
-  if (comes_back(settlement, branch, mode, noise)) return mode;
-  double sign = sign_with_noise(settlement->value[branch], noise);
+static double branch_mode(const struct Resolution *resolution, size_t branch) {
+  size_t rate = branch_rate_slot(resolution->switches, branch);
+  double mode = mode_of(resolution, resolution->switches->branches[branch].mode);
+  double error_bound = error_bound_of_branch(resolution, branch);
+  if (comes_back(resolution, branch, mode, error_bound)) return mode;
+  double sign = sign_with_error_bound(resolution->value[branch], error_bound);
   if (sign != 0.0) return sign;
   /* After a jump, even the smallest rate counts: it is not left by rounding. */
-  sign = sign_with_noise(settlement->value[rate], settlement->jumped ? 0.0 : settlement->noise[rate]);
+  sign = sign_with_error_bound(resolution->value[rate], resolution->jumped ? 0.0 : resolution->error_bound[rate]);
   if (sign != 0.0) return sign;
-  if (passes(settlement, branch)) return mode == 0.0 ? settlement->instance->departure : -mode;
+  if (passes(resolution, branch)) return mode == 0.0 ? resolution->instance->departure : -mode;
   /* Values that were set to 0, without a rate, are at rest, whatever their sign was. */
-  bool was_set = settlement->jumped || settlement->occasion != AT_EVENT;
-  return was_set || stays_at_zero(settlement, branch) ? 0.0 : mode;
+  bool was_set = resolution->jumped || resolution->occasion != AT_EVENT;
+  return was_set || stays_at_zero(resolution, branch) ? 0.0 : mode;
 }
 
 /* Logs a branch both of whose signs lead back to its zero; returns the reason. */
-static const char *refuse_branch(struct Settlement *settlement, size_t branch) {
-  const struct FrictionLaws *laws = settlement->switches->friction_laws;
-  const struct BranchFacts *facts = &settlement->switches->branches[branch];
-  if (laws != NULL && laws->explain_jam(settlement, branch)) return jammed;
-  if (continuity_explain_corner(settlement, branch)) return without_end;
+static const char *refuse_branch(struct Resolution *resolution, size_t branch) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  const struct BranchMetadata *metadata = &resolution->switches->branches[branch];
+  if (laws != NULL && laws->explain_jam(resolution, branch)) return jammed;
+  if (continuity_explain_corner(resolution, branch)) return without_end;
   const char *remedy = lagrangian.coordinate_count > 0
                            ? "as with dry friction that sticks; expected <friction> in place of sign, or of a <state>"
                            : "as with a relay without hysteresis; expected";
   log_message(
-      settlement->instance, settlement->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+      resolution->instance, resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
       "time %g: %s, line %ld of %s, chatters: on both sides of its jump the motion leads back to it, %s a <mode> "
       "that two events set at different values",
-      settlement->time, facts->function, facts->line, facts->file, remedy);
+      resolution->time, metadata->function, metadata->line, metadata->file, remedy);
   return without_end;
 }
 
-const char *branches_switch(struct Settlement *settlement, bool sides, bool *switched) {
-  const struct SwitchTable *switches = settlement->switches;
+const char *branches_switch(struct Resolution *resolution, bool sides, bool *switched) {
+  const struct SwitchTable *switches = resolution->switches;
   *switched = false;
   for (size_t i = 0; i < switches->branch_count; i++) {
     if (switches->branches[i].is_side != sides) continue;
-    double mode = branch_mode(settlement, i);
-    if (mode == mode_of(settlement, switches->branches[i].mode)) continue;
-    if (++settlement->flips[i] > FLIP_LIMIT) {
+    double mode = branch_mode(resolution, i);
+    if (mode == mode_of(resolution, switches->branches[i].mode)) continue;
+    if (++resolution->flips[i] > FLIP_LIMIT) {
       const struct FrictionLaws *laws = switches->friction_laws;
-      *switched = laws != NULL && laws->resolve_jam(settlement);
-      return *switched ? NULL : settlement->has_several_motions ? jammed : refuse_branch(settlement, i);
+      *switched = laws != NULL && laws->resolve_jam(resolution);
+      return *switched ? NULL : resolution->has_several_motions ? jammed : refuse_branch(resolution, i);
     }
-    continuity_note(settlement, i);
-    settlement->rate[i] = settlement->value[branch_rate_place(switches, i)];
-    settlement_set_mode(settlement, switches->branches[i].mode, mode);
+    continuity_note(resolution, i);
+    resolution->rate[i] = resolution->value[branch_rate_slot(switches, i)];
+    resolution_set_mode(resolution, switches->branches[i].mode, mode);
     *switched = true;
   }
   return NULL;
 }
 
-const char *branches_check(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
-  if (settlement->occasion != IN_EXCHANGE || settlement->jumped || settlement->set_mode) return NULL;
+const char *branches_check(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (resolution->occasion != IN_EXCHANGE || resolution->jumped || resolution->set_mode) return NULL;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    size_t place = branch_rate_place(switches, i);
-    double mode = mode_of(settlement, switches->branches[i].mode), noise = settlement->noise[place];
-    double rate = settlement->value[place];
-    bool leads_back = mode * settlement->rate[i] > noise && mode * rate < -noise;
-    if (leads_back && fabs(settlement->value[i]) <= soonest_return * fabs(rate)) return refuse_branch(settlement, i);
+    size_t slot = branch_rate_slot(switches, i);
+    double mode = mode_of(resolution, switches->branches[i].mode), error_bound = resolution->error_bound[slot];
+    double rate = resolution->value[slot];
+    bool leads_back = mode * resolution->rate[i] > error_bound && mode * rate < -error_bound;
+    if (leads_back && fabs(resolution->value[i]) <= soonest_return * fabs(rate)) return refuse_branch(resolution, i);
   }
   return NULL;
 }
@@ -139,20 +139,20 @@ const char *branches_check(struct Settlement *settlement) {
  * Returns the sign of a branch at the start. At a kink of a gap, the rate gives the piece, which impacts need. An
  * event's expression at 0 has no sign yet.
  */
-static double sign_at_start(const struct Settlement *settlement, size_t branch) {
-  const struct SwitchTable *switches = settlement->switches;
-  size_t rate = branch_rate_place(switches, branch);
-  double sign = sign_with_noise(settlement->value[branch], settlement_noise(settlement, branch, rate));
+static double sign_at_start(const struct Resolution *resolution, size_t branch) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t rate = branch_rate_slot(switches, branch);
+  double sign = sign_with_error_bound(resolution->value[branch], resolution_error_bound(resolution, branch, rate));
   if (sign != 0.0 || switches->branches[branch].is_side || switches->contact_laws == NULL) return sign;
-  return sign_with_noise(settlement->value[rate], settlement->noise[rate]);
+  return sign_with_error_bound(resolution->value[rate], resolution->error_bound[rate]);
 }
 
-bool branches_begin(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+bool branches_begin(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t round = 0; round <= switches->branch_count; round++) {
-    if (!settlement_evaluate(settlement)) return false;
+    if (!resolution_evaluate(resolution)) return false;
     for (size_t i = 0; i < switches->branch_count; i++)
-      settlement_set_mode(settlement, switches->branches[i].mode, sign_at_start(settlement, i));
+      resolution_set_mode(resolution, switches->branches[i].mode, sign_at_start(resolution, i));
   }
   return true;
 }
@@ -160,17 +160,17 @@ bool branches_begin(struct Settlement *settlement) {
 static void guess_branches(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Point point = instance_point(instance);
-  double *value = settlement_of(instance).value;
+  double *value = resolution_of(instance).value;
   /* With a mode of 0, a mass could be 0. */
   for (size_t i = 0; i < switches->branch_count; i++)
     if (instance->parameter[switches->branches[i].mode] == 0.0) instance->parameter[switches->branches[i].mode] = 1.0;
   for (size_t round = 0; round <= switches->branch_count; round++) {
-    if (lagrangian.prepare(instance->parameter, instance->prepared) != 0) return;
+    if (lagrangian.prepare(instance->parameter, instance->parameter_constants) != 0) return;
     if (switches->feels_forces && lagrangian.constraints.accelerations(&point, instance->acceleration) != 0) return;
     switches->indicators(&point, instance->acceleration, value);
     bool same = true;
     for (size_t i = 0; i < switches->branch_count; i++) {
-      double *mode = &instance->parameter[switches->branches[i].mode], sign = sign_with_noise(value[i], 0.0);
+      double *mode = &instance->parameter[switches->branches[i].mode], sign = sign_with_error_bound(value[i], 0.0);
       same &= *mode == sign;
       *mode = sign;
     }
@@ -180,11 +180,12 @@ static void guess_branches(struct Instance *instance) {
 
 void branches_guess(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  bool has_samples = switches->sample_count > 0 && lagrangian.prepare(instance->parameter, instance->prepared) == 0;
+  bool has_samples =
+      switches->sample_count > 0 && lagrangian.prepare(instance->parameter, instance->parameter_constants) == 0;
   if (has_samples) switches->time_laws->start(instance);
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
-    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].told] = 1.0;
+    instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].reported] = 1.0;
   guess_branches(instance);
   if (switches->plane_count > 0) switches->friction_laws->guess(instance);
 }

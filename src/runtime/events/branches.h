@@ -2,19 +2,19 @@
 #ifndef BRANCHES_H
 #define BRANCHES_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /*
  * Switches the pieces, or, with sides, the signs of events' expressions; sets *switched if any changed. Returns NULL,
  * or the reason why one cannot.
  */
-const char *branches_switch(struct Settlement *settlement, bool sides, bool *switched);
+const char *branches_switch(struct Resolution *resolution, bool sides, bool *switched);
 
 /* Returns NULL, or the reason why an importer would come back to a zero again and again: both signs lead back to it. */
-const char *branches_check(struct Settlement *settlement);
+const char *branches_check(struct Resolution *resolution);
 
 /* Sets the signs from the start values. False if the accelerations do not exist. */
-bool branches_begin(struct Settlement *settlement);
+bool branches_begin(struct Resolution *resolution);
 
 /* Sets the signs from the present values, without events, for reading before the start. */
 void branches_guess(struct Instance *instance);

@@ -57,14 +57,14 @@ void chebyshev_derivative(const Real *c, Real *d) {
 }
 
 /* Clenshaw's algorithm. */
-Real chebyshev_value(const Real *c, Real place) {
+Real chebyshev_value(const Real *c, Real slot) {
   Real next = REAL(0.0), sum = REAL(0.0);
   for (int k = CHEBYSHEV_DEGREE; k > 0; k--) {
     Real before = sum;
-    sum = c[k] + 2.0 * place * sum - next;
+    sum = c[k] + 2.0 * slot * sum - next;
     next = before;
   }
-  return c[0] + place * sum - next;
+  return c[0] + slot * sum - next;
 }
 
 void chebyshev_powers(const Real *c, Real half, Real *power) {

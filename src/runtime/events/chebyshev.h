@@ -36,7 +36,7 @@ static const double chebyshev_tail_of_curvature =
     4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE * (CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE - 1) / 3.0;
 
 /* Returns p(s). */
-Real chebyshev_value(const Real *c, Real place);
+Real chebyshev_value(const Real *c, Real slot);
 
 /* Computes the coefficients by powers of the time from the middle of a window of length 2 half. */
 void chebyshev_powers(const Real *c, Real half, Real *power);

@@ -5,34 +5,34 @@
 #ifndef CONTINUITY_H
 #define CONTINUITY_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /* Projects the state that the solver has left. Returns NULL, or the reason why the motion cannot go on. */
-const char *continuity_begin(struct Settlement *settlement);
+const char *continuity_begin(struct Resolution *resolution);
 
 /* Stores the energies and the lateness before a branch switches. */
-void continuity_note(struct Settlement *settlement, size_t branch);
+void continuity_note(struct Resolution *resolution, size_t branch);
 
 /*
  * Checks that branches, and events that set modes or coordinates, leave constraints and energies continuous. Returns
  * NULL, or the reason.
  */
-const char *continuity_check(struct Settlement *settlement);
+const char *continuity_check(struct Resolution *resolution);
 
 /*
  * Refuses Zeno behaviour at the corner of a gap in model exchange: errors of an integrator take a body that rests in the corner from
  * one piece to the other. Returns NULL, or the reason.
  */
-const char *continuity_check_corner(struct Settlement *settlement);
+const char *continuity_check_corner(struct Resolution *resolution);
 
 /* Returns the largest change of the state by a smooth branch, in units of the scales: an importer comes to it late. */
-double continuity_allowed_share(const struct Settlement *settlement);
+double continuity_allowed_share(const struct Resolution *resolution);
 
 /*
  * Logs the contact whose gap has a corner or a jump at a branch: a body that touches both pieces needs a contact for
  * each. False if there is none.
  */
-bool continuity_explain_corner(struct Settlement *settlement, size_t branch);
+bool continuity_explain_corner(struct Resolution *resolution, size_t branch);
 
 /* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
 extern const double crowding_share;

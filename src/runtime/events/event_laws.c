@@ -5,7 +5,7 @@
 #include "events/branches.h"
 #include "events/exchange.h"
 #include "events/passing.h"
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 static bool holds_at_times(const char *constraint) {
   const struct SwitchTable *switches = lagrangian.switches;
@@ -15,12 +15,12 @@ static bool holds_at_times(const char *constraint) {
   return is_held;
 }
 
-const struct EventLaws event_laws = {.work_count = settlement_work_count,
-                                     .settle = exchange_settle,
+const struct EventLaws event_laws = {.work_count = resolution_work_count,
+                                     .resolve = exchange_resolve,
                                      .guess = branches_guess,
                                      .start = events_start,
                                      .part = events_part,
-                                     .settle_change = events_settle_change,
+                                     .resolve_change = events_resolve_change,
                                      .update = events_update,
                                      .pass = events_pass,
                                      .pass_barrier = events_pass_barrier,

@@ -6,8 +6,8 @@
 
 #include "evaluation/evaluate.h"
 #include "events/indicators.h"
-#include "events/settle.h"
-#include "events/settlement.h"
+#include "events/resolve.h"
+#include "events/resolution.h"
 #include "instance/projection.h"
 
 /* Steps of Newton's method to the end of a piece, or to a zero. */
@@ -20,30 +20,30 @@ enum { LATE_LIMIT = 8 };
 static const double surplus = 64.0 * DBL_EPSILON;
 
 /* Returns the time in s since the motion left its pieces, the longest one; 0 if it has left none, NAN if unknown. */
-static double time_beyond(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static double time_beyond(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   double time = 0.0;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    double sign = mode_of(settlement, switches->branches[i].mode),
-           rate = settlement->value[branch_rate_place(switches, i)];
-    if (!(sign * settlement->value[i] < 0.0)) continue;
+    double sign = mode_of(resolution, switches->branches[i].mode),
+           rate = resolution->value[branch_rate_slot(switches, i)];
+    if (!(sign * resolution->value[i] < 0.0)) continue;
     if (!(sign * rate < 0.0)) return NAN;
-    time = fmax(time, settlement->value[i] / rate);
+    time = fmax(time, resolution->value[i] / rate);
   }
   return time;
 }
 
 bool exchange_come_back(struct Instance *instance, struct Point *point) {
-  struct Settlement settlement = settlement_of(instance);
+  struct Resolution resolution = resolution_of(instance);
   size_t n = lagrangian.coordinate_count;
-  double *state = settlement.rounded;
+  double *state = resolution.rounded;
   memcpy(state, point->state, lagrangian.state_count * sizeof *state);
   point->state = state;
   /* Accelerations do not exist here; pieces that end at positions and times need none. */
-  memset(settlement.acceleration, 0, (n + lagrangian.constraints.count) * sizeof *settlement.acceleration);
+  memset(resolution.acceleration, 0, (n + lagrangian.constraints.count) * sizeof *resolution.acceleration);
   for (int i = 0; i < APPROACH_LIMIT; i++) {
-    settlement.switches->switching_values(point, settlement.acceleration, settlement.value);
-    double back = time_beyond(&settlement);
+    resolution.switches->switching_values(point, resolution.acceleration, resolution.value);
+    double back = time_beyond(&resolution);
     if (!(back > 0.0)) return i > 0 && back == 0.0;
     back += surplus * fmax(back, fabs(point->time));
     for (size_t k = 0; k < n; k++) state[k] -= back * state[n + k];
@@ -66,11 +66,11 @@ static void complete_indicators(struct Instance *instance, double *value) {
 }
 
 /* Distance beyond 0 at which a zero is reported: the largest one, and in units of the rounding error bound. */
-static const double largest_shift = 1e-11, shift_in_noise = 1e5;
+static const double largest_shift = 1e-11, shift_in_error_bound = 1e5;
 
 /* Returns the shift for rounding error bounds by the state (noise) and by the indicator's operations (rounding). */
-static double shift_of(double noise, double rounding) {
-  double shift = fmax(shift_in_noise * noise, FLOOR_IN_NOISE * rounding);
+static double shift_of(double error_bound, double rounding) {
+  double shift = fmax(shift_in_error_bound * error_bound, FLOOR_IN_ERROR_BOUND * rounding);
   return shift > 0.0 && shift < largest_shift ? shift : largest_shift;
 }
 
@@ -78,9 +78,9 @@ static double shift_of(double noise, double rounding) {
 static void find_shifts(struct Instance *instance, const double *value, double *shift) {
   size_t count = indicator_count(lagrangian.switches);
   double *rounding = shift + count, *rounded = rounding + count;
-  double time = instance->situation->time;
-  indicator_roundings(instance, time, instance->state, instance->acceleration, rounding);
-  bool known = indicator_noise(instance, time, instance->state, true, value, rounded, shift);
+  double time = instance->fmu_state->time;
+  indicator_rounding_bounds(instance, time, instance->state, instance->acceleration, rounding);
+  bool known = indicator_error_bound(instance, time, instance->state, true, value, rounded, shift);
   for (size_t i = 0; i < count; i++)
     shift[i] = known && !indicator_is_force(instance, i) ? shift_of(shift[i], rounding[i]) : largest_shift;
 }
@@ -92,7 +92,7 @@ static void find_shifts(struct Instance *instance, const double *value, double *
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  if (!indicators_at(instance, instance->situation->time, instance->state, value)) return false;
+  if (!indicators_at(instance, instance->fmu_state->time, instance->state, value)) return false;
   size_t count = indicator_count(lagrangian.switches);
   double *shift = instance->switching_work + count; /* values may be stored before it */
   complete_indicators(instance, value);
@@ -125,23 +125,23 @@ static bool may_turn_back(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool looks_both_ways = false;
   for (size_t i = 0; i < switches->event_count; i++) looks_both_ways |= switches->events[i].passage == PASSAGE_BOTH;
-  return looks_both_ways && switches->has_sides && instance->situation->changed != CHANGED_VALUES;
+  return looks_both_ways && switches->has_sides && instance->fmu_state->changed != CHANGED_VALUES;
 }
 
 /* Returns the time in s since an expression crossed 0; 0 if it has not. */
-static double lateness_of(const struct Settlement *settlement, size_t branch) {
-  const struct BranchFacts *facts = &settlement->switches->branches[branch];
-  double side = mode_of(settlement, facts->mode), value = settlement->value[branch];
-  double rate = settlement->value[branch_rate_place(settlement->switches, branch)];
-  return facts->is_side && side * value < 0.0 && side * rate < 0.0 ? value / rate : 0.0;
+static double lateness_of(const struct Resolution *resolution, size_t branch) {
+  const struct BranchMetadata *metadata = &resolution->switches->branches[branch];
+  double side = mode_of(resolution, metadata->mode), value = resolution->value[branch];
+  double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
+  return metadata->is_side && side * value < 0.0 && side * rate < 0.0 ? value / rate : 0.0;
 }
 
 /* Returns the expression that crossed first; branch_count for none. */
-static size_t find_late_branch(const struct Settlement *settlement) {
-  size_t passed = settlement->switches->branch_count;
+static size_t find_late_branch(const struct Resolution *resolution) {
+  size_t passed = resolution->switches->branch_count;
   double longest = 0.0;
-  for (size_t i = 0; i < settlement->switches->branch_count; i++) {
-    double lateness = lateness_of(settlement, i);
+  for (size_t i = 0; i < resolution->switches->branch_count; i++) {
+    double lateness = lateness_of(resolution, i);
     if (!(lateness > longest)) continue;
     longest = lateness;
     passed = i;
@@ -150,49 +150,49 @@ static size_t find_late_branch(const struct Settlement *settlement) {
 }
 
 /* Moves the state by a time in s, with the accelerations of the last evaluation. */
-static void move_by(struct Settlement *settlement, double duration) {
-  const double *acceleration = settlement_accelerations(settlement);
-  double *position = settlement->state, *velocity = position + lagrangian.coordinate_count;
+static void move_by(struct Resolution *resolution, double duration) {
+  const double *acceleration = resolution_accelerations(resolution);
+  double *position = resolution->state, *velocity = position + lagrangian.coordinate_count;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     position[i] += duration * (velocity[i] + 0.5 * duration * acceleration[i]);
     velocity[i] += duration * acceleration[i];
   }
-  settlement->time += duration;
+  resolution->time += duration;
 }
 
 /* Moves the state back to the zero of a branch by Newton's method. False if it does not converge. */
-static bool go_to_zero(struct Settlement *settlement, size_t branch) {
+static bool go_to_zero(struct Resolution *resolution, size_t branch) {
   for (int i = 0; i < APPROACH_LIMIT; i++) {
-    double rate = settlement->value[branch_rate_place(settlement->switches, branch)];
-    double duration = -settlement->value[branch] / rate;
+    double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
+    double duration = -resolution->value[branch] / rate;
     if (!isfinite(duration)) return false;
-    if (fabs(duration) <= 4.0 * DBL_EPSILON * fabs(settlement->time) || settlement->value[branch] == 0.0) return true;
-    move_by(settlement, duration);
-    if (!settlement_values(settlement, settlement->state, settlement->value)) return false;
+    if (fabs(duration) <= 4.0 * DBL_EPSILON * fabs(resolution->time) || resolution->value[branch] == 0.0) return true;
+    move_by(resolution, duration);
+    if (!resolution_values(resolution, resolution->state, resolution->value)) return false;
   }
   return false;
 }
 
 /* Handles the event at the first zero that was crossed, *passes if there was one. Returns NULL, or a reason to stop. */
 static const char *pass_late(struct Instance *instance, bool *passes, bool *changed) {
-  double time = instance->situation->time, *state = instance->event_state, *before = state + lagrangian.state_count;
+  double time = instance->fmu_state->time, *state = instance->event_state, *before = state + lagrangian.state_count;
   size_t size = lagrangian.state_count * sizeof *state;
   *passes = false;
   memcpy(state, instance->state, size);
-  struct Settlement settlement = settlement_at(instance, time, state, IN_EXCHANGE);
-  if (evaluate_prepare(instance) != STATUS_DONE || !settlement_values(&settlement, state, settlement.value))
+  struct Resolution resolution = resolution_at(instance, time, state, IN_EXCHANGE);
+  if (evaluate_prepare(instance) != STATUS_DONE || !resolution_values(&resolution, state, resolution.value))
     return NULL;
-  size_t branch = find_late_branch(&settlement);
-  if (branch == lagrangian.switches->branch_count || !go_to_zero(&settlement, branch)) return NULL;
-  double zero = settlement.time;
+  size_t branch = find_late_branch(&resolution);
+  if (branch == lagrangian.switches->branch_count || !go_to_zero(&resolution, branch)) return NULL;
+  double zero = resolution.time;
   memcpy(before, state, size);
-  const char *problem = settle(instance, zero, state, AT_EVENT, branch, passes);
+  const char *problem = resolve(instance, zero, state, AT_EVENT, branch, passes);
   *changed |= *passes;
   if (problem != NULL || memcmp(before, state, size) == 0) return problem;
-  settlement = settlement_at(instance, zero, state, IN_EXCHANGE);
-  if (evaluate_prepare(instance) != STATUS_DONE || !settlement_values(&settlement, state, settlement.value))
+  resolution = resolution_at(instance, zero, state, IN_EXCHANGE);
+  if (evaluate_prepare(instance) != STATUS_DONE || !resolution_values(&resolution, state, resolution.value))
     return "the accelerations do not exist after an event";
-  move_by(&settlement, time - zero);
+  move_by(&resolution, time - zero);
   memcpy(instance->state, state, size);
   return NULL;
 }
@@ -200,9 +200,9 @@ static const char *pass_late(struct Instance *instance, bool *passes, bool *chan
 /* Lets frictions slide whose velocities an importer has set in event mode. */
 static void release_frictions(struct Instance *instance) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
-  if (laws == NULL || instance->situation->changed != CHANGED_VALUES) return;
-  struct Settlement settlement = settlement_at(instance, instance->situation->time, instance->state, IN_EXCHANGE);
-  if (settlement_evaluate(&settlement)) laws->release(&settlement);
+  if (laws == NULL || instance->fmu_state->changed != CHANGED_VALUES) return;
+  struct Resolution resolution = resolution_at(instance, instance->fmu_state->time, instance->state, IN_EXCHANGE);
+  if (resolution_evaluate(&resolution)) laws->release(&resolution);
 }
 
 /* Largest residual by an integrator, in units of the scales of the state; a state further away was set. */
@@ -217,13 +217,13 @@ static void return_to_constraints(struct Instance *instance, bool *changed) {
   size_t size = lagrangian.state_count * sizeof *state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return;
   memcpy(state, instance->state, size);
-  double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, state);
+  double moved = lagrangian.constraints.projection->project(instance, instance->fmu_state->time, state);
   if (!(moved > 0.0 && moved <= largest_deviation)) return;
   memcpy(instance->state, state, size);
   *changed = true;
 }
 
-const char *exchange_settle(struct Instance *instance, bool *changed) {
+const char *exchange_resolve(struct Instance *instance, bool *changed) {
   const char *problem = NULL;
   bool passes = may_turn_back(instance), others;
   *changed = false;
@@ -231,7 +231,7 @@ const char *exchange_settle(struct Instance *instance, bool *changed) {
   for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes, changed);
   if (problem != NULL) return problem;
   release_frictions(instance);
-  problem = settle(instance, instance->situation->time, instance->state, IN_EXCHANGE, 0, &others);
+  problem = resolve(instance, instance->fmu_state->time, instance->state, IN_EXCHANGE, 0, &others);
   *changed |= others;
   return problem;
 }

@@ -10,7 +10,7 @@
 static const double least_share = 0.1;
 
 /* Ratio of a rounding error bound to the change by one perturbation. */
-static const double noise_of_difference = 8.0;
+static const double error_bound_of_difference = 8.0;
 /* Factor of the second pattern: a sum with larger terms may lose a change in the last digit, and keeps a larger one. */
 static const double further = 8.0;
 
@@ -61,12 +61,12 @@ void indicators_at_times(struct Instance *instance, const double *times, size_t 
   }
 }
 
-void indicator_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
-                         double *noise) {
+void indicator_rounding_bounds(struct Instance *instance, double time, const double *state, const double *acceleration,
+                               double *error_bound) {
   struct Point point = solver_point(instance, time, state);
-  lagrangian.switches->roundings(&point, acceleration, noise);
+  lagrangian.switches->rounding_bounds(&point, acceleration, error_bound);
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++)
-    noise[i] = isfinite(noise[i]) ? rounding_of_operation * noise[i] : 0.0;
+    error_bound[i] = isfinite(error_bound[i]) ? rounding_of_operation * error_bound[i] : 0.0;
 }
 
 double indicator_sign(const struct Instance *instance, size_t indicator) {
@@ -81,16 +81,16 @@ double round_state(const double *state, bool otherwise, double *rounded) {
     double change = distance * (double)(1 + (otherwise ? i * 3 % 7 : i * 7 % 5)) * DBL_EPSILON * size;
     rounded[i] = state[i] + ((otherwise ? i / 2 : i) % 2 == 0 ? change : -change);
   }
-  return noise_of_difference / distance;
+  return error_bound_of_difference / distance;
 }
 
-bool indicator_noise(struct Instance *instance, double time, const double *state, bool otherwise,
-                     const double *indicator, double *rounded, double *noise) {
+bool indicator_error_bound(struct Instance *instance, double time, const double *state, bool otherwise,
+                           const double *indicator, double *rounded, double *error_bound) {
   double factor = round_state(state, otherwise, rounded);
-  if (!indicators_at(instance, time * (1.0 + 4.0 * DBL_EPSILON), rounded, noise)) return false;
+  if (!indicators_at(instance, time * (1.0 + 4.0 * DBL_EPSILON), rounded, error_bound)) return false;
   for (size_t i = 0; i < indicator_count(lagrangian.switches); i++) {
-    double change = factor * fabs(noise[i] - indicator[i]);
-    noise[i] = isfinite(change) ? change : 0.0;
+    double change = factor * fabs(error_bound[i] - indicator[i]);
+    error_bound[i] = isfinite(change) ? change : 0.0;
   }
   return true;
 }

@@ -18,8 +18,8 @@ bool indicator_is_force(const struct Instance *instance, size_t indicator);
  * Computes bounds of the rounding errors by their own operations, for the indicators of branches, gaps and velocities
  * of frictions, in any mode. acceleration: as for indicators() of struct SwitchTable.
  */
-void indicator_roundings(struct Instance *instance, double time, const double *state, const double *acceleration,
-                         double *noise);
+void indicator_rounding_bounds(struct Instance *instance, double time, const double *state, const double *acceleration,
+                               double *error_bound);
 
 /*
  * Perturbs a state by rounding errors in one of two patterns, so that the errors cannot cancel in both; the second one
@@ -31,13 +31,13 @@ double round_state(const double *state, bool otherwise, double *rounded);
  * Computes rounding error bounds of the indicators by perturbing the time and the state in one of these patterns.
  * rounded: state_count of workspace. False if the indicators do not exist.
  */
-bool indicator_noise(struct Instance *instance, double time, const double *state, bool otherwise,
-                     const double *indicator, double *rounded, double *noise);
+bool indicator_error_bound(struct Instance *instance, double time, const double *state, bool otherwise,
+                           const double *indicator, double *rounded, double *error_bound);
 
 /* Returns the sign that an indicator has while its mode stays: 1, -1, or 0 for a branch at rest at 0. */
 double indicator_sign(const struct Instance *instance, size_t indicator);
 
 /* How far an event may leave an indicator below 0, in units of its rounding error bound. */
-enum { FLOOR_IN_NOISE = 64 };
+enum { FLOOR_IN_ERROR_BOUND = 64 };
 
 #endif

@@ -20,8 +20,8 @@
 #include "events/continuity.h"
 #include "events/indicators.h"
 #include "events/search.h"
-#include "events/settle.h"
-#include "events/settlement.h"
+#include "events/resolve.h"
+#include "events/resolution.h"
 #include "events/window.h"
 #include "instance/time_laws.h"
 
@@ -55,13 +55,13 @@ static const char no_modes[] = "the accelerations do not exist with these parame
 static const char *modes_at(struct Instance *instance, double time, double *state, enum Occasion occasion,
                             size_t indicator) {
   bool changed;
-  const char *problem = settle(instance, time, state, occasion, indicator, &changed);
+  const char *problem = resolve(instance, time, state, occasion, indicator, &changed);
   return problem == NULL && evaluate_prepare(instance) != STATUS_DONE ? no_modes : problem;
 }
 
 bool events_start(struct Instance *instance) {
   instance->modes_stay = true;
-  const char *problem = modes_at(instance, instance->situation->time, instance->state, AT_START, 0);
+  const char *problem = modes_at(instance, instance->fmu_state->time, instance->state, AT_START, 0);
   instance->modes_stay = false;
   if (problem != NULL) refuse_call(instance, "%s, at the start values", problem);
   return problem == NULL;
@@ -72,39 +72,39 @@ bool events_part(struct Instance *instance, double time) {
   const struct ContactLaws *contacts = lagrangian.switches->contact_laws;
   const struct FrictionLaws *frictions = lagrangian.switches->friction_laws;
   if (contacts == NULL && frictions == NULL) return true;
-  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  if (!settlement_evaluate(&settlement)) return true;
-  if (frictions != NULL) frictions->release(&settlement);
-  return contacts == NULL || contacts->part(&settlement);
+  struct Resolution resolution = resolution_at(instance, time, instance->state, AT_CHANGE);
+  if (!resolution_evaluate(&resolution)) return true;
+  if (frictions != NULL) frictions->release(&resolution);
+  return contacts == NULL || contacts->part(&resolution);
 }
 
-bool events_settle_change(struct Instance *instance, double time) {
+bool events_resolve_change(struct Instance *instance, double time) {
   const char *problem = modes_at(instance, time, instance->state, AT_CHANGE, 0);
   if (problem != NULL) log_message(instance, STATUS_DISCARD, "time %.15g: %s", time, problem);
   return problem == NULL;
 }
 
 const char *events_update(struct Instance *instance, bool *changed) {
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   *changed = false;
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
   const struct TimeLaws *times = lagrangian.switches->time_laws;
-  bool is_due = situation->waiting_event == 0 && times != NULL && times->is_due(instance);
+  bool is_due = fmu_state->waiting_event == 0 && times != NULL && times->is_due(instance);
   /* Otherwise the modes agree already; the sign of an indicator that leaves 0 is known from its event alone. */
-  if (situation->waiting_event == 0 && situation->changed != CHANGED_VALUES && !is_due) return NULL;
-  enum Occasion occasion = situation->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
-  size_t indicator = occasion == AT_EVENT ? (size_t)situation->waiting_event - 1 : 0;
-  const char *problem = settle(instance, situation->time, instance->state, occasion, indicator, changed);
+  if (fmu_state->waiting_event == 0 && fmu_state->changed != CHANGED_VALUES && !is_due) return NULL;
+  enum Occasion occasion = fmu_state->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
+  size_t indicator = occasion == AT_EVENT ? (size_t)fmu_state->waiting_event - 1 : 0;
+  const char *problem = resolve(instance, fmu_state->time, instance->state, occasion, indicator, changed);
   bool is_new = occasion == AT_EVENT || *changed;
-  if (is_new && situation->changed == CHANGED_NOTHING) situation->changed = CHANGED_BY_EVENT;
-  situation->waiting_event = 0;
+  if (is_new && fmu_state->changed == CHANGED_NOTHING) fmu_state->changed = CHANGED_BY_EVENT;
+  fmu_state->waiting_event = 0;
   return problem;
 }
 
 /* Restarts the solver at a time, from the state in event_state. */
 static const char *start_anew(struct Instance *instance, const struct CommunicationStep *step, double time) {
   const struct Solver *solver = lagrangian.solver;
-  situation_begin(instance->situation, time);
+  fmu_state_begin(instance->fmu_state, time);
   bool is_done = solver->restart == NULL || solver->restart(instance, instance->event_state, step);
   return is_done ? NULL : "out of memory for the solver";
 }
@@ -112,7 +112,7 @@ static const char *start_anew(struct Instance *instance, const struct Communicat
 /* Ends the communication step before an event, at which the importer asks for the modes. */
 static const char *stop_at_event(struct Instance *instance, struct CommunicationStep *step, double time,
                                  size_t indicator) {
-  instance->situation->waiting_event = (int32_t)indicator + 1;
+  instance->fmu_state->waiting_event = (int32_t)indicator + 1;
   step->end = time;
   step->length = time - step->start;
   return start_anew(instance, step, time);
@@ -126,7 +126,7 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
                               size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
-  const struct SampleFacts *sample = sample_of(lagrangian.switches, indicator);
+  const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
   double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal to rounding */
   const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
   const char *obstacle = start_anew(instance, step, time);
@@ -158,21 +158,21 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
 /* True if the search may go beyond the communication step: the motion does not depend on inputs that end with it. */
 static bool may_go_further(const struct Instance *instance, const struct CommunicationStep *step,
                            const struct EventProgress *progress) {
-  const struct Situation *situation = instance->situation;
-  const struct Span *last = &situation->last_step;
+  const struct FmuState *fmu_state = instance->fmu_state;
+  const struct Span *last = &fmu_state->last_step;
   bool is_new = last->start == step->start; /* as happens if values are set before each communication step */
   bool begins = progress->searched <= fmax(step->start, last->start) && progress->count == 0;
-  return last->end > step->end && begins && !is_new && !situation->input_derivatives_set;
+  return last->end > step->end && begins && !is_new && !fmu_state->input_derivatives_set;
 }
 
 /* Searches a solver step beyond the present communication step, so that the next ones need no search. */
 static void search_further(struct Instance *instance, const struct CommunicationStep *step,
                            struct EventProgress *progress) {
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   double from = progress->searched, time;
-  double further = fmax(further_steps * step->length, further_share * (from - situation->last_step.start));
-  double to = fmin(situation->last_step.end, from + further);
-  if (situation->stop_time_defined) to = fmin(to, situation->stop_time);
+  double further = fmax(further_steps * step->length, further_share * (from - fmu_state->last_step.start));
+  double to = fmin(fmu_state->last_step.end, from + further);
+  if (fmu_state->stop_time_defined) to = fmin(to, fmu_state->stop_time);
   if (!may_go_further(instance, step, progress) || !(to > step->end)) return;
   int singular = instance->singular;
   const char *limited_by = instance->limited_by;
@@ -192,7 +192,7 @@ static void search_further(struct Instance *instance, const struct Communication
  * polynomial may hide tiny bounces. False if that does not help.
  */
 static bool go_nearer(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
-  double reach = (instance->situation->last_step.end - progress->searched) / NEARER;
+  double reach = (instance->fmu_state->last_step.end - progress->searched) / NEARER;
   if (progress->unsure > UNSURE_LIMIT || ++progress->nearer > NEARER_LIMIT) return false;
   if (solver_rests(progress->searched, reach)) return false;
   if (!lagrangian.solver->interpolate(instance, progress->searched, instance->event_state)) return false;
@@ -253,7 +253,7 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
     return too_close;
   }
   if (lagrangian.solver->interpolate(instance, progress->searched, instance->event_state) &&
-      settle_explain(instance, progress->searched, instance->event_state))
+      resolve_explain(instance, progress->searched, instance->event_state))
     return too_close;
   name_indicator(indicator, name, sizeof name);
   log_message(instance, STATUS_DISCARD,
@@ -267,8 +267,8 @@ static const char *lose(struct Instance *instance, struct EventProgress *progres
 static bool is_at_corner(struct Instance *instance, double time, size_t indicator) {
   if (indicator >= lagrangian.switches->branch_count) return false;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state)) return false;
-  struct Settlement settlement = settlement_at(instance, time, instance->event_state, AT_EVENT);
-  return continuity_explain_corner(&settlement, indicator);
+  struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_EVENT);
+  return continuity_explain_corner(&resolution, indicator);
 }
 
 /*
@@ -305,13 +305,13 @@ static bool ends_at_sample(const struct Instance *instance, double end, size_t *
 }
 
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
-  double end = fmin(instance->situation->last_step.end, step->end), time;
+  double end = fmin(instance->fmu_state->last_step.end, step->end), time;
   size_t indicator = 0;
-  progress->searched = fmax(progress->searched, instance->situation->searched);
+  progress->searched = fmax(progress->searched, instance->fmu_state->searched);
   if (progress->searched < end) search_further(instance, step, progress);
   bool is_found = find_next(instance, end, progress, &time, &indicator);
-  instance->situation->searched = progress->searched;
-  instance->situation->gathered = 0;
+  instance->fmu_state->searched = progress->searched;
+  instance->fmu_state->gathered = 0;
   if (!is_found && end == step->end && ends_at_sample(instance, end, &indicator)) {
     is_found = true;
     time = end;
@@ -321,7 +321,7 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   count_event(instance, step, time, indicator, progress);
   if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
     return refuse_gathering(instance, step, progress, indicator);
-  if (instance->stops_at_events) instance->situation->gathered = progress->gathered;
+  if (instance->stops_at_events) instance->fmu_state->gathered = progress->gathered;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state))
     return "the state is not available at the event";
   return pass_event(instance, step, time, indicator);
@@ -341,13 +341,13 @@ const char *events_pass_barrier(struct Instance *instance, struct CommunicationS
 const char *events_check(struct Instance *instance, double time) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
   if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
-  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_EVENT);
-  if (!settlement_values(&settlement, instance->state, settlement.value)) return NULL; /* the caller reports it */
+  struct Resolution resolution = resolution_at(instance, time, instance->state, AT_EVENT);
+  if (!resolution_values(&resolution, instance->state, resolution.value)) return NULL; /* the caller reports it */
   bool pushes = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
     for (size_t part = FRICTION_FORCE; part <= FRICTION_FORCE_BACK; part += FRICTION_FORCE_BACK - FRICTION_FORCE)
-      pushes |= settlement.value[friction_place(settlement.switches, i, part)] < 0.0;
-  return pushes && settlement_evaluate(&settlement) ? laws->check(&settlement) : NULL;
+      pushes |= resolution.value[friction_slot(resolution.switches, i, part)] < 0.0;
+  return pushes && resolution_evaluate(&resolution) ? laws->check(&resolution) : NULL;
 }
 
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,
@@ -357,14 +357,14 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
   if (2 * progress->count < step->count) return;
   name_indicator(progress->indicator, name, sizeof name);
   log_message(instance, STATUS_DISCARD, "time %g: %ld events in the step, the last of %s%s",
-              instance->situation->last_step.end, progress->count, name,
+              instance->fmu_state->last_step.end, progress->count, name,
               is_branch ? " as when the motion chatters about its zero" : "");
 }
 
 bool events_explain_stop(struct Instance *instance, double time) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
-  if (settle_explain(instance, time, instance->state)) return true;
+  if (resolve_explain(instance, time, instance->state)) return true;
   if (laws == NULL) return false;
-  struct Settlement settlement = settlement_at(instance, time, instance->state, AT_CHANGE);
-  return laws->explain_jam(&settlement, lagrangian.switches->branch_count);
+  struct Resolution resolution = resolution_at(instance, time, instance->state, AT_CHANGE);
+  return laws->explain_jam(&resolution, lagrangian.switches->branch_count);
 }

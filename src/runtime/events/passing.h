@@ -7,7 +7,7 @@
 /* Implement the functions of these names in struct EventLaws. */
 bool events_start(struct Instance *instance);
 bool events_part(struct Instance *instance, double time);
-bool events_settle_change(struct Instance *instance, double time);
+bool events_resolve_change(struct Instance *instance, double time);
 const char *events_check(struct Instance *instance, double time);
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,
                     const struct EventProgress *progress);

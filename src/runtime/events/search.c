@@ -53,7 +53,7 @@ struct Search {
   double *samples;         /* CHEBYSHEV_NODES rows of values */
   double *held;            /* the same at projected states, if has_held */
   double *exact;           /* one for each indicator: values at the start */
-  double *noise;           /* rounding error bounds of the indicators */
+  double *error_bound;     /* rounding error bounds of the indicators */
   int windows;             /* number that may still be looked at */
   bool is_exact;           /* times are found to rounding; else times before them */
   bool has_held;
@@ -75,8 +75,8 @@ static struct Search search_of(struct Instance *instance) {
   search.rounded = search.state + lagrangian.state_count;
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
-  search.noise = search.samples + CHEBYSHEV_NODES * count;
-  search.exact = search.noise + count;
+  search.error_bound = search.samples + CHEBYSHEV_NODES * count;
+  search.exact = search.error_bound + count;
   search.held = search.exact + count;
   return search;
 }
@@ -104,18 +104,19 @@ static double value_at(struct Search *search, size_t indicator, double time) {
   return search->values[indicator];
 }
 
-static void measure_noise(struct Search *search, double time) {
+static void measure_error_bound(struct Search *search, double time) {
   size_t count = indicator_count(lagrangian.switches);
   double *exact = search->exact;
   sample(search, time, search->values);
-  indicator_roundings(search->instance, time, search->state, search->instance->acceleration, search->noise);
+  indicator_rounding_bounds(search->instance, time, search->state, search->instance->acceleration, search->error_bound);
   for (size_t i = 0; i < count; i++)
-    if (indicator_is_force(search->instance, i)) search->noise[i] = 0.0;
+    if (indicator_is_force(search->instance, i)) search->error_bound[i] = 0.0;
   memcpy(exact, search->values, count * sizeof *exact);
   for (int way = 0; way < 2; way++) {
     bool known =
-        indicator_noise(search->instance, time, search->state, way == 1, exact, search->rounded, search->values);
-    for (size_t i = 0; i < count && known; i++) search->noise[i] = fmax(search->noise[i], search->values[i]);
+        indicator_error_bound(search->instance, time, search->state, way == 1, exact, search->rounded, search->values);
+    for (size_t i = 0; i < count && known; i++)
+      search->error_bound[i] = fmax(search->error_bound[i], search->values[i]);
   }
 }
 
@@ -123,7 +124,7 @@ static void measure_noise(struct Search *search, double time) {
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* Judges f by its values at the nodes; it is positive while the mode stays. */
-static enum Verdict judge_signs(const double *f, double noise) {
+static enum Verdict judge_signs(const double *f, double error_bound) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
@@ -131,24 +132,24 @@ static enum Verdict judge_signs(const double *f, double noise) {
     if (!(fabs(f[k]) <= largest)) largest = isnan(f[k]) ? INFINITY : fabs(f[k]);
   }
   if (missing > CHEBYSHEV_DEGREE) return STAYS; /* of an inactive piece of a branch */
-  if (largest <= noise) return STAYS;
+  if (largest <= error_bound) return STAYS;
   if (isinf(largest)) return UNKNOWN;
   chebyshev_coefficients(f, c);
   double reach = chebyshev_range(c);
-  if (reach <= noise) return f[0] < -noise ? FALLS : STAYS; /* constant within rounding */
+  if (reach <= error_bound) return f[0] < -error_bound ? FALLS : STAYS; /* constant within rounding */
   double tail = chebyshev_tail(c);
   if (c[0] - reach > 2.0 * tail) return STAYS;
-  if (tail > chebyshev_resolved * reach + noise) return UNKNOWN;
+  if (tail > chebyshev_resolved * reach + error_bound) return UNKNOWN;
   chebyshev_derivative(c, d);
   double margin = chebyshev_tail_of_derivative * tail;
   if (d[0] - chebyshev_range(d) > margin) return STAYS; /* f rises */
-  if (-d[0] - chebyshev_range(d) > margin) return f[0] < -noise ? FALLS : STAYS;
+  if (-d[0] - chebyshev_range(d) > margin) return f[0] < -error_bound ? FALLS : STAYS;
   chebyshev_derivative(d, curvature);
   bool is_concave = -curvature[0] - chebyshev_range(curvature) > chebyshev_tail_of_curvature * tail;
   if (!is_concave || f[CHEBYSHEV_DEGREE] < 0.0) return UNKNOWN;
-  if (f[0] >= -noise) return STAYS; /* f rises first, as the height of a thrown body */
+  if (f[0] >= -error_bound) return STAYS; /* f rises first, as the height of a thrown body */
   /* If f leaves 0 and returns before the next node, rounding at the start could be taken for the fall. */
-  return fmax(f[CHEBYSHEV_DEGREE], f[CHEBYSHEV_DEGREE - 1]) > noise ? FALLS : UNKNOWN;
+  return fmax(f[CHEBYSHEV_DEGREE], f[CHEBYSHEV_DEGREE - 1]) > error_bound ? FALLS : UNKNOWN;
 }
 
 /* A time, and the value of f there. */
@@ -168,16 +169,16 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
                         struct Sample *before, struct Sample *behind) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], half = 0.5 * (to - from);
   double time = before->time + (behind->time - before->time) * (before->f / (before->f - behind->f));
-  double place = (time - from) / half - 1.0;
+  double slot = (time - from) / half - 1.0;
   chebyshev_coefficients(f, c);
   chebyshev_derivative(c, d);
   double correction = INFINITY;
   for (int i = 0; i < NEWTON_STEPS && fabs(correction) > near_zero; i++) {
-    correction = chebyshev_value(c, place) / chebyshev_value(d, place);
-    place -= correction;
+    correction = chebyshev_value(c, slot) / chebyshev_value(d, slot);
+    slot -= correction;
   }
-  double slope = chebyshev_value(d, place) / half;
-  time = from + half * (1.0 + place);
+  double slope = chebyshev_value(d, slot) / half;
+  time = from + half * (1.0 + slot);
   for (int i = 0; i < NARROWING_LIMIT && slope < 0.0 && time > before->time && time < behind->time; i++) {
     struct Sample next = sample_at(search, indicator, sign, time);
     double rounding = DBL_EPSILON * fabs(time);
@@ -232,13 +233,13 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
  */
 static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
                             double to, double end, int depth) {
-  double noise = search->noise[indicator];
-  enum Verdict verdict = judge_signs(f, noise);
+  double error_bound = search->error_bound[indicator];
+  enum Verdict verdict = judge_signs(f, error_bound);
   if (verdict == STAYS) return INFINITY;
   if (verdict == FALLS) return refine_fall(search, indicator, sign, f, from, to);
   double middle = 0.5 * (from + end);
   if (depth == 0 || !(middle > from && middle < end)) {
-    bool falls = f[CHEBYSHEV_DEGREE] >= -noise && f[0] < -noise;
+    bool falls = f[CHEBYSHEV_DEGREE] >= -error_bound && f[0] < -error_bound;
     struct Sample before = {from, f[CHEBYSHEV_DEGREE]}, behind = {to, f[0]};
     return falls ? refine(search, indicator, sign, before, behind) : INFINITY;
   }
@@ -262,7 +263,7 @@ static double first_departure(struct Search *search, size_t indicator, double fr
   size_t count = indicator_count(lagrangian.switches);
   for (int node = CHEBYSHEV_DEGREE; node >= 0; node--) {
     double value = search->samples[(size_t)node * count + indicator];
-    if (!(fabs(value) > search->noise[indicator])) continue;
+    if (!(fabs(value) > search->error_bound[indicator])) continue;
     search->departure = value > 0.0 ? 1.0 : -1.0;
     return chebyshev_time(from, to, node == CHEBYSHEV_DEGREE ? CHEBYSHEV_DEGREE : node + 1);
   }
@@ -307,7 +308,7 @@ static size_t find_passed(struct Search *search, double time) {
 
 bool search_for_jump(struct Instance *instance, double *time, double *state, size_t *indicator) {
   struct Search search = search_of(instance);
-  double last = instance->situation->last_step.end, *rate = instance->event_state + lagrangian.state_count;
+  double last = instance->fmu_state->last_step.end, *rate = instance->event_state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, last, search.state)) return false;
   memcpy(state, search.state, lagrangian.state_count * sizeof *state);
   *time = last;
@@ -336,10 +337,10 @@ static bool is_of_sliding(const struct Search *search, size_t indicator) {
  * lifts.
  */
 static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
-  double noise = FLOOR_IN_NOISE * search->noise[indicator], error = 0.0;
+  double error_bound = FLOOR_IN_ERROR_BOUND * search->error_bound[indicator], error = 0.0;
   bool is_lifted = lifted != NULL && *lifted == indicator;
   if (is_lifted || is_of_sliding(search, indicator)) error = solver_error(search->instance);
-  return start >= -error - noise && (error == 0.0 || start <= error + noise) ? fmin(start, -error) : 0.0;
+  return start >= -error - error_bound && (error == 0.0 || start <= error + error_bound) ? fmin(start, -error) : 0.0;
 }
 
 /*
@@ -349,7 +350,8 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
 static bool may_be_held(const struct Search *search, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_gap = indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
-  return !is_gap && fabs(search->exact[indicator]) <= search->noise[indicator] && solver_is_held(search->instance);
+  return !is_gap && fabs(search->exact[indicator]) <= search->error_bound[indicator] &&
+         solver_is_held(search->instance);
 }
 
 /* Sets the samples of one indicator to those at projected states, which are computed for all at once. */
@@ -369,7 +371,7 @@ static void hold_nodes(struct Search *search, size_t indicator, double from, dou
 static double first_sample(const struct Instance *instance, double from, double to, size_t *branch) {
   double first = INFINITY;
   for (size_t i = 0; i < lagrangian.switches->sample_count; i++) {
-    const struct SampleFacts *sample = &lagrangian.switches->samples[i];
+    const struct SampleMetadata *sample = &lagrangian.switches->samples[i];
     double time = fmax(sample_time(instance, sample), from);
     if (!(time <= to && time < first)) continue;
     first = time;
@@ -384,7 +386,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   struct Search search = search_of(instance);
   search.is_exact = exactness == TO_ROUNDING;
   search.windows = search.is_exact ? WINDOW_LIMIT : FEW_WINDOWS;
-  bool knows_noise = false;
+  bool knows_error_bound = false;
   sample_window(&search, from, to, samples);
   *time = first_sample(instance, from, to, indicator);
   bool leaves = false; /* the zero is one that an indicator at rest leaves */
@@ -393,8 +395,8 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
-    if (!knows_noise) measure_noise(&search, from);
-    knows_noise = true;
+    if (!knows_error_bound) measure_error_bound(&search, from);
+    knows_error_bound = true;
     search.projects = may_be_held(&search, i);
     if (search.projects) hold_nodes(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
@@ -416,6 +418,6 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   instance->was_at_zero = false;
   if (sample_of(lagrangian.switches, *indicator) != NULL) return true;
   double before = value_at(&search, *indicator, 0.5 * (from + *time));
-  instance->was_at_zero = fabs(before) <= FLOOR_IN_NOISE * search.noise[*indicator];
+  instance->was_at_zero = fabs(before) <= FLOOR_IN_ERROR_BOUND * search.error_bound[*indicator];
   return true;
 }

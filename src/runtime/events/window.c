@@ -26,7 +26,7 @@
 static const double resolved_motion = 1e-3;
 
 /* Rounding error of forces relative to the largest one; more if rounding of the state makes more. */
-static const double force_noise = 1e-10;
+static const double force_error_bound = 1e-10;
 
 struct Window {
   struct Instance *instance;
@@ -91,39 +91,39 @@ static double largest_acceleration(const struct Window *window) {
  * Returns their rounding error by rounding of the state in the middle. It is large just before a body rolls or rests:
  * the slip direction is then that of a velocity near rounding.
  */
-static double noise_in_window(const struct Window *window) {
+static double error_bound_in_window(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count, middle = CHEBYSHEV_NODES / 2;
   const double *state = window->states + middle * lagrangian.state_count,
                *exact = window->accelerations + middle * count;
-  double *acceleration = window->rounded + lagrangian.state_count, noise = 0.0;
+  double *acceleration = window->rounded + lagrangian.state_count, error_bound = 0.0;
   double time = chebyshev_time(window->from, window->to, (int)middle);
   for (int way = 0; way < 2; way++) {
     double factor = round_state(state, way == 1, window->rounded);
     struct Point point = solver_point(window->instance, time, window->rounded);
     if (lagrangian.constraints.accelerations(&point, acceleration) != 0) return 0.0;
-    for (size_t i = 0; i < count; i++) noise = fmax(noise, factor * fabs(acceleration[i] - exact[i]));
+    for (size_t i = 0; i < count; i++) error_bound = fmax(error_bound, factor * fabs(acceleration[i] - exact[i]));
   }
-  return noise;
+  return error_bound;
 }
 
 /* Expands a sampled quantity about the middle. False if its polynomial does not describe it, up to noise. */
-static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i, double noise,
-                           double *series) {
+static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i,
+                           double error_bound, double *series) {
   double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];
   for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
   chebyshev_coefficients(f, c);
   chebyshev_powers(c, 0.5 * (window->to - window->from), series);
   double rounding = 64.0 * DBL_EPSILON * fabs(c[0]);
-  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, noise);
+  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, error_bound);
 }
 
 /* Expands the accelerations and forces. False if one is not resolved; window->function names a constraint's force. */
-static bool expand_accelerations(struct Window *window, double noise) {
+static bool expand_accelerations(struct Window *window, double error_bound) {
   size_t count = lagrangian.switches->watched_acceleration_count, i = count;
   bool is_resolved = true;
   while (i > 0 && is_resolved) {
     i--;
-    is_resolved = expand_sampled(window, window->accelerations, count, i, noise,
+    is_resolved = expand_sampled(window, window->accelerations, count, i, error_bound,
                                  window->work[lagrangian.switches->watched_acceleration_row + i]);
   }
   bool is_force = !is_resolved && i >= lagrangian.coordinate_count;
@@ -140,8 +140,9 @@ static double sure_half(struct Window *window) {
   for (size_t i = 0; i < states && is_resolved; i++)
     is_resolved = expand_sampled(window, window->states, states, i, 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i],
                                  window->x[i]);
-  double noise = is_resolved ? force_noise * largest_acceleration(window) : 0.0;
-  if (!is_resolved || !(expand_accelerations(window, noise) || expand_accelerations(window, noise_in_window(window))))
+  double error_bound = is_resolved ? force_error_bound * largest_acceleration(window) : 0.0;
+  if (!is_resolved ||
+      !(expand_accelerations(window, error_bound) || expand_accelerations(window, error_bound_in_window(window))))
     return 0.0;
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(window->input[i], 0, sizeof(Series));

@@ -15,7 +15,7 @@ enum Status directional_derivative(struct Instance *instance, const unsigned *un
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                const unsigned *known, size_t known_count, const double *seed, double *value);
 
-/* Computes first time derivatives of outputs, with those of the inputs; prepared values must be current. */
+/* Computes first time derivatives of outputs, with those of the inputs; parameter constants must be current. */
 enum Status derivatives_in_time(struct Instance *instance, const unsigned *reference, size_t count, double *value);
 
 /* Computes time derivatives of outputs, each of its order. */

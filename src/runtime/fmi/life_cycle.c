@@ -1,5 +1,5 @@
 /*
- * State machine of FMI. An instance is in one phase (situation->phase):
+ * State machine of FMI. An instance is in one phase (fmu_state->phase):
  *
  *   instantiated -> initialization mode -> event mode <-> continuous-time mode -> terminated      model exchange
  *   instantiated -> initialization mode -> step complete or failed <-> event mode -> terminated   co-simulation
@@ -72,7 +72,7 @@ struct Instance *enter(void *component, enum Function function, const char *name
   if (instance == NULL) return NULL;
   instance->function = name;
   if ((permitted[function].kinds & IN(instance->kind)) != 0 &&
-      (permitted[function].phases & IN(instance->situation->phase)) != 0)
+      (permitted[function].phases & IN(instance->fmu_state->phase)) != 0)
     return instance;
   log_error(instance, "%s is not allowed in the state '%s' of an instance for %s", name, instance_phase_name(instance),
             instance->kind == KIND_MODEL_EXCHANGE ? "model exchange" : "co-simulation");

@@ -16,7 +16,7 @@
  * or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
  */
 enum Status exchange_set_time(struct Instance *instance, double time) {
-  double start = instance->situation->start_time, earliest = instance->situation->last_step.start;
+  double start = instance->fmu_state->start_time, earliest = instance->fmu_state->last_step.start;
   if (!isfinite(time)) return refuse_call(instance, "the time is %g; expected a finite number", time);
   if (time < start)
     return refuse_call(instance, "the time is %.15g; expected none before startTime %.15g", time, start);
@@ -25,7 +25,7 @@ enum Status exchange_set_time(struct Instance *instance, double time) {
                        "the time is %.15g; expected none before %.15g, that of the last event or of the second last "
                        "completed step; restore a saved state to go back further",
                        time, earliest);
-  instance->situation->time = time;
+  instance->fmu_state->time = time;
   return STATUS_DONE;
 }
 
@@ -58,7 +58,7 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
   if (!check_states(instance, derivative, count)) return STATUS_ERROR;
   if (count == 0) return STATUS_DONE;
   reading_begin(instance);
-  enum Status status = evaluate_situation(instance, instance->work);
+  enum Status status = evaluate_fmu_state(instance, instance->work);
   if (status == STATUS_DONE) memcpy(derivative, instance->work, count * sizeof *derivative);
   reading_end(instance);
   return status;
@@ -85,14 +85,14 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 }
 
 void exchange_enter_event_mode(struct Instance *instance) {
-  struct Situation *situation = instance->situation;
-  if (situation->phase == PHASE_CONTINUOUS_TIME) {
+  struct FmuState *fmu_state = instance->fmu_state;
+  if (fmu_state->phase == PHASE_CONTINUOUS_TIME) {
     instance->lacks_update = true;
     /* States set from here on may jump; those set before follow the motion. */
-    situation->changed = CHANGED_NOTHING;
-    situation_begin(situation, situation->time);
+    fmu_state->changed = CHANGED_NOTHING;
+    fmu_state_begin(fmu_state, fmu_state->time);
   }
-  situation->phase = PHASE_EVENT;
+  fmu_state->phase = PHASE_EVENT;
 }
 
 /* Returns NULL if the system has no time events. */
@@ -111,7 +111,7 @@ enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
   if (instance->lacks_update && is_event_due(instance))
     return refuse_call(instance, "an event is due; expected an update of the discrete states before it");
   instance->lacks_update = false;
-  instance->situation->phase = PHASE_CONTINUOUS_TIME;
+  instance->fmu_state->phase = PHASE_CONTINUOUS_TIME;
   return STATUS_DONE;
 }
 
@@ -126,42 +126,42 @@ enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
  * order below the tolerance.
  */
 static bool has_drifted(struct Instance *instance) {
-  const struct Situation *situation = instance->situation;
+  const struct FmuState *fmu_state = instance->fmu_state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
-  double drift = lagrangian.constraints.projection->drift(instance, situation->time);
-  return drift > fmin((double)situation->completed_steps * situation->tolerance, sqrt(situation->tolerance));
+  double drift = lagrangian.constraints.projection->drift(instance, fmu_state->time);
+  return drift > fmin((double)fmu_state->completed_steps * fmu_state->tolerance, sqrt(fmu_state->tolerance));
 }
 
 bool exchange_complete_step(struct Instance *instance) {
-  struct Situation *situation = instance->situation;
-  situation->completed_steps++;
-  situation->last_step = (struct Span){fmin(situation->last_step.end, situation->time), situation->time};
-  situation->searched = situation->last_step.start;
+  struct FmuState *fmu_state = instance->fmu_state;
+  fmu_state->completed_steps++;
+  fmu_state->last_step = (struct Span){fmin(fmu_state->last_step.end, fmu_state->time), fmu_state->time};
+  fmu_state->searched = fmu_state->last_step.start;
   return has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
 }
 
 /* Brings the modes into agreement with the state. */
-static enum Status settle_modes(struct Instance *instance, bool *changed) {
+static enum Status resolve_modes(struct Instance *instance, bool *changed) {
   const struct EventLaws *laws = lagrangian.event_laws;
   if (laws == NULL) return STATUS_DONE;
   const char *problem =
-      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed) : laws->settle(instance, changed);
-  return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->situation->time, problem);
+      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed) : laws->resolve(instance, changed);
+  return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->fmu_state->time, problem);
 }
 
 enum Status exchange_update(struct Instance *instance, bool *states_changed) {
   *states_changed = false;
   instance->lacks_update = false;
-  enum Status status = settle_modes(instance, states_changed);
-  memcpy(instance->situation->reported_statistics, instance->situation->statistics,
-         sizeof instance->situation->statistics);
+  enum Status status = resolve_modes(instance, states_changed);
+  memcpy(instance->fmu_state->reported_statistics, instance->fmu_state->statistics,
+         sizeof instance->fmu_state->statistics);
   if (status != STATUS_DONE || lagrangian.constraints.projection == NULL || instance->kind == KIND_CO_SIMULATION)
     return status;
   status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  double moved = lagrangian.constraints.projection->project(instance, instance->situation->time, instance->state);
+  double moved = lagrangian.constraints.projection->project(instance, instance->fmu_state->time, instance->state);
   if (!isfinite(moved)) {
-    double time = instance->situation->time;
+    double time = instance->fmu_state->time;
     log_unkept(instance, STATUS_ERROR, time, lagrangian.constraints.projection->unkept(instance, time));
     return log_error(instance, "time %g: the constraints cannot be fulfilled", time);
   }

@@ -38,7 +38,7 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
 /* Expands d x / dt = A x + B u + c, order by order. */
 static void expand_linear(const struct Instance *instance, int order, const struct Expansion *expansion) {
   size_t states = lagrangian.state_count, columns = states + lagrangian.input_count + 1;
-  lagrangian.linear(instance->parameter, instance->prepared, expansion->matrix);
+  lagrangian.linear(instance->parameter, instance->parameter_constants, expansion->matrix);
   for (size_t i = 0; i < states; i++) expansion->state[i][0] = instance->state[i];
   for (int k = 0; k < order; k++)
     for (size_t i = 0; i < states; i++) {

@@ -52,7 +52,7 @@ static enum Status get_whole_values(struct Instance *instance, const unsigned *r
     if (is_contact) evaluate_prepare(instance); /* before the start the contact follows from the state */
     if (is_contact || variable->kind == VARIABLE_PARAMETER) value[i] = (int)instance->parameter[variable->index];
     else {
-      int64_t statistic = instance->situation->statistics[variable->index];
+      int64_t statistic = instance->fmu_state->statistics[variable->index];
       value[i] = statistic < INT_MAX ? (int)statistic : INT_MAX;
     }
   }
@@ -69,8 +69,8 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value) {
   /* Discrete variables change in event mode alone, if the importer uses it (FMI 3.0.2, section 2.4.7). */
-  const struct Situation *situation = instance->situation;
-  const int64_t *counts = instance->uses_event_mode ? situation->reported_statistics : situation->statistics;
+  const struct FmuState *fmu_state = instance->fmu_state;
+  const int64_t *counts = instance->uses_event_mode ? fmu_state->reported_statistics : fmu_state->statistics;
   for (size_t i = 0; i < count; i++) {
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER);
     if (variable == NULL) return STATUS_ERROR;
@@ -89,35 +89,35 @@ enum Status values_none(void *component, enum Function function, size_t count, c
 
 /* True if the importer integrates, and sets states at any time. Some importers set them one by one, as variables. */
 static bool is_exchanged(const struct Instance *instance) {
-  return instance->situation->phase == PHASE_CONTINUOUS_TIME;
+  return instance->fmu_state->phase == PHASE_CONTINUOUS_TIME;
 }
 
 /* True for a state that the importer may change at events: a sensitivity, of which the FMU does not know the jump. */
-static bool is_variation(const struct ScalarVariable *variable) {
-  size_t n = lagrangian.coordinate_count, first = n - lagrangian.variation_count, state = variable->index;
+static bool is_sensitivity(const struct ScalarVariable *variable) {
+  size_t n = lagrangian.coordinate_count, first = n - lagrangian.sensitivity_count, state = variable->index;
   if (variable->kind != VARIABLE_STATE) return false;
-  return state < 2 * n ? state % n >= first : state >= lagrangian.state_count - lagrangian.state_variation_count;
+  return state < 2 * n ? state % n >= first : state >= lagrangian.state_count - lagrangian.state_sensitivity_count;
 }
 
-static bool is_variation_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
-  return instance->situation->phase == PHASE_EVENT && is_variation(variable);
+static bool is_sensitivity_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
+  return instance->fmu_state->phase == PHASE_EVENT && is_sensitivity(variable);
 }
 
 /* True for a state that the importer may change at an event, since the FMU does not (FMI 3.0.2, section 2.3.6). */
 static bool is_free_at_event(const struct Instance *instance, const struct ScalarVariable *variable) {
-  return instance->situation->phase == PHASE_EVENT && instance->kind == KIND_MODEL_EXCHANGE &&
+  return instance->fmu_state->phase == PHASE_EVENT && instance->kind == KIND_MODEL_EXCHANGE &&
          variable->kind == VARIABLE_STATE && !variable->is_reinitialized;
 }
 
 /* True if variables of this kind may be set now. */
 static bool is_settable(const struct Instance *instance, const struct ScalarVariable *variable) {
-  int32_t phase = instance->situation->phase;
+  int32_t phase = instance->fmu_state->phase;
   switch (variable->kind) {
   case VARIABLE_INPUT: return true;
   case VARIABLE_PARAMETER: return phase != PHASE_CONTINUOUS_TIME && phase != PHASE_INPUT_REQUEST;
   case VARIABLE_MODE: return is_before_start(instance);
   case VARIABLE_STATE:
-    return is_before_start(instance) || is_exchanged(instance) || is_variation_at_event(instance, variable) ||
+    return is_before_start(instance) || is_exchanged(instance) || is_sensitivity_at_event(instance, variable) ||
            is_free_at_event(instance, variable);
   default: return false;
   }
@@ -161,7 +161,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
 
 /* Drops the derivatives that were set for an earlier step; those for the next step stay. */
 static void end_polynomial(struct Instance *instance, size_t input) {
-  if (instance->situation->input_derivatives_set) return;
+  if (instance->fmu_state->input_derivatives_set) return;
   for (size_t order = 0; order < INPUT_ORDER; order++)
     instance->input_derivatives[order * lagrangian.input_count + input] = 0.0;
 }
@@ -172,9 +172,9 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
     instance->state[variable->index] = value;
     return;
   }
-  if (is_variation_at_event(instance, variable)) {
+  if (is_sensitivity_at_event(instance, variable)) {
     instance->state[variable->index] = value;
-    if (instance->situation->changed == CHANGED_NOTHING) instance->situation->changed = CHANGED_COURSE;
+    if (instance->fmu_state->changed == CHANGED_NOTHING) instance->fmu_state->changed = CHANGED_COURSE;
     return;
   }
   if (variable->kind == VARIABLE_STATE && is_before_start(instance)) initial_state_set(instance, variable->index);
@@ -183,9 +183,10 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
                                                       : &instance->parameter[variable->index];
   if (*target == value) return;
   *target = value;
-  instance->situation->changed = CHANGED_VALUES;
-  instance->lacks_update |= instance->situation->phase == PHASE_EVENT;
-  if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE) instance->prepared_is_stale = true;
+  instance->fmu_state->changed = CHANGED_VALUES;
+  instance->lacks_update |= instance->fmu_state->phase == PHASE_EVENT;
+  if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE)
+    instance->parameter_constants_is_stale = true;
 }
 
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value) {
@@ -232,7 +233,7 @@ enum Status values_set_input_derivatives(struct Instance *instance, const unsign
   for (size_t i = 0; i < count; i++)
     if (check_input_derivative(instance, reference[i], order[i], value[i]) != STATUS_DONE) return STATUS_ERROR;
   size_t inputs = lagrangian.input_count;
-  if (!instance->situation->input_derivatives_set)
+  if (!instance->fmu_state->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * inputs * sizeof *instance->input_derivatives);
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < count; i++) {
@@ -241,7 +242,7 @@ enum Status values_set_input_derivatives(struct Instance *instance, const unsign
       instance->input_derivatives[(size_t)(order[i] - 1) * inputs + variable->index] = value[i];
     else status = worse(status, ignore_input_derivative(instance, variable, order[i]));
   }
-  instance->situation->input_derivatives_set = 1;
-  instance->situation->changed = CHANGED_VALUES;
+  instance->fmu_state->input_derivatives_set = 1;
+  instance->fmu_state->changed = CHANGED_VALUES;
   return status;
 }

@@ -29,7 +29,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *
   if (s != fmi2LastSuccessfulTime) return unknown_status(c, __func__);
   struct Instance *instance = enter(c, FUNCTION_GET_STATUS, __func__);
   if (instance == NULL || !check_array(instance, value, 1, "value")) return fmi2Error;
-  *value = instance->situation->time;
+  *value = instance->fmu_state->time;
   return fmi2OK;
 }
 

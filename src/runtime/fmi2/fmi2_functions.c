@@ -40,9 +40,9 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
   if (instance == NULL) return fmi2Error;
-  if (!instance->situation->experiment_defined)
+  if (!instance->fmu_state->experiment_defined)
     return status_of(refuse_call(instance, "expected fmi2SetupExperiment before it"));
-  instance->situation->phase = PHASE_INITIALIZATION;
+  instance->fmu_state->phase = PHASE_INITIALIZATION;
   return fmi2OK;
 }
 

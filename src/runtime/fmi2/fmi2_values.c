@@ -17,7 +17,7 @@ static struct Instance *enter_with_values(fmi2Component c, enum Function functio
 /* Turns fmi2Discard into an error, for functions that may not discard (section 2.1.3). */
 static fmi2Status status_without_discard(struct Instance *instance, enum Status status) {
   if (status != STATUS_DISCARD) return status_of(status);
-  instance->situation->phase = PHASE_ERROR;
+  instance->fmu_state->phase = PHASE_ERROR;
   return fmi2Error;
 }
 

@@ -37,11 +37,11 @@ static double update(void *receiver, double time, double end) {
 
 /* Calls back at the end of the step, in the state of the instance. */
 static void update_at_end(struct Component *component) {
-  struct Situation *situation = component->instance.situation;
+  struct FmuState *fmu_state = component->instance.fmu_state;
   if (component->intermediate_update == NULL) return;
-  situation->phase = PHASE_INTERMEDIATE_UPDATE;
-  call_back(component, situation->time, situation->time);
-  if (situation->phase == PHASE_INTERMEDIATE_UPDATE) situation->phase = PHASE_STEP_COMPLETE;
+  fmu_state->phase = PHASE_INTERMEDIATE_UPDATE;
+  call_back(component, fmu_state->time, fmu_state->time);
+  if (fmu_state->phase == PHASE_INTERMEDIATE_UPDATE) fmu_state->phase = PHASE_STEP_COMPLETE;
 }
 
 /* Observes the solver's steps if the importer wants intermediate updates. */
@@ -66,31 +66,31 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
       !check_array(instance, earlyReturn, 1, "earlyReturn") ||
       !check_array(instance, lastSuccessfulTime, 1, "lastSuccessfulTime"))
     return fmi3Error;
-  if (instance->situation->waiting_event != 0)
+  if (instance->fmu_state->waiting_event != 0)
     return status_of(refuse_call(instance, "the previous step ended at an event; expected fmi3EnterEventMode, "
                                            "fmi3UpdateDiscreteStates and fmi3EnterStepMode"));
-  memcpy(component->before, instance->situation, situation_size());
+  memcpy(component->before, instance->fmu_state, fmu_state_size());
   component->has_returned_early = false;
   observe(component);
   enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize);
   /* The instance is as before the call (section 2.2.3); an early return would hide that the motion ends. */
   if (status == STATUS_DISCARD) instance_restore(instance, component->before);
-  if (status == STATUS_DONE && instance->situation->phase == PHASE_STEP_COMPLETE) update_at_end(component);
+  if (status == STATUS_DONE && instance->fmu_state->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* An error in the callback was logged. */
-  if (instance->situation->phase == PHASE_ERROR) status = STATUS_ERROR;
-  bool is_at_event = status == STATUS_DONE && instance->situation->waiting_event != 0;
-  bool is_early = is_at_event && instance->situation->time < currentCommunicationPoint + communicationStepSize;
+  if (instance->fmu_state->phase == PHASE_ERROR) status = STATUS_ERROR;
+  bool is_at_event = status == STATUS_DONE && instance->fmu_state->waiting_event != 0;
+  bool is_early = is_at_event && instance->fmu_state->time < currentCommunicationPoint + communicationStepSize;
   *eventHandlingNeeded = is_at_event;
   *terminateSimulation = fmi3False;
   *earlyReturn = status == STATUS_DONE && (component->has_returned_early || is_early);
-  *lastSuccessfulTime = instance->situation->time;
+  *lastSuccessfulTime = instance->fmu_state->time;
   return status_of(status);
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
   if (instance == NULL) return fmi3Error;
-  instance->situation->phase = PHASE_STEP_COMPLETE;
+  instance->fmu_state->phase = PHASE_STEP_COMPLETE;
   return fmi3OK;
 }
 

@@ -44,8 +44,8 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
     return false;
   }
   for (size_t i = 0; i < count; i++) {
-    unsigned place = place_of_reference(references[i]);
-    if (place < lagrangian.variable_count && is_intermediate(&lagrangian.variables[place])) continue;
+    unsigned slot = slot_of_reference(references[i]);
+    if (slot < lagrangian.variable_count && is_intermediate(&lagrangian.variables[slot])) continue;
     log_write(log, STATUS_ERROR,
               "%s: the value reference %u among requiredIntermediateVariables does not belong to a variable with "
               "intermediateUpdate=\"true\"",
@@ -70,8 +70,8 @@ static struct Component *component_create(const struct Component *description, e
   if (component == NULL) return NULL;
   *component = *description;
   struct Intermediate *intermediate = &component->intermediate;
-  component->before = fmi3_memory.allocate(1, situation_size());
-  intermediate->kept = fmi3_memory.allocate(1, situation_size());
+  component->before = fmi3_memory.allocate(1, fmu_state_size());
+  intermediate->kept = fmi3_memory.allocate(1, fmu_state_size());
   intermediate->inputs = fmi3_memory.allocate(1 + INPUT_NODES * lagrangian.input_count, sizeof(double));
   struct Log log = log_of(component);
   if (component->before != NULL && intermediate->kept != NULL && intermediate->inputs != NULL &&
@@ -131,7 +131,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
   if (component == NULL) return NULL;
   for (size_t i = 0; i < nRequiredIntermediateVariables; i++)
     component->sets_inputs |=
-        lagrangian.variables[place_of_reference(requiredIntermediateVariables[i])].kind == VARIABLE_INPUT;
+        lagrangian.variables[slot_of_reference(requiredIntermediateVariables[i])].kind == VARIABLE_INPUT;
   component->instance.uses_event_mode = eventModeUsed;
   component->instance.stops_at_events = eventModeUsed && earlyReturnAllowed;
   return component;

@@ -49,7 +49,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
   if (references == NULL || order_of == NULL) return fmi3Error;
   /* The next variable begins at its index. */
   for (size_t k = 0, i = 0; k < nValues; k++) {
-    if (i < nvr && references[k] == place_of_reference(vr[i])) i++;
+    if (i < nvr && references[k] == slot_of_reference(vr[i])) i++;
     order_of[k] = orders[i - 1];
   }
   return status_of(output_derivatives(instance, references, nValues, order_of, values));

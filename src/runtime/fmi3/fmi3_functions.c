@@ -24,7 +24,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
                                   .has_stop_time = stopTimeDefined,
                                   .has_tolerance = toleranceDefined};
   enum Status status = simulation_set_up(instance, &experiment);
-  if (status == STATUS_DONE) instance->situation->phase = PHASE_INITIALIZATION;
+  if (status == STATUS_DONE) instance->fmu_state->phase = PHASE_INITIALIZATION;
   return status_of(status);
 }
 
@@ -32,7 +32,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_EXIT_INITIALIZATION_MODE, __func__);
   if (instance == NULL) return fmi3Error;
   enum Status status = simulation_start(instance);
-  if (status == STATUS_DONE && instance->uses_event_mode) instance->situation->phase = PHASE_EVENT;
+  if (status == STATUS_DONE && instance->uses_event_mode) instance->fmu_state->phase = PHASE_EVENT;
   return status_of(status);
 }
 

@@ -4,9 +4,9 @@
 #include "fmi3/fmi3_memory.h"
 
 /* Returns the array that contains the variable of this index; NULL for a scalar. */
-static const struct ArrayVariable *array_with(unsigned place) {
+static const struct ArrayVariable *array_with(unsigned slot) {
   for (size_t i = 0; i < lagrangian.array_count; i++)
-    if (place - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
+    if (slot - lagrangian.arrays[i].first < lagrangian.arrays[i].count) return &lagrangian.arrays[i];
   return NULL;
 }
 
@@ -19,12 +19,12 @@ static bool count_values(struct Instance *instance, const fmi3ValueReference vr[
                   lagrangian.variable_count);
       return false;
     }
-    unsigned place = place_of_reference(vr[i]);
-    const struct ArrayVariable *array = array_with(place);
+    unsigned slot = slot_of_reference(vr[i]);
+    const struct ArrayVariable *array = array_with(slot);
     *count += array != NULL ? array->count : 1;
-    if (array == NULL || array->first == place) continue;
+    if (array == NULL || array->first == slot) continue;
     refuse_call(instance, "the value reference %u is of '%s', an element of an array; expected %zu, of the array",
-                vr[i], lagrangian.variables[place].name, array->first + 1);
+                vr[i], lagrangian.variables[slot].name, array->first + 1);
     return false;
   }
   return true;
@@ -53,9 +53,9 @@ const unsigned *expand_references(struct Component *component, enum WorkspaceUse
   }
   unsigned *references = reserve_workspace(component, use, count, sizeof *references);
   for (size_t i = 0, k = 0; i < nvr && references != NULL; i++) {
-    unsigned place = place_of_reference(vr[i]);
-    const struct ArrayVariable *array = array_with(place);
-    for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = place + j;
+    unsigned slot = slot_of_reference(vr[i]);
+    const struct ArrayVariable *array = array_with(slot);
+    for (unsigned j = 0; j < (array != NULL ? array->count : 1); j++) references[k++] = slot + j;
   }
   return references;
 }

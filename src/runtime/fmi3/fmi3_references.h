@@ -14,7 +14,7 @@ struct Values {
 };
 
 /* Returns the index of the variable with an existing reference. */
-static inline unsigned place_of_reference(fmi3ValueReference reference) {
+static inline unsigned slot_of_reference(fmi3ValueReference reference) {
   return reference - 1;
 }
 

@@ -38,7 +38,7 @@ struct EventLaws {
    * the state. Sets *changed if modes or state changed. Returns NULL, or the reason why the motion cannot go on, after
    * logging the cause.
    */
-  const char *(*settle)(struct Instance *instance, bool *changed);
+  const char *(*resolve)(struct Instance *instance, bool *changed);
   /* Sets the modes from start values, while these may be set: all contacts are open, all frictions slide. */
   void (*guess)(struct Instance *instance);
   /* Finds the modes at the start, after impacts and events there. False after logging an error. */
@@ -49,7 +49,7 @@ struct EventLaws {
    */
   bool (*part)(struct Instance *instance, double time);
   /* Finds the modes after a parameter, input or state was set. False after logging why the step is discarded. */
-  bool (*settle_change)(struct Instance *instance, double time);
+  bool (*resolve_change)(struct Instance *instance, double time);
   /*
    * Finds modes and state after the event that ended a step, or after a parameter, input or state was set. Sets
    * *changed if any changed. Returns NULL, or the reason why the motion cannot go on.

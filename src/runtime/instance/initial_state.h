@@ -6,7 +6,7 @@
 
 /* True if the simulation has not started. */
 static inline bool is_before_start(const struct Instance *instance) {
-  return instance->situation->phase == PHASE_INSTANTIATED || instance->situation->phase == PHASE_INITIALIZATION;
+  return instance->fmu_state->phase == PHASE_INSTANTIATED || instance->fmu_state->phase == PHASE_INITIALIZATION;
 }
 
 /* Marks the state as set: it keeps its value until the next reset. */

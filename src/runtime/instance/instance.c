@@ -15,24 +15,24 @@ static size_t value_count(void) {
   return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count + set_count();
 }
 
-size_t situation_size(void) {
+size_t fmu_state_size(void) {
   bool saves = lagrangian.solver != NULL && lagrangian.solver->saved_size != NULL;
-  return sizeof(struct Situation) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
+  return sizeof(struct FmuState) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
 /* FNV-1a, 64 bits. */
-uint64_t situation_checksum(const void *situation) {
-  const unsigned char *bytes = situation;
+uint64_t fmu_state_checksum(const void *fmu_state) {
+  const unsigned char *bytes = fmu_state;
   uint64_t hash = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < situation_size(); i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  for (size_t i = 0; i < fmu_state_size(); i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   return hash;
 }
 
 void instance_reset(struct Instance *instance) {
-  memset(instance->situation, 0, situation_size());
-  instance->situation->phase = PHASE_INSTANTIATED;
-  instance->situation->kind = (int32_t)instance->kind;
-  instance->situation->tolerance = lagrangian.steps.tolerance;
+  memset(instance->fmu_state, 0, fmu_state_size());
+  instance->fmu_state->phase = PHASE_INSTANTIATED;
+  instance->fmu_state->kind = (int32_t)instance->kind;
+  instance->fmu_state->tolerance = lagrangian.steps.tolerance;
   for (size_t i = 0; i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (variable->kind == VARIABLE_STATE) instance->state[variable->index] = variable->start;
@@ -41,10 +41,10 @@ void instance_reset(struct Instance *instance) {
       instance->parameter[variable->index] = variable->start;
   }
   initial_state_follow(instance);
-  instance->situation->changed = CHANGED_VALUES;
-  instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->told_impossible_start = instance->told_other_forces = instance->told_other_impulses = false;
-  instance->told_singularity = 0;
+  instance->fmu_state->changed = CHANGED_VALUES;
+  instance->parameter_constants_is_stale = instance->solver_is_stale = true;
+  instance->reported_impossible_start = instance->reported_other_forces = instance->reported_other_impulses = false;
+  instance->reported_singularity = 0;
 }
 
 /* Accelerations and constraint forces for result(); systems without constraints use the derivatives of the state. */
@@ -57,14 +57,14 @@ static size_t switching_work_count(void) {
 }
 
 static size_t evaluation_count(void) {
-  return lagrangian.prepared_count + lagrangian.work_count + projection_work_count() + switching_work_count() +
-         2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+  return lagrangian.parameter_constants_count + lagrangian.work_count + projection_work_count() +
+         switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
          lagrangian.parameter_count + 1;
 }
 
-void instance_use(struct Instance *instance, struct Situation *situation) {
-  instance->situation = situation;
-  instance->state = instance->situation->values;
+void instance_use(struct Instance *instance, struct FmuState *fmu_state) {
+  instance->fmu_state = fmu_state;
+  instance->state = instance->fmu_state->values;
   instance->input = instance->state + lagrangian.state_count;
   instance->parameter = instance->input + lagrangian.input_count;
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
@@ -74,8 +74,8 @@ void instance_use(struct Instance *instance, struct Situation *situation) {
 
 /* Divides a block of memory among the arrays. */
 static void lay_out(struct Instance *instance, double *evaluation) {
-  instance->prepared = evaluation;
-  instance->point_work = instance->prepared + lagrangian.prepared_count;
+  instance->parameter_constants = evaluation;
+  instance->point_work = instance->parameter_constants + lagrangian.parameter_constants_count;
   instance->projection_work = instance->point_work + lagrangian.work_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
@@ -93,19 +93,19 @@ bool instance_create(struct Instance *instance, enum Kind kind, const struct All
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
   bool shows = lagrangian.constraints.projection != NULL || lagrangian.event_laws != NULL;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
-  struct Situation *situation = memory->allocate(1, situation_size());
+  struct FmuState *fmu_state = memory->allocate(1, fmu_state_size());
   if (shows) {
-    instance->given = memory->allocate(1, situation_size());
-    instance->shown = memory->allocate(1, situation_size());
+    instance->given = memory->allocate(1, fmu_state_size());
+    instance->shown = memory->allocate(1, fmu_state_size());
   }
   bool has_shown = instance->given != NULL && instance->shown != NULL;
-  if (situation != NULL && evaluation != NULL && (!shows || has_shown)) {
-    instance_use(instance, situation);
+  if (fmu_state != NULL && evaluation != NULL && (!shows || has_shown)) {
+    instance_use(instance, fmu_state);
     lay_out(instance, evaluation);
     instance_reset(instance);
     return true;
   }
-  if (situation != NULL) memory->free(situation);
+  if (fmu_state != NULL) memory->free(fmu_state);
   if (evaluation != NULL) memory->free(evaluation);
   free_shown(instance);
   return false;
@@ -113,17 +113,17 @@ bool instance_create(struct Instance *instance, enum Kind kind, const struct All
 
 void instance_destroy(struct Instance *instance) {
   if (instance->solver_memory != NULL) lagrangian.solver->destroy(instance);
-  instance->memory.free(instance->prepared);
-  instance->memory.free(instance->situation);
+  instance->memory.free(instance->parameter_constants);
+  instance->memory.free(instance->fmu_state);
   free_shown(instance);
   scratch_free(instance);
 }
 
-void instance_restore(struct Instance *instance, const void *situation) {
-  memcpy(instance->situation, situation, situation_size());
-  instance->prepared_is_stale = instance->solver_is_stale = true;
-  instance->told_singularity = 0;
-  instance->lacks_update = instance->situation->phase == PHASE_EVENT;
+void instance_restore(struct Instance *instance, const void *fmu_state) {
+  memcpy(instance->fmu_state, fmu_state, fmu_state_size());
+  instance->parameter_constants_is_stale = instance->solver_is_stale = true;
+  instance->reported_singularity = 0;
+  instance->lacks_update = instance->fmu_state->phase == PHASE_EVENT;
 }
 
 const char *instance_phase_name(const struct Instance *instance) {
@@ -139,5 +139,5 @@ const char *instance_phase_name(const struct Instance *instance) {
       [PHASE_INTERMEDIATE_UPDATE] = "intermediate update mode",
       [PHASE_INPUT_REQUEST] = "intermediate update mode for inputs",
   };
-  return names[instance->situation->phase];
+  return names[instance->fmu_state->phase];
 }

@@ -46,7 +46,7 @@ struct Span {
  * values[] holds the state, the inputs, the parameters, and the inputs' derivatives of orders 1, 2 and 3. If start
  * values follow from parameters, flags follow: 1 for each state that was set. The solver's part comes last.
  */
-struct Situation {
+struct FmuState {
   int32_t phase; /* enum Phase */
   int32_t kind;  /* enum Kind */
   int32_t experiment_defined, stop_time_defined;
@@ -67,9 +67,9 @@ struct Situation {
 };
 
 /* Sets the time at which the solver or the importer is to start. */
-static inline void situation_begin(struct Situation *situation, double time) {
-  situation->last_step = (struct Span){time, time};
-  situation->searched = time;
+static inline void fmu_state_begin(struct FmuState *fmu_state, double time) {
+  fmu_state->last_step = (struct Span){time, time};
+  fmu_state->searched = time;
 }
 
 struct Allocator {
@@ -84,36 +84,36 @@ struct Instance {
   struct Log log;
   const char *function; /* last called FMI function, for messages */
   enum Kind kind;
-  struct Situation *situation;
+  struct FmuState *fmu_state;
   /*
    * Snapshots for reading (reading.h): the values that were set, and the reported ones that follow from them. NULL in
    * systems in which neither the start nor a step moves states.
    */
-  struct Situation *given, *shown;
-  bool is_reading;     /* situation holds the reported values, and shown those that were set */
+  struct FmuState *given, *shown;
+  bool is_reading;     /* fmu_state holds the reported values, and shown those that were set */
   bool shown_is_found; /* the reported values were computed, and differ from those set */
-  double *state, *input, *parameter, *input_derivatives, *state_was_set; /* in situation->values */
-  void *saved;                                                           /* the solver's part of situation->values */
-  double *prepared;
-  bool prepared_is_stale;
-  bool modes_stay;            /* keep modes also before the start: those of the start are computed or read */
-  bool solver_is_stale;       /* the snapshot was replaced: solver_memory must follow it */
-  bool told_impossible_start; /* logged since the reset: there is no start */
-  bool told_other_forces;     /* logged since the reset: contact forces are not unique */
-  bool told_other_impulses;   /* logged since the reset: an impact has several outcomes */
-  uint64_t told_singularity;  /* checksum of the snapshot at which missing accelerations were logged */
-  int singular;               /* 1 + the coordinate of a singular mass matrix, at the last evaluation; 0 for none */
-  size_t unkept;              /* 1 + the constraint that the last projection could not fulfil; 0 for none */
-  const char *limited_by;     /* function that limited the solver's last step; NULL for none */
-  double *work;               /* of evaluations: 3 state_count + 2 input_count + parameter_count */
-  double *point_work;         /* of generated functions: lagrangian.work_count */
-  double *projection_work;    /* projection_work_count() */
-  double *switching_work;     /* event_laws->work_count() */
-  double departure;           /* the sign with which a branch at rest at 0 last left it */
-  bool lacks_update;          /* model exchange, event mode: discrete states were not updated since a change */
-  bool uses_event_mode;       /* co-simulation: the importer handles events between steps */
-  bool stops_at_events;       /* an event ends a communication step */
-  bool was_at_zero;           /* the last event's indicator had not left 0 before by more than rounding */
+  double *state, *input, *parameter, *input_derivatives, *state_was_set; /* in fmu_state->values */
+  void *saved;                                                           /* the solver's part of fmu_state->values */
+  double *parameter_constants;
+  bool parameter_constants_is_stale;
+  bool modes_stay;                /* keep modes also before the start: those of the start are computed or read */
+  bool solver_is_stale;           /* the snapshot was replaced: solver_memory must follow it */
+  bool reported_impossible_start; /* logged since the reset: there is no start */
+  bool reported_other_forces;     /* logged since the reset: contact forces are not unique */
+  bool reported_other_impulses;   /* logged since the reset: an impact has several outcomes */
+  uint64_t reported_singularity;  /* checksum of the snapshot at which missing accelerations were logged */
+  int singular;                   /* 1 + the coordinate of a singular mass matrix, at the last evaluation; 0 for none */
+  size_t unkept;                  /* 1 + the constraint that the last projection could not fulfil; 0 for none */
+  const char *limited_by;         /* function that limited the solver's last step; NULL for none */
+  double *work;                   /* of evaluations: 3 state_count + 2 input_count + parameter_count */
+  double *point_work;             /* of generated functions: lagrangian.work_count */
+  double *projection_work;        /* projection_work_count() */
+  double *switching_work;         /* event_laws->work_count() */
+  double departure;               /* the sign with which a branch at rest at 0 last left it */
+  bool lacks_update;              /* model exchange, event mode: discrete states were not updated since a change */
+  bool uses_event_mode;           /* co-simulation: the importer handles events between steps */
+  bool stops_at_events;           /* an event ends a communication step */
+  bool was_at_zero;               /* the last event's indicator had not left 0 before by more than rounding */
   struct Scratch scratch[SCRATCH_USES]; /* workspace of events */
   double *event_state;                  /* with events: the state after the last one; then state_count of workspace */
   double *acceleration;                 /* accelerations and constraint forces for result(); the same along a seed */
@@ -129,22 +129,22 @@ struct Instance {
 bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log);
 void instance_destroy(struct Instance *instance);
 
-/* Makes a block of situation_size() bytes the snapshot of the instance. */
-void instance_use(struct Instance *instance, struct Situation *situation);
+/* Makes a block of fmu_state_size() bytes the snapshot of the instance. */
+void instance_use(struct Instance *instance, struct FmuState *fmu_state);
 
 /* Sets the state after creation: start values, no experiment. */
 void instance_reset(struct Instance *instance);
 
-/* Copies a snapshot of this instance, situation_size() bytes, back into it. */
-void instance_restore(struct Instance *instance, const void *situation);
+/* Copies a snapshot of this instance, fmu_state_size() bytes, back into it. */
+void instance_restore(struct Instance *instance, const void *fmu_state);
 
 /* Returns the evaluation point of the snapshot: time, state, inputs and parameters. */
 static inline struct Point instance_point(const struct Instance *instance) {
-  return (struct Point){.time = instance->situation->time,
+  return (struct Point){.time = instance->fmu_state->time,
                         .state = instance->state,
                         .input = instance->input,
                         .parameter = instance->parameter,
-                        .prepared = instance->prepared,
+                        .parameter_constants = instance->parameter_constants,
                         .work = instance->point_work};
 }
 
@@ -152,9 +152,9 @@ static inline struct Point instance_point(const struct Instance *instance) {
 const char *instance_phase_name(const struct Instance *instance);
 
 /* Returns the bytes of a snapshot of this system. */
-size_t situation_size(void);
+size_t fmu_state_size(void);
 
-/* Returns a checksum of situation_size() bytes. */
-uint64_t situation_checksum(const void *situation);
+/* Returns a checksum of fmu_state_size() bytes. */
+uint64_t fmu_state_checksum(const void *fmu_state);
 
 #endif

@@ -34,7 +34,7 @@ enum Status log_error(struct Instance *instance, const char *format, ...) {
   va_start(arguments, format);
   write_arguments(&instance->log, STATUS_ERROR, NULL, format, arguments);
   va_end(arguments);
-  instance->situation->phase = PHASE_ERROR;
+  instance->fmu_state->phase = PHASE_ERROR;
   return STATUS_ERROR;
 }
 
@@ -43,7 +43,7 @@ enum Status refuse_call(struct Instance *instance, const char *format, ...) {
   va_start(arguments, format);
   write_arguments(&instance->log, STATUS_ERROR, instance->function, format, arguments);
   va_end(arguments);
-  instance->situation->phase = PHASE_ERROR;
+  instance->fmu_state->phase = PHASE_ERROR;
   return STATUS_ERROR;
 }
 

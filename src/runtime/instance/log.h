@@ -4,9 +4,9 @@
 
 /* Makes compilers check the arguments of a format. */
 #ifdef __GNUC__
-#define LIKE_PRINTF(place, first) __attribute__((format(printf, place, first)))
+#define LIKE_PRINTF(slot, first) __attribute__((format(printf, slot, first)))
 #else
-#define LIKE_PRINTF(place, first)
+#define LIKE_PRINTF(slot, first)
 #endif
 
 struct Instance;

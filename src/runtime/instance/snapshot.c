@@ -26,14 +26,14 @@ static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
 enum { VERSION = 7 };
 
 size_t snapshot_size(void) {
-  return sizeof(struct Header) + situation_size();
+  return sizeof(struct Header) + fmu_state_size();
 }
 
-static struct Header header_of(const void *situation) {
-  struct Header header = {.version = VERSION, .size = (uint32_t)situation_size()};
+static struct Header header_of(const void *fmu_state) {
+  struct Header header = {.version = VERSION, .size = (uint32_t)fmu_state_size()};
   memcpy(header.magic, magic, sizeof magic);
   strncpy(header.guid, lagrangian.guid, sizeof header.guid - 1);
-  header.checksum = situation_checksum(situation);
+  header.checksum = fmu_state_checksum(fmu_state);
   return header;
 }
 
@@ -65,7 +65,7 @@ static bool has_phase(const struct Instance *instance, int32_t phase) {
          !(instance->kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
 }
 
-static bool can_wait(const struct Instance *instance, const struct Situation *fixed) {
+static bool can_wait(const struct Instance *instance, const struct FmuState *fixed) {
   if (fixed->gathered < 0 || fixed->gathered > 100) return false;
   if (fixed->waiting_event == 0) return true;
   return instance->stops_at_events && fixed->waiting_event > 0 &&
@@ -79,7 +79,7 @@ static bool may_lack_state(int32_t phase) {
 }
 
 /* True if the flags and enums are in their ranges. */
-static bool are_choices(const struct Situation *fixed) {
+static bool are_choices(const struct FmuState *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (flags[i] != 0 && flags[i] != 1) return false;
@@ -126,7 +126,7 @@ static bool are_modes(const char *parameters) {
 }
 
 /* True if the solver could have saved its part, which co-simulation alone uses. */
-static bool could_solver_save(const struct Instance *instance, const struct Situation *fixed, const char *saved) {
+static bool could_solver_save(const struct Instance *instance, const struct FmuState *fixed, const char *saved) {
   const struct Solver *solver = lagrangian.solver;
   return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->could_save == NULL ||
          solver->could_save(fixed, saved);
@@ -136,13 +136,13 @@ static bool could_solver_save(const struct Instance *instance, const struct Situ
  * True if an instance could have saved the snapshot. fixed: an aligned copy of its fixed part. An input may be
  * infinite, at the end of a polynomial; results that depend on it are discarded.
  */
-static bool is_possible(const struct Instance *instance, const struct Situation *fixed, const char *situation) {
+static bool is_possible(const struct Instance *instance, const struct FmuState *fixed, const char *fmu_state) {
   const double numbers[] = {fixed->time,          fixed->start_time,     fixed->stop_time,
                             fixed->tolerance,     fixed->suggested_step, fixed->last_step.start,
                             fixed->last_step.end, fixed->searched,       fixed->switched};
-  size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->situation);
-  size_t saved = (size_t)((char *)instance->saved - (char *)instance->situation);
-  size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->situation);
+  size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->fmu_state);
+  size_t saved = (size_t)((char *)instance->saved - (char *)instance->fmu_state);
+  size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->fmu_state);
   return has_phase(instance, fixed->phase) && are_choices(fixed) && can_wait(instance, fixed) &&
          snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
          snapshot_are_counts(fixed->reported_statistics, STATISTIC_COUNT) &&
@@ -150,10 +150,10 @@ static bool is_possible(const struct Instance *instance, const struct Situation 
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          fixed->searched <= fixed->last_step.end &&
-         (may_lack_state(fixed->phase) || snapshot_is_finite(situation + sizeof *fixed, lagrangian.state_count)) &&
-         are_flags(situation + was_set, (saved - was_set) / sizeof(double)) &&
-         snapshot_is_finite(situation + parameters, lagrangian.parameter_count) && have_types(situation + parameters) &&
-         are_modes(situation + parameters) && could_solver_save(instance, fixed, situation + saved);
+         (may_lack_state(fixed->phase) || snapshot_is_finite(fmu_state + sizeof *fixed, lagrangian.state_count)) &&
+         are_flags(fmu_state + was_set, (saved - was_set) / sizeof(double)) &&
+         snapshot_is_finite(fmu_state + parameters, lagrangian.parameter_count) && have_types(fmu_state + parameters) &&
+         are_modes(fmu_state + parameters) && could_solver_save(instance, fixed, fmu_state + saved);
 }
 
 const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size) {
@@ -164,20 +164,20 @@ const char *snapshot_fault(const struct Instance *instance, const void *block, s
   if (header.version != VERSION) return "they come from another version";
   if (strncmp(header.guid, lagrangian.guid, sizeof header.guid) != 0) return "they come from another model";
   if (size != snapshot_size()) return "they have another length";
-  const char *situation = (const char *)block + sizeof header;
-  struct Header expected = header_of(situation);
-  struct Situation fixed;
-  memcpy(&fixed, situation, sizeof fixed);
+  const char *fmu_state = (const char *)block + sizeof header;
+  struct Header expected = header_of(fmu_state);
+  struct FmuState fixed;
+  memcpy(&fixed, fmu_state, sizeof fixed);
   if (memcmp(&header, &expected, sizeof header) != 0) return "they are damaged";
   if (fixed.kind != (int32_t)instance->kind)
     return "they come from an instance of the other kind, model exchange or co-simulation";
-  return is_possible(instance, &fixed, situation) ? NULL : "they contain values that no instance can have saved";
+  return is_possible(instance, &fixed, fmu_state) ? NULL : "they contain values that no instance can have saved";
 }
 
 void snapshot_take(const struct Instance *instance, void *block) {
-  struct Header header = header_of(instance->situation);
+  struct Header header = header_of(instance->fmu_state);
   memcpy(block, &header, sizeof header);
-  memcpy((char *)block + sizeof header, instance->situation, situation_size());
+  memcpy((char *)block + sizeof header, instance->fmu_state, fmu_state_size());
 }
 
 void snapshot_restore(struct Instance *instance, const void *block) {

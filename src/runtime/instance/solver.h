@@ -12,9 +12,9 @@ struct CommunicationStep {
 };
 
 /*
- * The functions of a method. A solver makes steps of its own. situation->last_step spans the last one, and
+ * The functions of a method. A solver makes steps of its own. fmu_state->last_step spans the last one, and
  * interpolate() gives the states inside it. It may reach past the communication step. During a communication step,
- * situation->time and instance->state stay those of its start.
+ * fmu_state->time and instance->state stay those of its start.
  */
 struct Solver {
   const char *name;         /* in messages */
@@ -26,7 +26,7 @@ struct Solver {
   /* Returns the bytes of the solver's part of the snapshot, at instance->saved; NULL for none. */
   size_t (*saved_size)(void);
   /* True if the solver could have saved this part, at any alignment, with these fixed fields of the snapshot. */
-  bool (*could_save)(const struct Situation *situation, const void *saved);
+  bool (*could_save)(const struct FmuState *fmu_state, const void *saved);
   /*
    * Runs a task that may call the other functions, but not destroy(). False if memory was missing: the task was left
    * halfway, and solver_memory is NULL. NULL for solvers that need no such context.

@@ -27,7 +27,7 @@ struct TimeLaws {
 };
 
 /* Returns the time of the next sample; rounding errors do not add up over the samples. */
-static inline double sample_time(const struct Instance *instance, const struct SampleFacts *sample) {
+static inline double sample_time(const struct Instance *instance, const struct SampleMetadata *sample) {
   const double *mode = instance->parameter;
   return mode[sample->base] + mode[sample->count] * mode[sample->period];
 }

@@ -59,7 +59,7 @@ struct Choice {
   double begin, work;      /* of the window: its start in s, its operations */
   double last_speed;       /* motion in s per operation, in the window before */
   double trial_work;
-  double promised_step;             /* predicted first step of Radau IIA, in s */
+  double predicted_step;            /* predicted first step of Radau IIA, in s */
   double rate;                      /* stiffness_rate() at the last step of a Radau window, in 1/s */
   double taylor_speed, taylor_rate; /* speed and rate of the series when they were left */
 };
@@ -94,16 +94,16 @@ static bool is_up_to(double number, double largest) {
 
 static bool are_possible_numbers(const struct Choice *choice) {
   return isfinite(choice->begin) && is_up_to(choice->work, LARGEST_WORK) &&
-         is_up_to(choice->trial_work, LARGEST_WORK) && is_up_to(choice->promised_step, DBL_MAX) &&
+         is_up_to(choice->trial_work, LARGEST_WORK) && is_up_to(choice->predicted_step, DBL_MAX) &&
          is_up_to(choice->last_speed, INFINITY) && is_up_to(choice->taylor_speed, INFINITY) &&
          is_up_to(choice->taylor_rate, INFINITY) && is_up_to(choice->rate, INFINITY);
 }
 
-static bool auto_could_save(const struct Situation *situation, const void *saved) {
+static bool auto_could_save(const struct FmuState *fmu_state, const void *saved) {
   struct Choice choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
   return choice.method >= 0 && choice.method < AUTO_METHODS && are_possible_counts(&choice) &&
-         are_possible_numbers(&choice) && solvers[choice.method]->could_save(situation, saved);
+         are_possible_numbers(&choice) && solvers[choice.method]->could_save(fmu_state, saved);
 }
 
 /* Gives the active method its own memory until auto_leave(). */
@@ -200,23 +200,23 @@ static double work_of_radau(int stages, double evaluations, double jacobians) {
 /* Starts the other method at the end of the last step. False if the state is unknown or memory is missing. */
 static bool hand_over(struct Instance *instance, struct Auto *automatic, const struct CommunicationStep *step) {
   struct Choice *choice = automatic->choice;
-  struct Situation *situation = instance->situation;
-  double time = situation->last_step.end;
+  struct FmuState *fmu_state = instance->fmu_state;
+  double time = fmu_state->last_step.end;
   if (!solvers[choice->method]->interpolate(instance, time, automatic->state)) return false;
   choice->method = choice->method == AUTO_TAYLOR ? AUTO_RADAU : AUTO_TAYLOR;
   choice->windows = 0;
   begin_window(choice, time);
-  if (situation->statistics[STATISTIC_HANDOVERS]++ == 0)
+  if (fmu_state->statistics[STATISTIC_HANDOVERS]++ == 0)
     log_message(instance, STATUS_DONE,
                 "time %.15g: the system is stiff; the solver continues with Radau IIA, and returns to Taylor series "
                 "where they are faster (solverHandovers counts)",
                 time);
   memset(instance->saved, 0, largest_saved_size());
   instance->solver_memory = automatic->memory[choice->method];
-  situation->last_step = (struct Span){time, time};
+  fmu_state->last_step = (struct Span){time, time};
   if (!solvers[choice->method]->restart(instance, automatic->state, step)) return false;
-  if (choice->method == AUTO_RADAU) radau_try_first(instance, choice->promised_step);
-  choice->promised_step = 0.0;
+  if (choice->method == AUTO_RADAU) radau_try_first(instance, choice->predicted_step);
+  choice->predicted_step = 0.0;
   return true;
 }
 
@@ -228,7 +228,7 @@ static bool series_are_slow(struct Instance *instance, struct Choice *choice, do
   int stages = radau_stage_count(instance);
   double step = taylor->saved->reach * stiffness_promise(taylor, stages + 1, radau_tolerance(instance));
   if (choice->restarts > 0) step = fmin(step, progress / (double)choice->restarts);
-  choice->promised_step = fmin(step, FIRST_GROWTH * taylor->saved->reach);
+  choice->predicted_step = fmin(step, FIRST_GROWTH * taylor->saved->reach);
   double windows = (double)choice->windows, hope = (1.2 + 3.0 / windows) / (1.0 + windows / LONG_RUN);
   return step * choice->work > hope * progress * work_of_radau(stages, ITERATIONS * stages, 1.0);
 }
@@ -277,7 +277,7 @@ static bool judge_radau(const struct Instance *instance, struct Choice *choice, 
 
 /* True if the other method is to take over at the end of the last step. */
 static bool judge(struct Instance *instance, struct Choice *choice) {
-  double time = instance->situation->last_step.end;
+  double time = instance->fmu_state->last_step.end;
   if (choice->next_patience == 0) choice->next_patience = SHORT_PATIENCE;
   if (choice->steps == 0) begin_window(choice, time);
   if (choice->steps < window[choice->method]) return false;
@@ -290,7 +290,7 @@ static bool judge(struct Instance *instance, struct Choice *choice) {
 
 /* Returns the work of the last step, from the statistics before it and now. */
 static double work_between(const struct Instance *instance, const struct Choice *choice, const int64_t *before) {
-  const int64_t *after = instance->situation->statistics;
+  const int64_t *after = instance->fmu_state->statistics;
   if (choice->method == AUTO_TAYLOR)
     return work_of_series((double)((const struct Taylor *)instance->solver_memory)->saved->order);
   return work_of_radau(radau_stage_count(instance),
@@ -301,7 +301,7 @@ static double work_between(const struct Instance *instance, const struct Choice 
 static const char *make_step(struct Instance *instance, struct Auto *automatic, const struct CommunicationStep *step) {
   struct Choice *choice = automatic->choice;
   int64_t before[STATISTIC_COUNT];
-  memcpy(before, instance->situation->statistics, sizeof before);
+  memcpy(before, instance->fmu_state->statistics, sizeof before);
   const char *problem = solvers[choice->method]->advance(instance, step);
   choice->work += work_between(instance, choice, before);
   choice->steps++;

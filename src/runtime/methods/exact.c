@@ -43,8 +43,8 @@ static size_t saved_size(void) {
   return lagrangian.state_count * sizeof(double); /* the rounding error of the state */
 }
 
-static bool could_save(const struct Situation *situation, const void *saved) {
-  (void)situation;
+static bool could_save(const struct FmuState *fmu_state, const void *saved) {
+  (void)fmu_state;
   return snapshot_is_finite(saved, lagrangian.state_count);
 }
 
@@ -103,7 +103,7 @@ static void multiply(size_t n, const long double *a, const long double *b, long 
 static void fill_generator(struct Instance *instance, struct Exact *exact, double step) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count, n = extended_size(exact->order);
   size_t columns = states + inputs + 1;
-  lagrangian.linear(instance->parameter, instance->prepared, exact->linear);
+  lagrangian.linear(instance->parameter, instance->parameter_constants, exact->linear);
   for (size_t i = 0; i < n * n; i++) exact->generator[i] = 0.0L;
   for (size_t i = 0; i < states; i++) {
     long double *row = exact->generator + i * n;
@@ -238,7 +238,7 @@ static bool exponentiate(struct Exact *exact, size_t n) {
 /* Updates the matrix if step or parameters have changed. False if it is not finite. */
 static bool prepare_matrix(struct Instance *instance, struct Exact *exact, double step) {
   size_t bytes = lagrangian.parameter_count * sizeof(double);
-  size_t order = instance->situation->input_derivatives_set ? 1 + INPUT_ORDER : 1;
+  size_t order = instance->fmu_state->input_derivatives_set ? 1 + INPUT_ORDER : 1;
   if (exact->step == step && exact->order == order && memcmp(exact->parameter, instance->parameter, bytes) == 0)
     return true;
   exact->order = order;
@@ -267,7 +267,7 @@ static bool compute_next(struct Instance *instance, struct Exact *exact, double 
   const double *low = instance->saved;
   memcpy(exact->extended, exact->state, states * sizeof(double));
   exact->extended[states] = 1.0;
-  fill_inputs(instance, instance->situation->last_step.start, exact->order, exact->extended + states + 1);
+  fill_inputs(instance, instance->fmu_state->last_step.start, exact->order, exact->extended + states + 1);
   double total = 0.0;
   const double *element = exact->matrix, *extended = exact->extended;
   for (size_t i = 0; i < states; i++) {
@@ -303,7 +303,7 @@ static bool restart(struct Instance *instance, const double *state, const struct
 /* Advances to the end of the communication step, the next sample, or as far as the state is finite. */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Exact *exact = instance->solver_memory;
-  struct Span *span = &instance->situation->last_step;
+  struct Span *span = &instance->fmu_state->last_step;
   double sample = next_sample(instance, span->end);
   span->start = span->end;
   memcpy(exact->state, exact->next, lagrangian.state_count * sizeof(double));
@@ -317,14 +317,14 @@ static const char *advance(struct Instance *instance, const struct Communication
     return "the motion grows without bound";
   }
   memcpy(instance->saved, exact->next_low, lagrangian.state_count * sizeof(double));
-  instance->situation->statistics[STATISTIC_STEPS]++;
+  instance->fmu_state->statistics[STATISTIC_STEPS]++;
   return is_whole ? NULL : "the motion grows without bound";
 }
 
 /* A state inside the step is not available: advance() computes its end alone. */
 static bool interpolate(struct Instance *instance, double time, double *state) {
   const struct Exact *exact = instance->solver_memory;
-  const struct Span *span = &instance->situation->last_step;
+  const struct Span *span = &instance->fmu_state->last_step;
   if (time != span->start && time != span->end) return false;
   memcpy(state, time == span->end ? exact->next : exact->state, lagrangian.state_count * sizeof(double));
   return true;

@@ -25,31 +25,31 @@
 /* Iterations from a state near the constraints, and from start values. */
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 
-static const double converged = 1e-9;      /* change in units of the scales: its square is below rounding */
-static const double rounded_away = 1e-6;   /* change that is rounding error if it stops shrinking: terms may cancel */
-static const double largest_move = 0.5;    /* of start values in one iteration, in units of their scales */
-static const double fulfilled = 1e-10;     /* residual as a length, in units of the scale of the state */
-static const double redundant_lack = 1e-8; /* the same of a redundant constraint, before the last change */
-static const double largest_jump = 0.1;    /* residual by an input's change, in units of the scale of the state */
-static const double noted_move = 1e-2;     /* with prescribed inputs: moves to log, in the same units */
-static const double vanishing = 1e-6;      /* ratio of a row of J where its constraint holds to the row nearby */
+static const double converged = 1e-9;    /* change in units of the scales: its square is below rounding */
+static const double rounded_away = 1e-6; /* change that is rounding error if it stops shrinking: terms may cancel */
+static const double largest_move = 0.5;  /* of start values in one iteration, in units of their scales */
+static const double fulfilled = 1e-10;   /* residual as a length, in units of the scale of the state */
+static const double redundant_residual = 1e-8; /* the same of a redundant constraint, before the last change */
+static const double largest_jump = 0.1;        /* residual by an input's change, in units of the scale of the state */
+static const double noted_move = 1e-2;         /* with prescribed inputs: moves to log, in the same units */
+static const double vanishing = 1e-6;          /* ratio of a row of J where its constraint holds to the row nearby */
 
 /* The parts of the workspace. change, lack, pivot and slope follow each other, as lagrangian.constraints has them. */
 struct Work {
-  double *change;               /* of the coordinates or velocities */
-  double *lack, *pivot, *slope; /* of each constraint: -residual, pivot, length of its row of J */
-  double *moved;                /* state_count: the sum of the moves of the coordinates */
-  double *before;               /* state_count */
-  double *start;                /* state_count: where project() began */
-  double *first_slope;          /* of each constraint */
-  double *rounding;             /* rounding error bounds of the indicators */
+  double *change;                   /* of the coordinates or velocities */
+  double *residual, *pivot, *slope; /* of each constraint: -residual, pivot, length of its row of J */
+  double *moved;                    /* state_count: the sum of the moves of the coordinates */
+  double *before;                   /* state_count */
+  double *start;                    /* state_count: where project() began */
+  double *first_slope;              /* of each constraint */
+  double *rounding;                 /* rounding error bounds of the indicators */
   double *first; /* the first state that lack belongs to: 0 for coordinates, coordinate_count for velocities */
 };
 
 static struct Work work_of(const struct Instance *instance) {
   struct Work work = {.change = instance->projection_work};
-  work.lack = work.change + lagrangian.coordinate_count;
-  work.pivot = work.lack + lagrangian.constraints.count;
+  work.residual = work.change + lagrangian.coordinate_count;
+  work.pivot = work.residual + lagrangian.constraints.count;
   work.slope = work.pivot + lagrangian.constraints.count;
   work.moved = work.slope + lagrangian.constraints.count;
   work.before = work.moved + lagrangian.state_count;
@@ -74,7 +74,7 @@ static double size_of(const double *value, const double *state, size_t first) {
 enum Target { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
 
 /* Evaluates change, residuals, pivots and slopes. False if M is singular or a value is not finite. */
-static bool evaluate_lack(struct Instance *instance, double time, const double *state, enum Target target) {
+static bool evaluate_residual(struct Instance *instance, double time, const double *state, enum Target target) {
   struct Work work = work_of(instance);
   struct Point point = solver_point(instance, time, state);
   struct Seed seed = {.state = work.moved};
@@ -87,7 +87,7 @@ static bool evaluate_lack(struct Instance *instance, double time, const double *
   case START_VELOCITIES: instance->singular = lagrangian.constraints.start_velocities(&point, work.change); break;
   }
   return instance->singular == 0 && are_finite(work.change, lagrangian.coordinate_count) &&
-         are_finite(work.lack, lagrangian.constraints.count);
+         are_finite(work.residual, lagrangian.constraints.count);
 }
 
 /*
@@ -100,14 +100,14 @@ static bool lacks_only_rounding(struct Instance *instance, double time, const do
   struct Work work = work_of(instance);
   if (switches == NULL || switches->contact_count == 0) return false;
   struct Point point = solver_point(instance, time, state);
-  switches->roundings(&point, instance->acceleration, work.rounding);
+  switches->rounding_bounds(&point, instance->acceleration, work.rounding);
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t constraint = switches->contacts[i].constraint;
     double rounding = DBL_EPSILON * work.rounding[contact_indicator(switches, i)];
-    if (fabs(work.lack[constraint]) <= rounding) work.lack[constraint] = 0.0;
+    if (fabs(work.residual[constraint]) <= rounding) work.residual[constraint] = 0.0;
   }
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (work.lack[j] != 0.0) return false;
+    if (work.residual[j] != 0.0) return false;
   return true;
 }
 
@@ -120,7 +120,7 @@ static void move_positions(const struct Work *work, double *state, double share)
 
 static double move_velocities(struct Instance *instance, double time, double *state, enum Target target) {
   size_t n = lagrangian.coordinate_count;
-  if (!evaluate_lack(instance, time, state, target)) return INFINITY;
+  if (!evaluate_residual(instance, time, state, target)) return INFINITY;
   struct Work work = work_of(instance);
   double size = size_of(work.change, state, n);
   for (size_t i = 0; i < n; i++) state[n + i] += work.change[i];
@@ -131,7 +131,8 @@ static double move_velocities(struct Instance *instance, double time, double *st
 static bool others_hold(const struct Work *work, const double *state, size_t first) {
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j]) && !(fabs(work->lack[j]) <= redundant_lack * work->slope[j] * scale)) return false;
+    if (isinf(work->pivot[j]) && !(fabs(work->residual[j]) <= redundant_residual * work->slope[j] * scale))
+      return false;
   return true;
 }
 
@@ -148,10 +149,10 @@ static bool has_redundant(const struct Work *work) {
 static double project_velocities(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   double size = move_velocities(instance, time, state, VELOCITIES);
-  bool hold = isfinite(size) && (!has_redundant(&work) || (evaluate_lack(instance, time, state, VELOCITIES) &&
+  bool hold = isfinite(size) && (!has_redundant(&work) || (evaluate_residual(instance, time, state, VELOCITIES) &&
                                                            others_hold(&work, state, lagrangian.coordinate_count)));
   if (!hold) return INFINITY;
-  memset(work.lack, 0, lagrangian.constraints.count * sizeof *work.lack);
+  memset(work.residual, 0, lagrangian.constraints.count * sizeof *work.residual);
   return size;
 }
 
@@ -167,7 +168,7 @@ static double project(struct Instance *instance, double time, double *state) {
   if (holds_velocities_alone()) return project_velocities(instance, time, state);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
-    if (!evaluate_lack(instance, time, state, POSITIONS)) return INFINITY;
+    if (!evaluate_residual(instance, time, state, POSITIONS)) return INFINITY;
     before = size;
     size = size_of(work.change, state, 0);
     bool is_rounded = size <= rounded_away && lacks_only_rounding(instance, time, state);
@@ -190,14 +191,14 @@ static double drift(struct Instance *instance, double time) {
 /* Returns the first constraint whose residual is not finite. */
 static size_t find_without_value(const struct Work *work) {
   size_t j = 0;
-  while (j + 1 < lagrangian.constraints.count && isfinite(work->lack[j])) j++;
+  while (j + 1 < lagrangian.constraints.count && isfinite(work->residual[j])) j++;
   return j;
 }
 
 /* Returns the residual of a constraint as a length in units of scale. */
 static double way_of(const struct Work *work, size_t constraint, double scale) {
-  double lack = work->lack[constraint];
-  return lack == 0.0 ? 0.0 : fabs(lack) / (work->slope[constraint] * scale);
+  double residual = work->residual[constraint];
+  return residual == 0.0 ? 0.0 : fabs(residual) / (work->slope[constraint] * scale);
 }
 
 /* Returns the constraint of largest residual above *most, and sets *most to it; constraints.count for none. */
@@ -215,7 +216,7 @@ static size_t find_above(const struct Work *work, const double *state, size_t fi
 }
 
 /* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
-static size_t find_lacking(const struct Work *work, const double *state, size_t first) {
+static size_t find_violated(const struct Work *work, const double *state, size_t first) {
   double most = fulfilled;
   return find_above(work, state, first, &most);
 }
@@ -225,12 +226,12 @@ static size_t unkept(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   int singular = instance->singular;
   size_t n = lagrangian.coordinate_count, none = lagrangian.constraints.count, larger = none;
-  size_t found = find_lacking(&work, work.start, (size_t)*work.first);
+  size_t found = find_violated(&work, work.start, (size_t)*work.first);
   if (found == none) {
     double most = fulfilled;
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-    if (evaluate_lack(instance, time, work.start, POSITIONS)) found = find_above(&work, work.start, 0, &most);
-    if (evaluate_lack(instance, time, work.start, VELOCITIES)) larger = find_above(&work, work.start, n, &most);
+    if (evaluate_residual(instance, time, work.start, POSITIONS)) found = find_above(&work, work.start, 0, &most);
+    if (evaluate_residual(instance, time, work.start, VELOCITIES)) larger = find_above(&work, work.start, n, &most);
     if (larger < none) found = larger;
   }
   instance->singular = singular;
@@ -248,7 +249,7 @@ static bool approach_from(struct Instance *instance, double time, double *state,
   for (int iteration = 0; iteration < START_LIMIT; iteration++) {
     if (!least) memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
     if (evaluate_prepare(instance) != STATUS_DONE) return false; /* before the start, modes follow the state */
-    if (!evaluate_lack(instance, time, state, target)) return false;
+    if (!evaluate_residual(instance, time, state, target)) return false;
     double size = size_of(work.change, state, 0);
     move_positions(&work, state, least && size > largest_move ? largest_move / size : 1.0);
     if (size <= converged) return true;
@@ -261,17 +262,17 @@ static size_t approach_positions(struct Instance *instance, double time, double 
   struct Work work = work_of(instance);
   if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, target);
+  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, target);
   if (!has_value) return find_without_value(&work);
   lacks_only_rounding(instance, time, state);
-  return find_lacking(&work, state, 0);
+  return find_violated(&work, state, 0);
 }
 
 static size_t approach_velocities(struct Instance *instance, double time, double *state, enum Target target) {
   struct Work work = work_of(instance);
   if (!isfinite(move_velocities(instance, time, state, target))) return 0;
-  if (!evaluate_lack(instance, time, state, target)) return 0;
-  return find_lacking(&work, state, lagrangian.coordinate_count);
+  if (!evaluate_residual(instance, time, state, target)) return 0;
+  return find_violated(&work, state, lagrangian.coordinate_count);
 }
 
 /* Logs the coordinates and velocities that moved by more than a share of their scales. */
@@ -285,7 +286,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
                        evaluate_name(VARIABLE_STATE, i), before[i], after);
   }
   if (length > 0)
-    log_message(instance, STATUS_DONE, "time %g: moved to fulfil the constraints: %s%s", instance->situation->time,
+    log_message(instance, STATUS_DONE, "time %g: moved to fulfil the constraints: %s%s", instance->fmu_state->time,
                 text, length >= 500 ? ", ..." : "");
 }
 
@@ -293,23 +294,23 @@ static void log_redundant(const struct Instance *instance, const struct Work *wo
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* that of an open contact has none */
       log_message(instance, STATUS_DONE, "time %g: the %s '%s' is redundant; the forces are those of least norm",
-                  instance->situation->time, evaluate_kind(j), lagrangian.constraints.names[j]);
+                  instance->fmu_state->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }
 
 static bool refuse(struct Instance *instance, size_t constraint, const char *what) {
   struct Work work = work_of(instance);
   if (instance->singular != 0) {
-    log_singularity(instance, STATUS_ERROR, instance->situation->time);
+    log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
     return false;
   }
   const char *name = lagrangian.constraints.names[constraint], *kind = evaluate_kind(constraint);
-  if (!isfinite(work.lack[constraint]))
+  if (!isfinite(work.residual[constraint]))
     refuse_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
   else
     refuse_call(instance,
                 "no %s near the start values fulfil the %s '%s' with the others: its residual is %g; expected start "
                 "values nearer to a solution, fewer of them fixed, or other parameters",
-                what, kind, name, -work.lack[constraint]);
+                what, kind, name, -work.residual[constraint]);
   return false;
 }
 
@@ -322,11 +323,11 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   struct Work work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
   double *there = work.moved; /* which velocities do not need */
-  if (!evaluate_lack(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
+  if (!evaluate_residual(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
   memcpy(work.first_slope, work.slope, lagrangian.constraints.count * sizeof *work.slope);
   memcpy(there, state, lagrangian.state_count * sizeof *state);
   for (size_t i = 0; i < n; i++) state[i] += (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i);
-  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_lack(instance, time, state, VELOCITIES);
+  bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, VELOCITIES);
   memcpy(state, there, lagrangian.state_count * sizeof *state);
   if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraints.count;
   while (found < lagrangian.constraints.count &&
@@ -362,38 +363,39 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
 
 static bool make_consistent(struct Instance *instance) {
   struct Work work = work_of(instance);
-  double time = instance->situation->time;
+  double time = instance->fmu_state->time;
   bool keeps_fixed = lagrangian.constraints.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
-  size_t lacking = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
+  size_t violated = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   size_t vanishing_one = find_vanishing(instance, time, instance->state);
   if (vanishing_one < lagrangian.constraints.count) return refuse_vanishing(instance, vanishing_one);
-  if (lacking < lagrangian.constraints.count) {
+  if (violated < lagrangian.constraints.count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-    evaluate_lack(instance, time, instance->state, POSITIONS);
-    return refuse(instance, lacking, "coordinates");
+    evaluate_residual(instance, time, instance->state, POSITIONS);
+    return refuse(instance, violated, "coordinates");
   }
-  lacking = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
-  if (lacking < lagrangian.constraints.count) return refuse(instance, lacking, "velocities");
+  violated = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
+  if (violated < lagrangian.constraints.count) return refuse(instance, violated, "velocities");
   log_redundant(instance, &work);
   if (keeps_fixed && !keep_fixed(instance, work.before)) return false;
-  log_moves(instance, work.before, instance->situation->tolerance);
+  log_moves(instance, work.before, instance->fmu_state->tolerance);
   return true;
 }
 
 /* True if an input has jumped: coordinates cannot follow it. Logs that the step is discarded. */
 static bool has_jumped(struct Instance *instance) {
   struct Work work = work_of(instance);
-  double time = instance->situation->time, scale = largest_scale(instance->state, 0);
+  double time = instance->fmu_state->time, scale = largest_scale(instance->state, 0);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (lagrangian.constraints.guide_count == 0 || !evaluate_lack(instance, time, instance->state, POSITIONS))
+  if (lagrangian.constraints.prescribed_input_count == 0 ||
+      !evaluate_residual(instance, time, instance->state, POSITIONS))
     return false;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     if (lagrangian.constraints.inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
                 "time %g: the residual of the %s '%s' is %g after a jump of an input: it depends on %s; expected "
                 "inputs that move continuously, as their derivatives say",
-                time, evaluate_kind(j), lagrangian.constraints.names[j], -work.lack[j],
+                time, evaluate_kind(j), lagrangian.constraints.names[j], -work.residual[j],
                 lagrangian.constraints.inputs[j]);
     return true;
   }
@@ -401,33 +403,33 @@ static bool has_jumped(struct Instance *instance) {
 }
 
 static void log_contradiction(struct Instance *instance, size_t constraint, const char *what) {
-  double time = instance->situation->time;
+  double time = instance->fmu_state->time;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, time);
   else
     log_message(instance, STATUS_DISCARD,
                 "time %g: after a parameter or an input was set, no %s near the present ones fulfil the %s '%s' with "
                 "the others: its residual is %g; expected values with a solution nearby",
                 time, what, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
-                -work_of(instance).lack[constraint]);
+                -work_of(instance).residual[constraint]);
 }
 
 static bool follow_change(struct Instance *instance) {
   struct Work work = work_of(instance);
-  double time = instance->situation->time;
+  double time = instance->fmu_state->time;
   const char *what = "coordinates";
   if (has_jumped(instance)) return false;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
-  size_t lacking = approach_positions(instance, time, instance->state, POSITIONS);
-  if (lacking == lagrangian.constraints.count) {
+  size_t violated = approach_positions(instance, time, instance->state, POSITIONS);
+  if (violated == lagrangian.constraints.count) {
     what = "velocities";
-    lacking = approach_velocities(instance, time, instance->state, VELOCITIES);
+    violated = approach_velocities(instance, time, instance->state, VELOCITIES);
   }
-  if (lacking == lagrangian.constraints.count) {
+  if (violated == lagrangian.constraints.count) {
     log_moves(instance, work.before,
-              lagrangian.constraints.guide_count > 0 ? noted_move : instance->situation->tolerance);
+              lagrangian.constraints.prescribed_input_count > 0 ? noted_move : instance->fmu_state->tolerance);
     return true;
   }
-  log_contradiction(instance, lacking, what);
+  log_contradiction(instance, violated, what);
   memcpy(instance->state, work.before, lagrangian.state_count * sizeof *work.before);
   return false;
 }
@@ -437,7 +439,7 @@ static const char *weakest(struct Instance *instance, double time, const double 
   size_t found = 0;
   double least = INFINITY;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-  if (!evaluate_lack(instance, time, state, POSITIONS)) return NULL;
+  if (!evaluate_residual(instance, time, state, POSITIONS)) return NULL;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
     double hold = fabs(work.pivot[j]) / (work.slope[j] * work.slope[j]);
     if (!(hold < least)) continue;

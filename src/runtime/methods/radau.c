@@ -69,13 +69,13 @@ static size_t radau_saved_size(void) {
   return sizeof(struct RadauSaved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
 }
 
-static bool radau_could_save(const struct Situation *situation, const void *saved) {
+static bool radau_could_save(const struct FmuState *fmu_state, const void *saved) {
   struct RadauSaved first;
   memcpy(&first, saved, sizeof first);
   return first.method >= 0 && first.method < METHOD_COUNT && first.next_method >= 0 &&
          first.next_method < METHOD_COUNT && first.steps >= 0 && first.steps <= STEPS_OF_CAUTION && first.step >= 0.0 &&
          first.next >= 0.0 && first.error >= 0.0 && first.contraction >= 0.0 &&
-         situation->last_step.end == situation->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
+         fmu_state->last_step.end == fmu_state->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
          snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
 }
 
@@ -97,13 +97,13 @@ static bool radau_create(struct Instance *instance) {
   radau->rates = radau->z + STAGE_LIMIT * states;
   double *rest = radau->rates + STAGE_LIMIT * states;
   radau->series = (Series *)rest;
-  radau_systems_place(&radau->systems, rest + rows);
+  radau_systems_slot(&radau->systems, rest + rows);
   instance->solver_memory = radau;
   return true;
 }
 
 double radau_tolerance(const struct Instance *instance) {
-  return fmax(radau_safety * instance->situation->tolerance, 4 * DBL_EPSILON);
+  return fmax(radau_safety * instance->fmu_state->tolerance, 4 * DBL_EPSILON);
 }
 
 static int64_t method_for(double tolerance) {
@@ -118,7 +118,7 @@ static bool radau_restart(struct Instance *instance, const double *state, const 
   memset(radau->stages, 0, STAGE_LIMIT * lagrangian.state_count * sizeof(double));
   saved->step = saved->error = 0.0;
   saved->contraction = 1.0;
-  saved->method = saved->next_method = method_for(instance->situation->tolerance);
+  saved->method = saved->next_method = method_for(instance->fmu_state->tolerance);
   saved->steps = STEPS_OF_CAUTION;
   return true;
 }
@@ -145,7 +145,7 @@ static bool radau_interpolate(struct Instance *instance, double time, double *st
   const struct Radau *radau = instance->solver_memory;
   const struct RadauSaved *saved = radau->saved;
   const struct RadauMethod *method = &methods[saved->method];
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   size_t states = lagrangian.state_count;
   const double *end = radau->stages + (size_t)(method->stages - 1) * states;
   if (saved->step == 0.0) memset(radau->trial, 0, states * sizeof(double));
@@ -364,14 +364,14 @@ static double trial_step(struct Instance *instance, struct Radau *radau, double 
 
 static void accept(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
                    double step) {
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   size_t states = lagrangian.state_count;
   memcpy(radau->start, radau->state, states * sizeof(double));
   memcpy(radau->stages, radau->z, (size_t)method->stages * states * sizeof(double));
   radau->saved->method = method - methods;
   radau->saved->step = step;
-  situation->last_step = (struct Span){time, time + step};
-  situation->statistics[STATISTIC_STEPS]++;
+  fmu_state->last_step = (struct Span){time, time + step};
+  fmu_state->statistics[STATISTIC_STEPS]++;
 }
 
 /*
@@ -381,7 +381,7 @@ static void accept(struct Instance *instance, struct Radau *radau, const struct 
 static void choose_method(const struct Instance *instance, struct RadauSaved *saved, bool failed) {
   saved->steps = failed ? 0 : saved->steps < STEPS_OF_CAUTION ? saved->steps + 1 : STEPS_OF_CAUTION;
   bool is_lowest = saved->next_method == 0,
-       is_highest = saved->next_method == method_for(instance->situation->tolerance);
+       is_highest = saved->next_method == method_for(instance->fmu_state->tolerance);
   if (!is_lowest && (failed || saved->contraction > 0.8)) saved->next_method--;
   else if (!is_highest && saved->contraction < 0.002 && saved->steps == STEPS_OF_CAUTION) saved->next_method++;
 }
@@ -389,7 +389,7 @@ static void choose_method(const struct Instance *instance, struct RadauSaved *sa
 static const char *radau_advance(struct Instance *instance, const struct CommunicationStep *communication) {
   struct Radau *radau = instance->solver_memory;
   struct RadauSaved *saved = radau->saved;
-  double time = instance->situation->last_step.end;
+  double time = instance->fmu_state->last_step.end;
   const char *problem = begin(instance, radau, time);
   if (problem != NULL) return problem;
   const struct RadauMethod *method = &methods[saved->next_method];
@@ -428,7 +428,7 @@ double radau_next_step(const struct Instance *instance) {
 }
 
 int radau_stage_count(const struct Instance *instance) {
-  return methods[method_for(instance->situation->tolerance)].stages;
+  return methods[method_for(instance->fmu_state->tolerance)].stages;
 }
 
 const double *radau_jacobian(const struct Instance *instance) {

@@ -35,16 +35,16 @@ struct Complex {
  */
 struct RadauSystems {
   double *values;                        /* elements of J, in the order of lagrangian.implicit.pattern */
-  size_t *place, *diagonal;              /* offsets in the matrices: of J's elements in this order, of the diagonal */
+  size_t *slot, *diagonal;               /* offsets in the matrices: of J's elements in this order, of the diagonal */
   struct Complex mu[SYSTEM_LIMIT];       /* the first one and its matrix are real */
   double *factors[SYSTEM_LIMIT];         /* factored by lagrangian.implicit.lu */
   struct Complex *right_side, *solution; /* states each: workspace */
   double *work;                          /* workspace of lagrangian.implicit.lu */
 };
 
-/* Returns the numbers of memory that the systems need; radau_systems_place() divides them. */
+/* Returns the numbers of memory that the systems need; radau_systems_slot() divides them. */
 size_t radau_systems_size(void);
-void radau_systems_place(struct RadauSystems *systems, double *memory);
+void radau_systems_slot(struct RadauSystems *systems, double *memory);
 
 /* Evaluates the Jacobian. False if it does not exist or is not finite. */
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state);

@@ -19,18 +19,17 @@ size_t radau_systems_size(void) {
 static void find_places(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
-  for (size_t i = 0; i < lu_rows(); i++) systems->diagonal[i] = lagrangian.implicit.lu->place(i, i);
+  for (size_t i = 0; i < lu_rows(); i++) systems->diagonal[i] = lagrangian.implicit.lu->slot(i, i);
   for (size_t column = 0; column < lagrangian.state_count; column++)
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
       if ((size_t)pattern->row[e] >= n)
-        systems->place[e] =
-            lagrangian.implicit.lu->place((size_t)pattern->row[e] - n, column < n ? column : column - n);
+        systems->slot[e] = lagrangian.implicit.lu->slot((size_t)pattern->row[e] - n, column < n ? column : column - n);
 }
 
-void radau_systems_place(struct RadauSystems *systems, double *memory) {
+void radau_systems_slot(struct RadauSystems *systems, double *memory) {
   size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   systems->values = memory;
-  systems->place = (size_t *)(memory + count);
+  systems->slot = (size_t *)(memory + count);
   systems->diagonal = (size_t *)(memory + 2 * count);
   memory += 2 * count + lu_rows();
   for (int j = 0; j < SYSTEM_LIMIT; j++) {
@@ -60,7 +59,7 @@ static void fill(const struct RadauSystems *systems, size_t width, const double 
     bool is_velocity = column >= n && column < 2 * n;
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++) {
       if ((size_t)pattern->row[e] < n) continue;
-      double *element = matrix + width * systems->place[e];
+      double *element = matrix + width * systems->slot[e];
       if (!is_velocity) element[0] -= systems->values[e];
       else
         for (size_t i = 0; i < width; i++) element[i] -= systems->values[e] * mu[i];

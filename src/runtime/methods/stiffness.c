@@ -119,7 +119,7 @@ double stiffness_rate(const double *jacobian, double *work) {
   double stiffness = norm_of_block(jacobian, v, q, work), damping = norm_of_block(jacobian, v, v, work);
   double rate = 0.5 * (damping + sqrt(damping * damping + 4.0 * stiffness));
   if (z.first == z.end) return rate;
-  double drive = norm_of_block(jacobian, v, z, work);
-  return rate + norm_of_block(jacobian, z, z, work) + sqrt(drive * norm_of_block(jacobian, z, v, work)) +
-         cbrt(drive * norm_of_block(jacobian, z, q, work));
+  double prescribed_motion = norm_of_block(jacobian, v, z, work);
+  return rate + norm_of_block(jacobian, z, z, work) + sqrt(prescribed_motion * norm_of_block(jacobian, z, v, work)) +
+         cbrt(prescribed_motion * norm_of_block(jacobian, z, q, work));
 }

@@ -4,7 +4,7 @@
  *
  * A step expands the solution about its start t0: x(t0 + s) = x_0 + x_1 s + ... + x_p s^p. The generated recurrences
  * give the coefficients by automatic differentiation, at a cost of O(p^2) for each product in f. The tolerance
- * determines the order p (taylor_rule.h). The coefficients and a defect check determine the step (taylor_reach.c). The
+ * determines the order p (taylor_rule.h). The coefficients and a defect check determine the step (taylor_interval.c). The
  * polynomial also is the dense output.
  *
  * A step may end after the communication point. The polynomial is evaluated there, and serves the following
@@ -18,19 +18,19 @@
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 #include "instance/snapshot.h"
-#include "methods/taylor_reach.h"
+#include "methods/taylor_interval.h"
 
 static size_t taylor_saved_size(void) {
   return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
 }
 
-static bool taylor_could_save(const struct Situation *situation, const void *saved) {
+static bool taylor_could_save(const struct FmuState *fmu_state, const void *saved) {
   struct TaylorSaved first;
   memcpy(&first, saved, sizeof first);
   bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
-  bool is_new = first.order == 0 && situation->changed != 0; /* no step was made yet */
+  bool is_new = first.order == 0 && fmu_state->changed != 0; /* no step was made yet */
   return (has_order || is_new) && first.reach >= 0.0 &&
-         situation->last_step.end == situation->last_step.start + first.reach &&
+         fmu_state->last_step.end == fmu_state->last_step.start + first.reach &&
          snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
 }
 
@@ -40,7 +40,7 @@ static bool taylor_create(struct Instance *instance) {
   struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
   if (taylor == NULL) return solver_lacks_memory(instance);
   taylor->saved = instance->saved;
-  taylor->span = &instance->situation->last_step;
+  taylor->span = &instance->fmu_state->last_step;
   taylor->low = (double *)(taylor->saved + 1);
   taylor->x = (Series *)(taylor->low + lagrangian.state_count);
   taylor->input = (Series *)(taylor + 1);
@@ -73,7 +73,7 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   struct Point point = instance_point(instance);
   point.time = origin;
   lagrangian.taylor.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
-  instance->situation->statistics[STATISTIC_DERIVATIVES]++;
+  instance->fmu_state->statistics[STATISTIC_DERIVATIVES]++;
   taylor_choose_reach(instance, taylor, communication_step);
   taylor->span->end = origin + taylor->saved->reach;
   return taylor->saved->reach > 0.0;
@@ -100,11 +100,11 @@ static double move_origin(struct Taylor *taylor) {
 }
 
 struct SeriesRule taylor_rule(const struct Instance *instance) {
-  return rule_for(local_tolerance(instance->situation->tolerance));
+  return rule_for(local_tolerance(instance->fmu_state->tolerance));
 }
 
 static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
-  if (taylor->rule.tolerance != local_tolerance(instance->situation->tolerance)) taylor->rule = taylor_rule(instance);
+  if (taylor->rule.tolerance != local_tolerance(instance->fmu_state->tolerance)) taylor->rule = taylor_rule(instance);
 }
 
 /* Projects the state at the origin onto the constraints. Returns NULL, or the reason for a failure. */
@@ -162,11 +162,11 @@ static bool taylor_interpolate_at(struct Instance *instance, const double *times
   return true;
 }
 
-static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
-  crawl->path += moved;
-  if (++crawl->steps < CRAWL_STEPS) return false;
-  bool stays = crawl->path < CRAWL_STEPS * tolerance;
-  *crawl = (struct Crawl){0};
+static bool stagnates(struct Stagnation *stagnation, double moved, double tolerance) {
+  stagnation->path += moved;
+  if (++stagnation->steps < STAGNATION_STEPS) return false;
+  bool stays = stagnation->path < STAGNATION_STEPS * tolerance;
+  *stagnation = (struct Stagnation){0};
   return stays;
 }
 
@@ -179,9 +179,9 @@ static bool crawls(struct Crawl *crawl, double moved, double tolerance) {
  */
 static const char *reason_to_stop(const struct Instance *instance, struct Taylor *taylor, double moved) {
   if (!taylor->crosses) taylor->crossing.path += moved;
-  else if (crawls(&taylor->crossing, moved, 1e-9))
+  else if (stagnates(&taylor->crossing, moved, 1e-9))
     return "a function chatters, as does dry friction that is not written as <friction>";
-  if (!taylor->is_limited && crawls(&taylor->regular, moved, fmin(instance->situation->tolerance, 1e-6)))
+  if (!taylor->is_limited && stagnates(&taylor->regular, moved, fmin(instance->fmu_state->tolerance, 1e-6)))
     return "the system is stiff and needs <solver method=\"auto\"/>";
   return NULL;
 }
@@ -196,14 +196,14 @@ static void cut_series(struct Taylor *taylor) {
 
 static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
-  if (step->count == 0) taylor->regular = taylor->crossing = (struct Crawl){0};
+  if (step->count == 0) taylor->regular = taylor->crossing = (struct Stagnation){0};
   double moved = taylor->saved->reach > 0.0 ? move_origin(taylor) : 0.0;
   const char *problem = reason_to_stop(instance, taylor, moved);
   if (problem == NULL) problem = keep_constraints(instance, taylor);
   if (problem == NULL && !expand(instance, taylor, step->length))
     problem = "the motion has a singularity or grows without bound";
   if (problem != NULL) cut_series(taylor);
-  else instance->situation->statistics[STATISTIC_STEPS]++;
+  else instance->fmu_state->statistics[STATISTIC_STEPS]++;
   return problem;
 }
 

@@ -14,8 +14,8 @@ struct TaylorSaved {
   /* Followed by double low[state_count], the rounding error of the state at the origin, and Series x[state_count]. */
 };
 
-/* Stagnation counter: steps of one kind, and their path in units of the scales; reset every CRAWL_STEPS steps. */
-struct Crawl {
+/* Stagnation counter: steps of one kind, and their path in units of the scales; reset every STAGNATION_STEPS steps. */
+struct Stagnation {
   int steps;
   double path;
 };
@@ -33,7 +33,7 @@ struct Taylor {
   bool is_limited;        /* something other than the size of the coefficients limits the step */
   bool crosses;           /* the step crosses a point at which a function has no series */
   struct SeriesRule rule; /* order and step margin for the tolerance */
-  struct Crawl regular, crossing;
+  struct Stagnation regular, crossing;
 };
 
 /* Returns the scale of state variable i: its absolute value at the origin, at least its nominal value. */

@@ -1,4 +1,4 @@
-/* Order and step of the Taylor method, for one run (taylor_reach.c) and for several at once (src/ensemble). */
+/* Order and step of the Taylor method, for one run (taylor_interval.c) and for several at once (src/ensemble). */
 #ifndef TAYLOR_RULE_H
 #define TAYLOR_RULE_H
 
@@ -8,7 +8,9 @@
 #include "lagrangian.h"
 
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
-enum { CRAWL_STEPS = 1000 }; /* steps of one kind: if they move the system by less than the tolerance, it stagnates */
+enum {
+  STAGNATION_STEPS = 1000
+}; /* steps of one kind: if they move the system by less than the tolerance, it stagnates */
 
 /*
  * The defect may exceed (order + 1) * tolerance, where the error equals the tolerance, by this factor. Steps of the
@@ -22,12 +24,12 @@ static const double horizon = 1e4;
 /* Rounding error of the right side in the defect, in units of the last place; and margin of that of the state. */
 static const double rounding = 100.0, rounding_margin = 10.0;
 /* Fractions of the step at which the defect is also measured if the coefficients do not limit the step. */
-static const double places_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
+static const double slots_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
 /* Ratio of consecutive terms at the end of the step: smaller if fast modes limit the step, otherwise larger. */
 enum { FALL_OF_FAST = 3 };
 
-enum { DEFECT_PLACES = sizeof places_of_defects / sizeof *places_of_defects };
+enum { DEFECT_PLACES = sizeof slots_of_defects / sizeof *slots_of_defects };
 
 /* Returns the tolerance of the error in one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static inline double local_tolerance(double tolerance) {

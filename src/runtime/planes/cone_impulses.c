@@ -44,9 +44,9 @@ static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_hold
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
-  const double *mobility = &cones->pushes->mobility[row * cones->pushes->count];
+  const double *delassus = &cones->pushes->delassus[row * cones->pushes->count];
   double rate = cones->rate[row];
-  for (size_t j = 0; j < cones->pushes->count; j++) rate += mobility[j] * cones->impulse[j];
+  for (size_t j = 0; j < cones->pushes->count; j++) rate += delassus[j] * cones->impulse[j];
   return rate;
 }
 
@@ -60,7 +60,7 @@ double cones_limit(const struct Cones *cones, size_t row) {
 
 size_t cones_row_count(const struct Cones *cones, size_t row) {
   const struct Pushes *pushes = cones->pushes;
-  return row >= pushes->contact_count && is_in_plane(cones->settlement->switches, pushes->member[row]) ? 2 : 1;
+  return row >= pushes->contact_count && is_in_plane(cones->resolution->switches, pushes->member[row]) ? 2 : 1;
 }
 
 double cones_largest(const struct Cones *cones) {
@@ -102,7 +102,7 @@ static void sweep_contacts(struct Cones *cones, double part) {
 /* Returns W_ii of a row; in a plane the larger eigenvalue of its 2 x 2 block. */
 static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) {
   size_t n = cones->pushes->count;
-  const double *m = &cones->pushes->mobility[row * n + row];
+  const double *m = &cones->pushes->delassus[row * n + row];
   double scale = m[0];
   if (rows == 2) scale = 0.5 * (m[0] + m[n + 1]) + hypot(0.5 * (m[0] - m[n + 1]), 0.5 * (m[1] + m[n]));
   return scale > DBL_MIN ? scale : 0.0;
@@ -141,12 +141,12 @@ static double come_to_law(struct Cones *cones, int trials, double *best, double 
 }
 
 /* Takes workspace for cones and what solves them; impulses in it if impulse is NULL. NULL if memory is missing. */
-static double *create_cones(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+static double *create_cones(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                             double *impulse, struct Cones *cones) {
-  struct Instance *instance = settlement->instance;
+  struct Instance *instance = resolution->instance;
   size_t n = pushes->count;
   double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cone_newton_work_count(n)) * sizeof *block);
-  *cones = (struct Cones){.settlement = settlement, .pushes = pushes, .rate = rate, .scale = block};
+  *cones = (struct Cones){.resolution = resolution, .pushes = pushes, .rate = rate, .scale = block};
   if (block == NULL) {
     solver_lacks_memory(instance);
     return NULL;
@@ -161,14 +161,14 @@ static bool fulfil_law(struct Cones *cones, double *best, double *swept, double 
   return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->pushes->rounding;
 }
 
-bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool cone_impulses_find(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                         double *impulse) {
   struct Cones cones;
   size_t n = pushes->count;
-  double *work = create_cones(settlement, pushes, rate, impulse, &cones);
+  double *work = create_cones(resolution, pushes, rate, impulse, &cones);
   if (work == NULL) return false;
   bool is_done = fill_scales(&cones) && fulfil_law(&cones, work, work + n, work + 2 * n);
-  scratch_return(settlement->instance, SCRATCH_CONES);
+  scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }
 
@@ -187,17 +187,17 @@ static void fill_start(struct Cones *cones, const double *found, size_t hit, con
   memcpy(start, cones->impulse, cones->pushes->count * sizeof *start);
 }
 
-bool cone_impulses_have_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool cone_impulses_have_others(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                                const double *impulse) {
   struct Cones cones;
   size_t n = pushes->count, starts = sizeof start_directions / sizeof *start_directions;
-  double *work = create_cones(settlement, pushes, rate, NULL, &cones);
+  double *work = create_cones(resolution, pushes, rate, NULL, &cones);
   bool is_other = false, moves = work != NULL && fill_scales(&cones);
   for (size_t i = 0; i < pushes->contact_count * starts && moves && !is_other; i++) {
     fill_start(&cones, impulse, i / starts, start_directions[i % starts], work + n);
     double miss = come_to_law(&cones, OTHER_LAW_TRIALS, work, work + n, work + 2 * n);
     is_other = miss <= law_nearly_holds && is_other_outcome(pushes, cones.impulse, impulse);
   }
-  if (work != NULL) scratch_return(settlement->instance, SCRATCH_CONES);
+  if (work != NULL) scratch_return(resolution->instance, SCRATCH_CONES);
   return is_other;
 }

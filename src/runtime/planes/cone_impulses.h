@@ -8,11 +8,11 @@
  * Implements find_impulses of struct FrictionLaws. impulse[] holds the last trial if none are found. False also if a
  * contact cannot be moved, or memory is missing.
  */
-bool cone_impulses_find(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool cone_impulses_find(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                         double *impulse);
 
 /* Implements has_other_impulses. It searches from several starts, and so may miss some. */
-bool cone_impulses_have_others(const struct Settlement *settlement, const struct Pushes *pushes, const double *rate,
+bool cone_impulses_have_others(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                                const double *impulse);
 
 #endif

@@ -49,7 +49,7 @@ static void fill_rate(const struct ConeNewton *newton, size_t row) {
   double *slope = slope_row(newton, row);
   newton->miss[row] = cones_rate_behind(cones, row);
   for (size_t j = 0; j < newton->n; j++)
-    slope[j] = cones->scale[j] > 0.0 ? cones->pushes->mobility[row * newton->n + j] / cones->scale[j] : 0.0;
+    slope[j] = cones->scale[j] > 0.0 ? cones->pushes->delassus[row * newton->n + j] / cones->scale[j] : 0.0;
 }
 
 /* Fills a row for an impulse that is to be 0; with a scale of 0 the impulse is not determined. */

@@ -5,7 +5,7 @@
 #include "contacts/pushes.h"
 
 struct Cones {
-  const struct Settlement *settlement;
+  const struct Resolution *resolution;
   const struct Pushes *pushes;
   const double *rate; /* of each row, before the impact; of contacts times 1 + e */
   double *impulse;

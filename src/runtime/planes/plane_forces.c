@@ -20,62 +20,62 @@ static const double least_force_share = 1e-9;
 
 /* Rows as in pushes: accelerations without these forces, the forces, and the accelerations with them. */
 struct PlaneForces {
-  struct Settlement *settlement;
+  struct Resolution *resolution;
   struct Pushes pushes;
   double *rate, *force, *behind;
 };
 
 /* True if it is at rest or may be brought to rest. A friction on an open contact moves with it. */
-static bool is_at_rest(const struct Settlement *settlement, const struct PlaneState *state) {
+static bool is_at_rest(const struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS || !plane_moves(state)) return true;
-  return state->has_force && plane_is_slow(settlement, state);
+  return state->has_force && plane_is_slow(resolution, state);
 }
 
 /* Lets slow frictions stick, and projects the velocities. False if that fails. */
-static bool stop_slow(struct Settlement *settlement) {
+static bool stop_slow(struct Resolution *resolution) {
   bool moves = false;
-  for (size_t i = 0; i < settlement->switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    if (!state.has_force || state.is_given || !is_at_rest(settlement, &state)) continue;
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    if (!state.has_force || state.is_given || !is_at_rest(resolution, &state)) continue;
     moves |= state.speed > 0.0;
-    plane_stick(settlement, &state);
+    plane_stick(resolution, &state);
   }
-  return !moves || settlement->occasion == AT_START || settlement_push(settlement);
+  return !moves || resolution->occasion == AT_START || resolution_push(resolution);
 }
 
 /* Selects contacts at rest and frictions, but for frictions along lines that stick: those stay active constraints. */
-static void choose_pushes(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static void choose_pushes(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++)
-    settlement->takes_part[i] = contact_is_at_rest(settlement, i) ? 1.0 : 0.0;
+    resolution->takes_part[i] = contact_is_at_rest(resolution, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    bool holds = friction_sticks(settlement, i) && !is_in_plane(switches, i);
-    settlement->takes_part[switches->contact_count + i] = holds ? 0.0 : 1.0;
+    bool holds = friction_sticks(resolution, i) && !is_in_plane(switches, i);
+    resolution->takes_part[switches->contact_count + i] = holds ? 0.0 : 1.0;
   }
 }
 
 /* Computes the Delassus matrix, and the accelerations without the forces; restores the modes. */
 static bool find_free(struct PlaneForces *forces) {
-  struct Settlement *settlement = forces->settlement;
-  const struct SwitchTable *switches = settlement->switches;
-  settlement_keep_modes(settlement);
+  struct Resolution *resolution = forces->resolution;
+  const struct SwitchTable *switches = resolution->switches;
+  resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (settlement->takes_part[i] != 0.0) set_contact(settlement, i, false);
+    if (resolution->takes_part[i] != 0.0) set_contact(resolution, i, false);
   for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    if (state.mode == PLANE_STICKS && !state.is_given) plane_free(settlement, &state);
+    struct PlaneState state = plane_state(resolution, i);
+    if (state.mode == PLANE_STICKS && !state.is_given) plane_free(resolution, &state);
   }
-  bool is_done = plane_evaluate(settlement) && pushes_create(settlement, &forces->pushes);
-  settlement_restore_modes(settlement);
+  bool is_done = plane_evaluate(resolution) && pushes_create(resolution, &forces->pushes);
+  resolution_restore_modes(resolution);
   return is_done;
 }
 
 static bool slides(const struct PlaneForces *forces, size_t row) {
-  const struct SwitchTable *switches = forces->settlement->switches;
+  const struct SwitchTable *switches = forces->resolution->switches;
   size_t plane = plane_of(switches, forces->pushes.member[row]);
   if (plane == switches->plane_count) return true;
-  struct PlaneState state = plane_state(forces->settlement, plane);
-  return !is_at_rest(forces->settlement, &state);
+  struct PlaneState state = plane_state(forces->resolution, plane);
+  return !is_at_rest(forces->resolution, &state);
 }
 
 /* Eliminates sliding frictions: their forces are added to the effects of the contacts, and their rows become 0. */
@@ -84,24 +84,24 @@ static void join_sliding(struct PlaneForces *forces) {
   size_t n = pushes->count, contacts = pushes->contact_count;
   for (size_t row = contacts; row < n; row++) {
     if (!slides(forces, row)) continue;
-    double share = sliding_share(forces->settlement, pushes->member[row]);
+    double share = sliding_share(forces->resolution, pushes->member[row]);
     for (size_t i = 0; i < n; i++)
       for (size_t j = 0; j < contacts; j++)
-        pushes->mobility[i * n + j] -=
-            share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->mobility[i * n + row];
-    memset(&pushes->mobility[row * n], 0, n * sizeof(double));
+        pushes->delassus[i * n + j] -=
+            share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->delassus[i * n + row];
+    memset(&pushes->delassus[row * n], 0, n * sizeof(double));
     forces->rate[row] = 0.0;
   }
 }
 
 static void fill_rates_of_planes(struct PlaneForces *forces) {
-  const struct Settlement *settlement = forces->settlement;
+  const struct Resolution *resolution = forces->resolution;
   for (size_t row = 0; row < forces->pushes.count; row++) {
     size_t member = forces->pushes.member[row];
     forces->rate[row] =
         row < forces->pushes.contact_count
-            ? contact_value(settlement, member, CONTACT_ACCELERATION)
-            : settlement->value[friction_place(settlement->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
+            ? contact_value(resolution, member, CONTACT_ACCELERATION)
+            : resolution->value[friction_slot(resolution->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
   }
 }
 
@@ -113,7 +113,7 @@ static double fill_behind(struct PlaneForces *forces) {
     forces->behind[i] = forces->rate[i];
     largest = fmax(largest, fabs(forces->rate[i]));
     for (size_t j = 0; j < n; j++) {
-      double part = forces->pushes.mobility[i * n + j] * forces->force[j];
+      double part = forces->pushes.delassus[i * n + j] * forces->force[j];
       forces->behind[i] += part;
       largest = fmax(largest, fabs(part));
     }
@@ -123,43 +123,43 @@ static double fill_behind(struct PlaneForces *forces) {
 
 /* Sets the contacts. One that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
-  struct Settlement *settlement = forces->settlement;
+  struct Resolution *resolution = forces->resolution;
   const struct Pushes *pushes = &forces->pushes;
   for (size_t row = 0; row < pushes->contact_count; row++) {
     size_t contact = pushes->member[row];
-    bool presses = forces->force[row] * pushes->mobility[row * pushes->count + row] > none;
-    bool stays = contact_is_closed(settlement, contact) && forces->behind[row] <= none;
-    set_contact(settlement, contact, presses || stays);
-    settlement->was_opened[contact] = presses || stays ? 0.0 : 1.0;
+    bool presses = forces->force[row] * pushes->delassus[row * pushes->count + row] > none;
+    bool stays = contact_is_closed(resolution, contact) && forces->behind[row] <= none;
+    set_contact(resolution, contact, presses || stays);
+    resolution->was_opened[contact] = presses || stays ? 0.0 : 1.0;
   }
 }
 
 static void set_planes(struct PlaneForces *forces, double none) {
-  struct Settlement *settlement = forces->settlement;
+  struct Resolution *resolution = forces->resolution;
   const struct Pushes *pushes = &forces->pushes;
   for (size_t row = pushes->contact_count; row < pushes->count; row++) {
-    size_t plane = plane_of(settlement->switches, pushes->member[row]);
-    if (plane == settlement->switches->plane_count) continue;
-    struct PlaneState state = plane_state(settlement, plane);
+    size_t plane = plane_of(resolution->switches, pushes->member[row]);
+    if (plane == resolution->switches->plane_count) continue;
+    struct PlaneState state = plane_state(resolution, plane);
     bool is_pressed = false;
     for (size_t i = 0; i < pushes->contact_count; i++)
-      is_pressed |= rests_on(settlement->switches, state.facts->along, pushes->member[i]) &&
-                    contact_is_closed(settlement, pushes->member[i]);
-    if (!is_pressed) plane_free(settlement, &state);
-    else if (slides(forces, row)) plane_slide(settlement, &state);
+      is_pressed |= rests_on(resolution->switches, state.metadata->along, pushes->member[i]) &&
+                    contact_is_closed(resolution, pushes->member[i]);
+    if (!is_pressed) plane_free(resolution, &state);
+    else if (slides(forces, row)) plane_slide(resolution, &state);
     else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
-      plane_head(settlement, &state, &forces->behind[row]);
-    else plane_stick(settlement, &state);
+      plane_head(resolution, &state, &forces->behind[row]);
+    else plane_stick(resolution, &state);
     row++; /* the friction across has the same mode */
   }
 }
 
 static bool find_plane_forces(struct PlaneForces *forces) {
-  struct Settlement *settlement = forces->settlement;
+  struct Resolution *resolution = forces->resolution;
   size_t n = forces->pushes.count;
-  double *block = scratch_take(settlement->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
+  double *block = scratch_take(resolution->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
   if (block == NULL) {
-    solver_lacks_memory(settlement->instance);
+    solver_lacks_memory(resolution->instance);
     return false;
   }
   forces->rate = block;
@@ -168,22 +168,22 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   fill_rates_of_planes(forces);
   join_sliding(forces);
   forces->pushes.rounding = 0.0; /* its unit is that of velocities, not of accelerations */
-  bool is_done = cone_impulses_find(settlement, &forces->pushes, forces->rate, forces->force);
+  bool is_done = cone_impulses_find(resolution, &forces->pushes, forces->rate, forces->force);
   if (is_done) {
     double none = least_force_share * fill_behind(forces);
     set_contacts(forces, none);
     set_planes(forces, none);
   }
-  scratch_return(settlement->instance, SCRATCH_FORCES);
+  scratch_return(resolution->instance, SCRATCH_FORCES);
   return is_done;
 }
 
-bool plane_forces_settle(struct Settlement *settlement) {
-  struct PlaneForces forces = {.settlement = settlement};
-  if (!stop_slow(settlement)) return false;
-  choose_pushes(settlement);
+bool plane_forces_resolve(struct Resolution *resolution) {
+  struct PlaneForces forces = {.resolution = resolution};
+  if (!stop_slow(resolution)) return false;
+  choose_pushes(resolution);
   if (!find_free(&forces)) return false;
   bool is_done = find_plane_forces(&forces);
-  pushes_free(settlement, &forces.pushes);
+  pushes_free(resolution, &forces.pushes);
   return is_done;
 }

@@ -8,6 +8,6 @@
  * Brings slow frictions to rest, solves for the forces of all contacts at rest and the frictions on them at once, and
  * sets their modes. False if there are no such forces, accelerations do not exist, or memory is missing.
  */
-bool plane_forces_settle(struct Settlement *settlement);
+bool plane_forces_resolve(struct Resolution *resolution);
 
 #endif

@@ -24,24 +24,24 @@
 /* Switches of one friction after which all forces at rest are solved for at once. */
 enum { TOGETHER_LIMIT = 20 };
 
-static const char *refuse_directions(const struct Settlement *settlement) {
-  frictions_blame(settlement, "directions");
+static const char *refuse_directions(const struct Resolution *resolution) {
+  frictions_blame(resolution, "directions");
   return "the slip directions of frictions in a plane cannot be found";
 }
 
 /* True if a sliding friction has to be tried to stick. */
-static bool is_stopping(const struct Settlement *settlement, const struct PlaneState *state) {
+static bool is_stopping(const struct Resolution *resolution, const struct PlaneState *state) {
   bool has_slowed = state->has_slowed && state->is_first;
-  if (state->mode == PLANE_STICKS || !plane_is_slow(settlement, state)) return false;
-  if (settlement->occasion == AT_START && state->is_first) return true;
+  if (state->mode == PLANE_STICKS || !plane_is_slow(resolution, state)) return false;
+  if (resolution->occasion == AT_START && state->is_first) return true;
   if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_turned_back;
   return state->mode == PLANE_HEADS && (state->ahead <= -state->lower || has_slowed);
 }
 
 /* True if a sliding friction needs other bounds on its speed, or another slip direction. */
-static bool is_sliding_otherwise(const struct Settlement *settlement, const struct PlaneState *state) {
+static bool is_sliding_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
   double rising = state->mode == PLANE_HEADS ? state->aside : state->speed;
-  if (settlement->occasion == AT_START && state->is_first) return true;
+  if (resolution->occasion == AT_START && state->is_first) return true;
   if (state->upper > 0.0 && (rising >= state->upper || (state->has_sped && state->is_first))) return true;
   if (state->has_slowed && state->is_first) return true;
   if (state->mode == PLANE_HEADS) return state->ahead <= -state->lower;
@@ -49,173 +49,175 @@ static bool is_sliding_otherwise(const struct Settlement *settlement, const stru
 }
 
 /* True if a sticking friction needs more than its stiction. */
-static bool is_overcome(const struct Settlement *settlement, const struct PlaneState *state) {
-  bool is_reached = state->has_slowed && state->is_first && !settlement->jumped;
+static bool is_overcome(const struct Resolution *resolution, const struct PlaneState *state) {
+  bool is_reached = state->has_slowed && state->is_first && !resolution->jumped;
   return state->mode == PLANE_STICKS && (state->needed > state->stiction || is_reached);
 }
 
 /* Lets a sticking friction slide if it moves, as after an impact, or if it needs more than its stiction. True if so. */
-static bool leave_rest(struct Settlement *settlement, const struct PlaneState *state) {
-  if (!(state->speed > state->small || is_overcome(settlement, state))) return false;
-  if (plane_moves(state)) plane_slide(settlement, state);
-  else plane_head(settlement, state, state->force);
-  plane_count_switch(settlement, state);
+static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
+  if (!(state->speed > state->small || is_overcome(resolution, state))) return false;
+  if (plane_moves(state)) plane_slide(resolution, state);
+  else plane_head(resolution, state, state->force);
+  plane_count_switch(resolution, state);
   return true;
 }
 
 /* True if a prescribed velocity leaves rest, or passes through it. */
-static bool departs(const struct Settlement *settlement, const struct PlaneState *state) {
-  const double *noise = &settlement->noise[friction_place(settlement->switches, state->facts->along, FRICTION_RATE)];
+static bool departs(const struct Resolution *resolution, const struct PlaneState *state) {
+  const double *error_bound =
+      &resolution->error_bound[friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE)];
   bool speeds = state->velocity[0] * state->rate[0] + state->velocity[1] * state->rate[1] >= 0.0;
-  bool has_rate = fabs(state->rate[0]) > noise[0] || fabs(state->rate[1]) > noise[FRICTION_VALUES];
+  bool has_rate = fabs(state->rate[0]) > error_bound[0] || fabs(state->rate[1]) > error_bound[FRICTION_VALUES];
   return (state->has_slowed && state->is_first) || state->speed > state->lower || (speeds && has_rate);
 }
 
 /* Handles a friction with a prescribed velocity: at rest it has no force, else it slides. True if its mode changes. */
-static bool follow_given(struct Settlement *settlement, const struct PlaneState *state) {
+static bool follow_given(struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS) {
-    if (!departs(settlement, state)) return false;
-    if (plane_moves(state)) plane_slide(settlement, state);
-    else plane_head(settlement, state, state->rate);
+    if (!departs(resolution, state)) return false;
+    if (plane_moves(state)) plane_slide(resolution, state);
+    else plane_head(resolution, state, state->rate);
   } else {
-    if (!is_stopping(settlement, state) && !is_sliding_otherwise(settlement, state)) return false;
-    if (plane_moves(state)) plane_slide(settlement, state);
-    else plane_stick(settlement, state);
+    if (!is_stopping(resolution, state) && !is_sliding_otherwise(resolution, state)) return false;
+    if (plane_moves(state)) plane_slide(resolution, state);
+    else plane_stick(resolution, state);
   }
-  plane_count_switch(settlement, state);
+  plane_count_switch(resolution, state);
   return true;
 }
 
 /* Handles a friction that loses its force, or has one again. True if its mode changes. */
-static bool change_force(struct Settlement *settlement, const struct PlaneState *state) {
+static bool change_force(struct Resolution *resolution, const struct PlaneState *state) {
   if (state->is_free != state->has_force) return false;
-  if (!state->has_force) plane_free(settlement, state);
-  else if (plane_moves(state)) plane_slide(settlement, state);
-  else plane_stick(settlement, state);
-  plane_count_switch(settlement, state);
+  if (!state->has_force) plane_free(resolution, state);
+  else if (plane_moves(state)) plane_slide(resolution, state);
+  else plane_stick(resolution, state);
+  plane_count_switch(resolution, state);
   return true;
 }
 
 /* Updates the bounds and the direction of a sliding friction. True if it had to. */
-static bool change_slide(struct Settlement *settlement, const struct PlaneState *state) {
-  if (!is_sliding_otherwise(settlement, state)) return false;
-  plane_slide(settlement, state);
-  plane_count_switch(settlement, state);
+static bool change_slide(struct Resolution *resolution, const struct PlaneState *state) {
+  if (!is_sliding_otherwise(resolution, state)) return false;
+  plane_slide(resolution, state);
+  plane_count_switch(resolution, state);
   return true;
 }
 
 /*
  * Sets modes from the forces of all at once, once an event resolution. False if there are none, or it was done before.
  */
-static bool settle_together(struct Settlement *settlement) {
-  if (settlement->has_found_forces) return false;
-  settlement->has_found_forces = true;
-  return plane_forces_settle(settlement);
+static bool resolve_together(struct Resolution *resolution) {
+  if (resolution->has_found_forces) return false;
+  resolution->has_found_forces = true;
+  return plane_forces_resolve(resolution);
 }
 
 /*
  * Finds the slip directions of frictions that begin to slide; sets *again if any turns, or sticks because it
  * accelerates along none. Returns NULL, or the reason why the motion cannot go on.
  */
-static const char *act_on_headings(struct Settlement *settlement, bool *again) {
+static const char *act_on_headings(struct Resolution *resolution, bool *again) {
   bool heads = false;
-  size_t stays = settlement->switches->plane_count;
-  for (size_t i = 0; i < settlement->switches->plane_count; i++)
-    heads |= plane_state(settlement, i).mode == PLANE_HEADS;
+  size_t stays = resolution->switches->plane_count;
+  for (size_t i = 0; i < resolution->switches->plane_count; i++)
+    heads |= plane_state(resolution, i).mode == PLANE_HEADS;
   if (!heads) return NULL;
-  if (!plane_headings_find(settlement, again, &stays)) {
+  if (!plane_headings_find(resolution, again, &stays)) {
     *again = true;
-    return settle_together(settlement) ? NULL : refuse_directions(settlement);
+    return resolve_together(resolution) ? NULL : refuse_directions(resolution);
   }
-  if (stays == settlement->switches->plane_count) return NULL;
+  if (stays == resolution->switches->plane_count) return NULL;
   *again = true;
-  struct PlaneState state = plane_state(settlement, stays);
-  plane_stick(settlement, &state);
-  plane_count_switch(settlement, &state);
+  struct PlaneState state = plane_state(resolution, stays);
+  plane_stick(resolution, &state);
+  plane_count_switch(resolution, &state);
   return NULL;
 }
 
 /* Returns a friction in a plane that has switched more often than that; friction_count for none. */
-static size_t find_flipping(const struct Settlement *settlement, double often) {
-  const struct SwitchTable *switches = settlement->switches;
+static size_t find_flipping(const struct Resolution *resolution, double often) {
+  const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->plane_count; i++)
-    if (settlement->flips[friction_indicator(switches, switches->planes[i].along)] > often)
+    if (resolution->flips[friction_indicator(switches, switches->planes[i].along)] > often)
       return switches->planes[i].along;
   return switches->friction_count;
 }
 
 /* Lets frictions at rest share the load of one that exceeds its stiction. True if there is such a one. */
-static bool share_loads(struct Settlement *settlement) {
+static bool share_loads(struct Resolution *resolution) {
   bool shares = false;
-  for (size_t i = 0; i < settlement->switches->plane_count && !shares; i++) {
-    struct PlaneState state = plane_state(settlement, i);
+  for (size_t i = 0; i < resolution->switches->plane_count && !shares; i++) {
+    struct PlaneState state = plane_state(resolution, i);
     bool rests = state.has_force && !state.is_given && !(state.speed > state.small);
-    shares = rests && is_overcome(settlement, &state) && plane_loads_share(settlement, i);
+    shares = rests && is_overcome(resolution, &state) && plane_loads_share(resolution, i);
   }
   return shares;
 }
 
-static const char *act_on_planes(struct Settlement *settlement, bool *again) {
+static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   bool stops = false;
-  *again = share_loads(settlement);
+  *again = share_loads(resolution);
   if (*again) return NULL;
-  for (size_t i = 0; i < settlement->switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    if (state.is_free || !state.has_force) *again |= change_force(settlement, &state);
-    else if (state.is_given) *again |= follow_given(settlement, &state);
-    else if (is_stopping(settlement, &state)) stops = true;
-    else *again |= state.mode == PLANE_STICKS ? leave_rest(settlement, &state) : change_slide(settlement, &state);
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    if (state.is_free || !state.has_force) *again |= change_force(resolution, &state);
+    else if (state.is_given) *again |= follow_given(resolution, &state);
+    else if (is_stopping(resolution, &state)) stops = true;
+    else *again |= state.mode == PLANE_STICKS ? leave_rest(resolution, &state) : change_slide(resolution, &state);
   }
   if (*again) return NULL;
   if (stops) {
     *again = true;
-    return planes_stop(settlement) || settle_together(settlement) ? NULL : refuse_directions(settlement);
+    return planes_stop(resolution) || resolve_together(resolution) ? NULL : refuse_directions(resolution);
   }
-  return act_on_headings(settlement, again);
+  return act_on_headings(resolution, again);
 }
 
-static const char *act(struct Settlement *settlement, bool *again) {
-  const char *problem = frictions_act(settlement, again);
-  bool goes_round = find_flipping(settlement, TOGETHER_LIMIT) < settlement->switches->friction_count;
-  if (problem == NULL && !*again && goes_round && settle_together(settlement)) *again = true;
-  else if (problem == NULL && !*again) problem = act_on_planes(settlement, again);
-  size_t flipping = find_flipping(settlement, FRICTION_FLIP_LIMIT);
-  if (problem == NULL && flipping < settlement->switches->friction_count) return frictions_refuse(settlement, flipping);
+static const char *act(struct Resolution *resolution, bool *again) {
+  const char *problem = frictions_act(resolution, again);
+  bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
+  if (problem == NULL && !*again && goes_round && resolve_together(resolution)) *again = true;
+  else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
+  size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
+  if (problem == NULL && flipping < resolution->switches->friction_count) return frictions_refuse(resolution, flipping);
   return problem;
 }
 
-static void set_plane(struct Settlement *settlement, size_t plane, bool slides) {
-  struct PlaneState state = plane_state(settlement, plane);
-  const double heading[] = {mode_of(settlement, state.facts->heading[0]), mode_of(settlement, state.facts->heading[1])};
-  if (!slides) plane_stick(settlement, &state);
-  else if (plane_moves(&state)) plane_slide(settlement, &state);
-  else plane_head(settlement, &state, heading);
+static void set_plane(struct Resolution *resolution, size_t plane, bool slides) {
+  struct PlaneState state = plane_state(resolution, plane);
+  const double heading[] = {mode_of(resolution, state.metadata->heading[0]),
+                            mode_of(resolution, state.metadata->heading[1])};
+  if (!slides) plane_stick(resolution, &state);
+  else if (plane_moves(&state)) plane_slide(resolution, &state);
+  else plane_head(resolution, &state, heading);
 }
 
 /* Before the start they move freely or slide, with the direction along: there is no slip direction yet. */
 static void guess(struct Instance *instance) {
-  struct Settlement settlement = settlement_of(instance);
-  const struct SwitchTable *switches = settlement.switches;
+  struct Resolution resolution = resolution_of(instance);
+  const struct SwitchTable *switches = resolution.switches;
   struct Point point = instance_point(instance);
   double *parameter = instance->parameter;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    const struct PlaneState state = {.facts = &switches->planes[i]};
-    plane_free(&settlement, &state);
-    parameter[state.facts->heading[0]] = 1.0;
-    parameter[state.facts->heading[1]] = 0.0;
+    const struct PlaneState state = {.metadata = &switches->planes[i]};
+    plane_free(&resolution, &state);
+    parameter[state.metadata->heading[0]] = 1.0;
+    parameter[state.metadata->heading[1]] = 0.0;
   }
   size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
-  memset(settlement.acceleration, 0, rows * sizeof *settlement.acceleration);
-  if (lagrangian.prepare(parameter, instance->prepared) != 0) return;
-  switches->switching_values(&point, settlement.acceleration, settlement.value);
+  memset(resolution.acceleration, 0, rows * sizeof *resolution.acceleration);
+  if (lagrangian.prepare(parameter, instance->parameter_constants) != 0) return;
+  switches->switching_values(&point, resolution.acceleration, resolution.value);
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along;
-    if (speed_in_plane(&settlement, along) > 0.0) parameter[switches->frictions[along].mode] = PLANE_SLIDES;
+    if (speed_in_plane(&resolution, along) > 0.0) parameter[switches->frictions[along].mode] = PLANE_SLIDES;
   }
 }
 
 const struct FrictionLaws plane_friction_laws = {.act = act,
-                                                 .tell = frictions_tell,
+                                                 .report = frictions_report,
                                                  .blame = frictions_blame,
                                                  .check = frictions_check,
                                                  .release = frictions_release,

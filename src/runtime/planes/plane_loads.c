@@ -25,48 +25,48 @@ static const double share_at_limit = 1e-9;
 static const double weak_share = 0.01;
 
 struct PlaneLoads {
-  struct Settlement *settlement;
-  size_t n;       /* number of coordinates */
-  size_t count;   /* number of planes that take part */
-  double *lever;  /* generalized forces of unit forces: 2 rows for each plane of the table */
-  double *buffer; /* for a response, and the impulse that causes it */
-  double *member; /* for each plane of the table: 1 if it takes part, else 0 */
+  struct Resolution *resolution;
+  size_t n;             /* number of coordinates */
+  size_t count;         /* number of planes that take part */
+  double *jacobian_row; /* generalized forces of unit forces: 2 rows for each plane of the table */
+  double *buffer;       /* for a response, and the impulse that causes it */
+  double *member;       /* for each plane of the table: 1 if it takes part, else 0 */
 };
 
 static bool carries(const struct PlaneLoads *loads, size_t plane) {
-  struct PlaneState state = plane_state(loads->settlement, plane);
+  struct PlaneState state = plane_state(loads->resolution, plane);
   bool is_slow = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
-  bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->settlement, &state));
+  bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->resolution, &state));
   return rests && !state.is_given && state.stiction > 0.0 && state.sliding > 0.0;
 }
 
 static size_t count_carrying(const struct PlaneLoads *loads) {
   size_t count = 0;
-  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) count += carries(loads, i) ? 1 : 0;
+  for (size_t i = 0; i < loads->resolution->switches->plane_count; i++) count += carries(loads, i) ? 1 : 0;
   return count;
 }
 
 /* Fills the generalized forces. False if M is singular. */
-static bool fill_levers(const struct PlaneLoads *loads) {
-  struct Instance *instance = loads->settlement->instance;
-  const struct SwitchTable *switches = loads->settlement->switches;
+static bool fill_jacobian_rows(const struct PlaneLoads *loads) {
+  struct Instance *instance = loads->resolution->instance;
+  const struct SwitchTable *switches = loads->resolution->switches;
   size_t n = loads->n;
   double *response = loads->buffer, *impulse = response + 2 * n;
-  struct Point point = solver_point(instance, loads->settlement->time, loads->settlement->state);
+  struct Point point = solver_point(instance, loads->resolution->time, loads->resolution->state);
   for (size_t row = 0; row < 2 * switches->plane_count; row++) {
     if (!carries(loads, row / 2)) continue;
-    size_t place = n + switches->frictions[switches->planes[row / 2].along + row % 2].constraint;
-    impulse[place] = 1.0;
+    size_t slot = n + switches->frictions[switches->planes[row / 2].along + row % 2].constraint;
+    impulse[slot] = 1.0;
     instance->singular = lagrangian.constraints.respond(&point, impulse, response);
-    impulse[place] = 0.0;
+    impulse[slot] = 0.0;
     if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
-    memcpy(loads->lever + row * n, response + n, n * sizeof *response);
+    memcpy(loads->jacobian_row + row * n, response + n, n * sizeof *response);
   }
   return true;
 }
 
 static bool push_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
-  const double *one = loads->lever + 2 * i * loads->n, *other = loads->lever + 2 * j * loads->n;
+  const double *one = loads->jacobian_row + 2 * i * loads->n, *other = loads->jacobian_row + 2 * j * loads->n;
   bool same = false;
   for (size_t k = 0; k < loads->n; k++)
     same |= (one[k] != 0.0 || one[loads->n + k] != 0.0) && (other[k] != 0.0 || other[loads->n + k] != 0.0);
@@ -75,7 +75,7 @@ static bool push_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
 
 /* Collects the planes that act on the same coordinates as the first one, directly or through others. */
 static void collect_members(struct PlaneLoads *loads, size_t first) {
-  size_t count = loads->settlement->switches->plane_count;
+  size_t count = loads->resolution->switches->plane_count;
   loads->member[first] = 1.0;
   loads->count = 1;
   for (bool grows = true; grows;) {
@@ -92,14 +92,14 @@ static void collect_members(struct PlaneLoads *loads, size_t first) {
 
 static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
   size_t next = 0;
-  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
+  for (size_t i = 0; i < loads->resolution->switches->plane_count; i++) {
     if (loads->member[i] == 0.0) continue;
-    struct PlaneState state = plane_state(loads->settlement, i);
+    struct PlaneState state = plane_state(loads->resolution, i);
     for (size_t side = 0; side < 2; side++) {
       load->share[2 * next + side] = state.force[side] / state.stiction;
       for (size_t k = 0; k < loads->n; k++)
-        load->lever[k * 2 * load->count + 2 * next + side] =
-            state.stiction * loads->lever[(2 * i + side) * loads->n + k];
+        load->jacobian_row[k * 2 * load->count + 2 * next + side] =
+            state.stiction * loads->jacobian_row[(2 * i + side) * loads->n + k];
     }
     next++;
   }
@@ -108,12 +108,12 @@ static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
 /* Applies the forces that were found. slides: those at their limits begin to slide against them. */
 static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad *load, bool slides) {
   size_t next = 0;
-  for (size_t i = 0; i < loads->settlement->switches->plane_count; i++) {
+  for (size_t i = 0; i < loads->resolution->switches->plane_count; i++) {
     if (loads->member[i] == 0.0) continue;
-    struct PlaneState state = plane_state(loads->settlement, i);
+    struct PlaneState state = plane_state(loads->resolution, i);
     const double *share = load->share + 2 * next, force[] = {share[0] * state.stiction, share[1] * state.stiction};
-    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_head(loads->settlement, &state, force);
-    else plane_carry(loads->settlement, &state, force);
+    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_head(loads->resolution, &state, force);
+    else plane_carry(loads->resolution, &state, force);
     next++;
   }
 }
@@ -123,25 +123,25 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
  * velocities: constraints would take too much of a changing load again and again. False if that cannot be determined.
  */
 static bool let_weak_push(const struct PlaneLoads *loads) {
-  struct Settlement *settlement = loads->settlement;
+  struct Resolution *resolution = loads->resolution;
   double most = 0.0;
-  for (size_t i = 0; i < settlement->switches->plane_count; i++)
-    if (loads->member[i] != 0.0) most = fmax(most, plane_state(settlement, i).stiction);
+  for (size_t i = 0; i < resolution->switches->plane_count; i++)
+    if (loads->member[i] != 0.0) most = fmax(most, plane_state(resolution, i).stiction);
   bool is_told = true;
-  for (size_t i = 0; i < settlement->switches->plane_count && is_told; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    bool is_held = false, is_weak = state.stiction < weak_share * most && plane_has_part(settlement, &state);
+  for (size_t i = 0; i < resolution->switches->plane_count && is_told; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    bool is_held = false, is_weak = state.stiction < weak_share * most && plane_has_part(resolution, &state);
     if (loads->member[i] == 0.0 || !is_weak) continue;
-    plane_push(settlement, &state);
-    is_told = frictions_find_held(settlement, state.facts->along, &is_held);
-    if (!is_held) plane_hold(settlement, &state);
+    plane_push(resolution, &state);
+    is_told = frictions_find_held(resolution, state.metadata->along, &is_held);
+    if (!is_held) plane_hold(resolution, &state);
   }
   return is_told;
 }
 
 /* Distributes the load of the planes that take part. False if that is impossible. */
 static bool share_load(const struct PlaneLoads *loads) {
-  struct Instance *instance = loads->settlement->instance;
+  struct Instance *instance = loads->resolution->instance;
   void *block = scratch_take(instance, SCRATCH_SHARES, shared_load_bytes(loads->n, loads->count));
   if (block == NULL) {
     solver_lacks_memory(instance);
@@ -155,26 +155,26 @@ static bool share_load(const struct PlaneLoads *loads) {
   return sharing == LOAD_IS_AT_LIMIT || (sharing == LOAD_IS_SHARED && let_weak_push(loads));
 }
 
-bool plane_loads_share(struct Settlement *settlement, size_t plane) {
-  const struct SwitchTable *switches = settlement->switches;
-  struct PlaneLoads loads = {.settlement = settlement, .n = lagrangian.coordinate_count};
-  struct PlaneState state = plane_state(settlement, plane);
-  bool is_tired = settlement->flips[friction_indicator(switches, state.facts->along)] >= SHARE_LIMIT;
+bool plane_loads_share(struct Resolution *resolution, size_t plane) {
+  const struct SwitchTable *switches = resolution->switches;
+  struct PlaneLoads loads = {.resolution = resolution, .n = lagrangian.coordinate_count};
+  struct PlaneState state = plane_state(resolution, plane);
+  bool is_tired = resolution->flips[friction_indicator(switches, state.metadata->along)] >= SHARE_LIMIT;
   if (is_tired || !carries(&loads, plane) || count_carrying(&loads) < 2) return false;
-  if (lagrangian.constraints.respond == NULL || evaluate_prepare(settlement->instance) != STATUS_DONE) return false;
-  size_t levers = 2 * switches->plane_count * loads.n, buffer = 3 * loads.n + lagrangian.constraints.count;
-  loads.lever = scratch_take(settlement->instance, SCRATCH_LEVERS,
-                             (levers + buffer + switches->plane_count) * sizeof *loads.lever);
-  if (loads.lever == NULL) {
-    solver_lacks_memory(settlement->instance);
+  if (lagrangian.constraints.respond == NULL || evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  size_t jacobian_rows = 2 * switches->plane_count * loads.n, buffer = 3 * loads.n + lagrangian.constraints.count;
+  loads.jacobian_row = scratch_take(resolution->instance, SCRATCH_JACOBIAN_ROWS,
+                                    (jacobian_rows + buffer + switches->plane_count) * sizeof *loads.jacobian_row);
+  if (loads.jacobian_row == NULL) {
+    solver_lacks_memory(resolution->instance);
     return false;
   }
-  loads.buffer = loads.lever + levers;
+  loads.buffer = loads.jacobian_row + jacobian_rows;
   loads.member = loads.buffer + buffer;
-  bool is_done = fill_levers(&loads);
+  bool is_done = fill_jacobian_rows(&loads);
   if (is_done) collect_members(&loads, plane);
   is_done = is_done && loads.count > 1 && share_load(&loads);
-  if (is_done) plane_count_switch(settlement, &state);
-  scratch_return(settlement->instance, SCRATCH_LEVERS);
+  if (is_done) plane_count_switch(resolution, &state);
+  scratch_return(resolution->instance, SCRATCH_JACOBIAN_ROWS);
   return is_done;
 }

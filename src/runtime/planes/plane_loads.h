@@ -9,6 +9,6 @@
  * or those at their limits begin to slide. False if it has no others, if every distribution exceeds the limits, or
  * after SHARE_LIMIT switches of it in an event.
  */
-bool plane_loads_share(struct Settlement *settlement, size_t plane);
+bool plane_loads_share(struct Resolution *resolution, size_t plane);
 
 #endif

@@ -23,21 +23,21 @@ static const double rounding_share = 1e-11;
 static const double same_heading = 1e-9, least_sector = 1e-15;
 
 struct Heading {
-  struct Settlement *settlement;
+  struct Resolution *resolution;
   size_t plane;
-  bool is_known;       /* false once accelerations did not exist */
-  double ahead, noise; /* acceleration along the direction that was tried last; its rounding error */
+  bool is_known;             /* false once accelerations did not exist */
+  double ahead, error_bound; /* acceleration along the direction that was tried last; its rounding error */
 };
 
 /* Returns the acceleration across a direction, positive to the left: the velocity turns that way. */
 static double turn_at(struct Heading *heading, double angle) {
-  struct Settlement *settlement = heading->settlement;
-  const struct PlaneFacts *facts = &settlement->switches->planes[heading->plane];
+  struct Resolution *resolution = heading->resolution;
+  const struct PlaneMetadata *metadata = &resolution->switches->planes[heading->plane];
   double c = cos(angle), s = sin(angle);
-  settlement_set_mode(settlement, facts->heading[0], c);
-  settlement_set_mode(settlement, facts->heading[1], s);
-  heading->is_known = heading->is_known && plane_evaluate(settlement);
-  struct PlaneState state = plane_state(settlement, heading->plane);
+  resolution_set_mode(resolution, metadata->heading[0], c);
+  resolution_set_mode(resolution, metadata->heading[1], s);
+  heading->is_known = heading->is_known && plane_evaluate(resolution);
+  struct PlaneState state = plane_state(resolution, heading->plane);
   heading->ahead = c * state.rate[0] + s * state.rate[1];
   return c * state.rate[1] - s * state.rate[0];
 }
@@ -71,16 +71,16 @@ static bool leaves_between(struct Heading *heading, double from, double turn, do
   if (!(turn > 0.0 && turn_behind <= 0.0)) return false;
   *found = refine_heading(heading, from, turn, to, turn_behind);
   turn_at(heading, *found);
-  return heading->ahead >= -heading->noise;
+  return heading->ahead >= -heading->error_bound;
 }
 
 /* Measures the effect of friction: half a turn changes the acceleration by twice as much; by 0 along constraints. */
 static void measure_friction(struct Heading *heading, double angle) {
   const double half_turn = acos(-1.0);
-  heading->noise = 0.0;
+  heading->error_bound = 0.0;
   for (int i = 0; i < 2; i++, angle += 0.5 * half_turn) {
     double turn = turn_at(heading, angle), ahead = heading->ahead, back = turn_at(heading, angle + half_turn);
-    heading->noise = fmax(heading->noise, rounding_share * hypot(turn + back, ahead + heading->ahead));
+    heading->error_bound = fmax(heading->error_bound, rounding_share * hypot(turn + back, ahead + heading->ahead));
   }
 }
 
@@ -88,7 +88,7 @@ static void measure_friction(struct Heading *heading, double angle) {
 static double nearest_heading(struct Heading *heading, double first) {
   measure_friction(heading, first);
   double sector = 2.0 * acos(-1.0) / SECTORS, turn = turn_at(heading, first), left = turn, right = turn, found = NAN;
-  if (fabs(turn) <= heading->noise) return heading->ahead >= -heading->noise ? first : NAN;
+  if (fabs(turn) <= heading->error_bound) return heading->ahead >= -heading->error_bound ? first : NAN;
   for (int i = 0; i < SECTORS / 2; i++) {
     double near = i * sector, far = near + sector;
     double next = turn_at(heading, first + far);
@@ -102,21 +102,21 @@ static double nearest_heading(struct Heading *heading, double first) {
 }
 
 /* True if its direction is to be found; if others constrain its velocity, it keeps its direction. */
-static bool turns(struct Settlement *settlement, const struct PlaneState *state) {
+static bool turns(struct Resolution *resolution, const struct PlaneState *state) {
   bool is_held = false;
   if (state->mode != PLANE_HEADS || state->is_given || state->speed > state->upper) return false;
-  return !frictions_find_held(settlement, state->facts->along, &is_held) || !is_held;
+  return !frictions_find_held(resolution, state->metadata->along, &is_held) || !is_held;
 }
 
 /* Makes a sweep over all. *largest: largest rotation, in rad; *stays as above. False if accelerations do not exist. */
-static bool turn_all(struct Settlement *settlement, double *largest, size_t *stays) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool turn_all(struct Resolution *resolution, double *largest, size_t *stays) {
+  const struct SwitchTable *switches = resolution->switches;
   *largest = 0.0;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    if (!turns(settlement, &state)) continue;
-    struct Heading heading = {.settlement = settlement, .plane = i, .is_known = true};
-    double c = mode_of(settlement, state.facts->heading[0]), s = mode_of(settlement, state.facts->heading[1]);
+    struct PlaneState state = plane_state(resolution, i);
+    if (!turns(resolution, &state)) continue;
+    struct Heading heading = {.resolution = resolution, .plane = i, .is_known = true};
+    double c = mode_of(resolution, state.metadata->heading[0]), s = mode_of(resolution, state.metadata->heading[1]);
     double first = atan2(s, c), found = nearest_heading(&heading, first);
     if (!heading.is_known) return false;
     if (isnan(found)) {
@@ -129,16 +129,16 @@ static bool turn_all(struct Settlement *settlement, double *largest, size_t *sta
   return true;
 }
 
-bool plane_headings_find(struct Settlement *settlement, bool *changed, size_t *stays) {
+bool plane_headings_find(struct Resolution *resolution, bool *changed, size_t *stays) {
   double largest = INFINITY;
-  bool was_changed = settlement->changed;
+  bool was_changed = resolution->changed;
   *changed = false;
-  *stays = settlement->switches->plane_count;
+  *stays = resolution->switches->plane_count;
   for (int count = 0; count < TURN_LIMIT && largest > same_heading; count++) {
-    if (!turn_all(settlement, &largest, stays)) return false;
-    if (*stays < settlement->switches->plane_count) return true;
+    if (!turn_all(resolution, &largest, stays)) return false;
+    if (*stays < resolution->switches->plane_count) return true;
     *changed |= largest > same_heading;
   }
-  settlement->changed = was_changed || *changed;
+  resolution->changed = was_changed || *changed;
   return largest <= same_heading;
 }

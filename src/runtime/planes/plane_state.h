@@ -11,7 +11,7 @@
 enum PlaneMode { PLANE_HEADS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
 
 struct PlaneState {
-  const struct PlaneFacts *facts;
+  const struct PlaneMetadata *metadata;
   int mode;
   double speed, stiction, sliding;  /* speed; largest static and kinetic friction force */
   bool has_force;                   /* false: its contacts have no force, nothing sticks */
@@ -32,7 +32,7 @@ struct PlaneState {
   bool is_first;        /* it has not switched in this event resolution */
 };
 
-struct PlaneState plane_state(const struct Settlement *settlement, size_t plane);
+struct PlaneState plane_state(const struct Resolution *resolution, size_t plane);
 
 /* True if it slides faster than counts as 0. */
 static inline bool plane_moves(const struct PlaneState *state) {
@@ -40,40 +40,40 @@ static inline bool plane_moves(const struct PlaneState *state) {
 }
 
 /* True if it may be brought to rest at once; at the start only if its speed counts as 0. */
-bool plane_is_slow(const struct Settlement *settlement, const struct PlaneState *state);
+bool plane_is_slow(const struct Resolution *resolution, const struct PlaneState *state);
 
 /* Evaluates the values for the present modes; false if accelerations do not exist. */
-bool plane_evaluate(struct Settlement *settlement);
+bool plane_evaluate(struct Resolution *resolution);
 
 /* Counts a switch of the friction. */
-void plane_count_switch(struct Settlement *settlement, const struct PlaneState *state);
+void plane_count_switch(struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets it stick by its constraint alone. If forces are not unique, the constraint carries a share of the least norm. */
-void plane_stick(struct Settlement *settlement, const struct PlaneState *state);
+void plane_stick(struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets it stick with a given force; its constraint carries what is left of the load. */
-void plane_carry(struct Settlement *settlement, const struct PlaneState *state, const double force[2]);
+void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]);
 
 /*
  * plane_push: keeps its given force as a friction force without a constraint, while others constrain its velocity.
  * plane_hold: lets it stick again, with the same given force.
  */
-void plane_push(struct Settlement *settlement, const struct PlaneState *state);
-void plane_hold(struct Settlement *settlement, const struct PlaneState *state);
+void plane_push(struct Resolution *resolution, const struct PlaneState *state);
+void plane_hold(struct Resolution *resolution, const struct PlaneState *state);
 
 /* True if its given force is less than the kinetic friction force, and so not that of sliding. */
-bool plane_has_part(const struct Settlement *settlement, const struct PlaneState *state);
+bool plane_has_part(const struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets it slide until it is slow; a slow one until it is much slower or faster than at present. */
-void plane_slide(struct Settlement *settlement, const struct PlaneState *state);
+void plane_slide(struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets it move without force. */
-void plane_free(struct Settlement *settlement, const struct PlaneState *state);
+void plane_free(struct Resolution *resolution, const struct PlaneState *state);
 
 /*
  * Lets it slide from rest along a direction, of any length, until it goes back or aside. A direction of 0 keeps the
  * last one.
  */
-void plane_head(struct Settlement *settlement, const struct PlaneState *state, const double heading[2]);
+void plane_head(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]);
 
 #endif

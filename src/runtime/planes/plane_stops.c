@@ -13,7 +13,7 @@
 #include "planes/plane_loads.h"
 
 /*
- * Values of settlement->takes_part for frictions; 0 for those that are not tried. is_tried: it sticks for a trial.
+ * Values of resolution->takes_part for frictions; 0 for those that are not tried. is_tried: it sticks for a trial.
  * has_no_hold: its constraint cannot stop the motion, as that of a slider at the dead centre of its crank.
  */
 static const double is_tried = 1.0, has_no_hold = 2.0;
@@ -22,35 +22,35 @@ static const double is_tried = 1.0, has_no_hold = 2.0;
 static const double hopeless = 1e6;
 
 /* Lets all slow frictions stick for a trial. */
-static void try_all(struct Settlement *settlement) {
-  for (size_t i = 0; i < settlement->switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    bool tries = state.mode != PLANE_STICKS && !state.is_given && plane_is_slow(settlement, &state);
-    settlement->takes_part[settlement->switches->contact_count + state.facts->along] = tries ? is_tried : 0.0;
-    if (tries) plane_stick(settlement, &state);
-    if (tries) plane_count_switch(settlement, &state);
+static void try_all(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    bool tries = state.mode != PLANE_STICKS && !state.is_given && plane_is_slow(resolution, &state);
+    resolution->takes_part[resolution->switches->contact_count + state.metadata->along] = tries ? is_tried : 0.0;
+    if (tries) plane_stick(resolution, &state);
+    if (tries) plane_count_switch(resolution, &state);
   }
 }
 
 /* True if its velocity changes although it sticks. */
-static bool goes_on(const struct Settlement *settlement, const struct PlaneState *state) {
+static bool goes_on(const struct Resolution *resolution, const struct PlaneState *state) {
   double largest = 0.0;
   for (size_t i = 0; i < 2; i++) {
-    size_t place = friction_place(settlement->switches, state->facts->along + i, FRICTION_RATE);
-    largest = fmax(largest, settlement->largest[place]);
+    size_t slot = friction_slot(resolution->switches, state->metadata->along + i, FRICTION_RATE);
+    largest = fmax(largest, resolution->largest[slot]);
   }
   return hypot(state->rate[0], state->rate[1]) > friction_held_share * largest;
 }
 
 /* Returns the tried friction that exceeds its stiction most; plane_count for none. */
-static size_t find_overcome(const struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static size_t find_overcome(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   size_t found = switches->plane_count;
   double most = 0.0;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    bool takes_part = settlement->takes_part[switches->contact_count + state.facts->along] != 0.0;
-    double beyond = goes_on(settlement, &state) ? INFINITY : state.needed - state.stiction;
+    struct PlaneState state = plane_state(resolution, i);
+    bool takes_part = resolution->takes_part[switches->contact_count + state.metadata->along] != 0.0;
+    double beyond = goes_on(resolution, &state) ? INFINITY : state.needed - state.stiction;
     if (!takes_part || state.mode != PLANE_STICKS || !(beyond > most)) continue;
     most = beyond;
     found = i;
@@ -59,45 +59,45 @@ static size_t find_overcome(const struct Settlement *settlement) {
 }
 
 /* True if others take what exceeds its stiction. */
-static bool shares_load(struct Settlement *settlement, size_t plane) {
-  struct PlaneState state = plane_state(settlement, plane);
-  return !goes_on(settlement, &state) && plane_loads_share(settlement, plane);
+static bool shares_load(struct Resolution *resolution, size_t plane) {
+  struct PlaneState state = plane_state(resolution, plane);
+  return !goes_on(resolution, &state) && plane_loads_share(resolution, plane);
 }
 
 /* Lets it slide on, or slip in a new direction from rest. */
-static void let_plane_slide(struct Settlement *settlement, size_t plane) {
-  struct PlaneState state = plane_state(settlement, plane);
-  bool passes = goes_on(settlement, &state);
+static void let_plane_slide(struct Resolution *resolution, size_t plane) {
+  struct PlaneState state = plane_state(resolution, plane);
+  bool passes = goes_on(resolution, &state);
   if (passes || state.needed > hopeless * state.stiction)
-    settlement->takes_part[settlement->switches->contact_count + state.facts->along] = has_no_hold;
-  if (plane_moves(&state)) plane_slide(settlement, &state);
-  else plane_head(settlement, &state, passes ? state.rate : state.force);
+    resolution->takes_part[resolution->switches->contact_count + state.metadata->along] = has_no_hold;
+  if (plane_moves(&state)) plane_slide(resolution, &state);
+  else plane_head(resolution, &state, passes ? state.rate : state.force);
 }
 
 /* Projects the velocities of what sticks, or slips from rest, to 0. False if that fails. */
-static bool bring_to_rest(struct Settlement *settlement) {
-  const struct SwitchTable *switches = settlement->switches;
+static bool bring_to_rest(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   bool moves = false;
-  settlement_keep_modes(settlement);
+  resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(settlement, i);
-    bool can_rest = settlement->takes_part[switches->contact_count + state.facts->along] != has_no_hold;
+    struct PlaneState state = plane_state(resolution, i);
+    bool can_rest = resolution->takes_part[switches->contact_count + state.metadata->along] != has_no_hold;
     bool begins = state.mode == PLANE_HEADS && !state.is_free && !state.is_given && !plane_moves(&state) && can_rest;
-    if (begins) plane_stick(settlement, &state);
+    if (begins) plane_stick(resolution, &state);
     moves |= (begins || (state.mode == PLANE_STICKS && !state.is_given)) && state.speed > 0.0;
   }
-  bool is_done = !moves || settlement->occasion == AT_START || settlement_push(settlement);
-  settlement_restore_modes(settlement);
+  bool is_done = !moves || resolution->occasion == AT_START || resolution_push(resolution);
+  resolution_restore_modes(resolution);
   return is_done;
 }
 
-bool planes_stop(struct Settlement *settlement) {
-  size_t overcome = 0, count = settlement->switches->plane_count;
-  try_all(settlement);
+bool planes_stop(struct Resolution *resolution) {
+  size_t overcome = 0, count = resolution->switches->plane_count;
+  try_all(resolution);
   while (overcome < count) {
-    if (!plane_evaluate(settlement)) return false;
-    overcome = find_overcome(settlement);
-    if (overcome < count && !shares_load(settlement, overcome)) let_plane_slide(settlement, overcome);
+    if (!plane_evaluate(resolution)) return false;
+    overcome = find_overcome(resolution);
+    if (overcome < count && !shares_load(resolution, overcome)) let_plane_slide(resolution, overcome);
   }
-  return bring_to_rest(settlement);
+  return bring_to_rest(resolution);
 }

@@ -9,6 +9,6 @@
  * again, one by one. The others are brought to rest. False if accelerations do not exist, or velocities cannot be
  * projected.
  */
-bool planes_stop(struct Settlement *settlement);
+bool planes_stop(struct Resolution *resolution);
 
 #endif

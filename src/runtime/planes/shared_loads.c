@@ -23,7 +23,7 @@
 enum { CENTRE_STEPS = 1000 };
 
 /* Relative to the largest pivot: smaller ones count as 0, as sines below 1e-6 do in saddle.h. */
-static const double least_lever_share = 1e-6;
+static const double least_jacobian_row_share = 1e-6;
 
 /* In units of the limits: margins below the first are rounding errors, and forces exceed limits by up to the second. */
 static const double least_spare = 2e-12, rounded_spare = 1e-9;
@@ -54,8 +54,8 @@ size_t shared_load_bytes(size_t rows, size_t count) {
 }
 
 struct SharedLoad shared_load_in(void *block, size_t rows, size_t count) {
-  struct SharedLoad load = {.rows = rows, .count = count, .lever = block};
-  load.share = load.lever + rows * 2 * count;
+  struct SharedLoad load = {.rows = rows, .count = count, .jacobian_row = block};
+  load.share = load.jacobian_row + rows * 2 * count;
   load.work = load.share + 2 * count;
   return load;
 }
@@ -65,16 +65,16 @@ double shared_load_size(const struct SharedLoad *load, size_t plane) {
 }
 
 /* Reduces G by Gauss-Jordan elimination with complete pivoting. Returns its rank. */
-static size_t eliminate_levers(const struct Centre *centre) {
+static size_t eliminate_jacobian_rows(const struct Centre *centre) {
   size_t n = centre->n, rows = centre->load->rows, rank = 0;
-  double largest = 0.0, *a = centre->load->lever;
+  double largest = 0.0, *a = centre->load->jacobian_row;
   const struct Pivoting pivoting = {.rows = rows, .columns = n, .matrix = a, .order = centre->order};
   pivoting_begin(&pivoting);
   for (; rank < rows && rank < n; rank++) {
     size_t taken;
     double pivot = pivoting_take(&pivoting, rank, &taken);
     largest = fmax(largest, pivot);
-    if (!(pivot > least_lever_share * largest)) break;
+    if (!(pivot > least_jacobian_row_share * largest)) break;
     for (size_t j = n; j-- > rank;) a[rank * n + j] /= a[rank * n + rank];
     for (size_t i = 0; i < rows; i++) {
       double share = a[i * n + rank];
@@ -85,12 +85,12 @@ static size_t eliminate_levers(const struct Centre *centre) {
 }
 
 static void fill_balance(struct Centre *centre) {
-  size_t n = centre->n, rank = eliminate_levers(centre), count = n - rank;
+  size_t n = centre->n, rank = eliminate_jacobian_rows(centre), count = n - rank;
   centre->free_count = count;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < count; j++) {
       double *element = &centre->balance[(size_t)centre->order[i] * count + j];
-      if (i < rank) *element = -centre->load->lever[i * n + rank + j];
+      if (i < rank) *element = -centre->load->jacobian_row[i * n + rank + j];
       else *element = i - rank == j ? 1.0 : 0.0;
     }
 }

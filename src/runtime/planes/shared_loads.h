@@ -8,8 +8,8 @@
 /* Forces along and across for count planes, in units of their limits. */
 struct SharedLoad {
   size_t rows, count;
-  double *lever; /* rows x 2 count: generalized forces of unit forces, G; overwritten */
-  double *share; /* forces that carry the load: first any, then those found */
+  double *jacobian_row; /* rows x 2 count: generalized forces of unit forces, G; overwritten */
+  double *share;        /* forces that carry the load: first any, then those found */
   double *work;
 };
 

@@ -9,9 +9,9 @@
 /* Gives the instance the values of a time within the step. False if they do not exist. */
 static bool move_to(struct Instance *instance, double time) {
   if (!solver_take_state(instance, time) || solver_project(instance, time, instance->state) != NULL) return false;
-  evaluate_advance_inputs(instance, time); /* from the time of the situation */
-  instance->situation->time = time;
-  instance->situation->phase = PHASE_INTERMEDIATE_UPDATE;
+  evaluate_advance_inputs(instance, time); /* from the time of the snapshot */
+  instance->fmu_state->time = time;
+  instance->fmu_state->phase = PHASE_INTERMEDIATE_UPDATE;
   return true;
 }
 
@@ -19,14 +19,14 @@ void intermediate_observe(struct Instance *instance, struct CommunicationStep *s
   const struct Intermediate *intermediate = instance->intermediate;
   int singular = instance->singular;
   double end = step->end;
-  memcpy(intermediate->kept, instance->situation, situation_size());
+  memcpy(intermediate->kept, instance->fmu_state, fmu_state_size());
   bool has_values = move_to(instance, time);
   if (has_values) end = intermediate->update(intermediate->receiver, time, end);
-  bool failed = instance->situation->phase == PHASE_ERROR;
-  memcpy(instance->situation, intermediate->kept, situation_size());
+  bool failed = instance->fmu_state->phase == PHASE_ERROR;
+  memcpy(instance->fmu_state, intermediate->kept, fmu_state_size());
   instance->singular = singular;
   if (failed) {
-    instance->situation->phase = PHASE_ERROR;
+    instance->fmu_state->phase = PHASE_ERROR;
     end = time;
   }
   if (!(end < step->end)) return;
@@ -53,24 +53,24 @@ static void differentiate_cubic(double *value, double length, double *derivative
 
 void intermediate_request_inputs(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Intermediate *intermediate = instance->intermediate;
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   size_t n = lagrangian.input_count;
-  int32_t phase = situation->phase;
-  situation->phase = PHASE_INPUT_REQUEST;
+  int32_t phase = fmu_state->phase;
+  fmu_state->phase = PHASE_INPUT_REQUEST;
   for (size_t k = 0; k < INPUT_NODES; k++) {
     intermediate->request(intermediate->receiver,
                           k + 1 < INPUT_NODES ? step->start + node[k] * step->length : step->end);
-    if (situation->phase == PHASE_ERROR) return;
+    if (fmu_state->phase == PHASE_ERROR) return;
     for (size_t i = 0; i < n; i++) intermediate->inputs[i * INPUT_NODES + k] = instance->input[i];
   }
-  situation->phase = phase;
+  fmu_state->phase = phase;
   for (size_t i = 0; i < n; i++) {
     double *value = intermediate->inputs + i * INPUT_NODES;
     instance->input[i] = value[0];
     differentiate_cubic(value, step->length, instance->input_derivatives + i, n);
   }
   for (size_t i = 0; i < INPUT_ORDER * n; i++) {
-    if (instance->input_derivatives[i] != 0.0) situation->input_derivatives_set = 1;
+    if (instance->input_derivatives[i] != 0.0) fmu_state->input_derivatives_set = 1;
     if (isfinite(instance->input_derivatives[i])) continue;
     refuse_call(instance, "an input changes too fast within the step from time %g; expected smaller values",
                 step->start);

@@ -18,7 +18,7 @@ struct Intermediate {
    */
   void (*request)(void *receiver, double time);
   void *receiver;
-  void *kept;     /* workspace of situation_size() bytes */
+  void *kept;     /* workspace of fmu_state_size() bytes */
   double *inputs; /* workspace of INPUT_NODES input_count numbers */
 };
 

@@ -9,18 +9,18 @@
 
 /* True if the reported values may differ from the stored state. */
 static bool may_differ(const struct Instance *instance) {
-  const struct Situation *situation = instance->situation;
+  const struct FmuState *fmu_state = instance->fmu_state;
   if (instance->shown == NULL) return false; /* nothing moves the values that were set */
-  if (situation->phase == PHASE_INITIALIZATION) return true;
-  return lagrangian.event_laws != NULL && situation->phase == PHASE_STEP_COMPLETE &&
-         situation->changed == CHANGED_VALUES;
+  if (fmu_state->phase == PHASE_INITIALIZATION) return true;
+  return lagrangian.event_laws != NULL && fmu_state->phase == PHASE_STEP_COMPLETE &&
+         fmu_state->changed == CHANGED_VALUES;
 }
 
-static void exchange_situations(struct Instance *instance) {
-  struct Situation *other = instance->shown;
-  instance->shown = instance->situation;
+static void exchange_fmu_states(struct Instance *instance) {
+  struct FmuState *other = instance->shown;
+  instance->shown = instance->fmu_state;
   instance_use(instance, other);
-  instance->prepared_is_stale = true;
+  instance->parameter_constants_is_stale = true;
 }
 
 /* Receives messages; keeps the first one. */
@@ -30,49 +30,49 @@ static void keep_message(void *receiver, enum Status status, const char *message
   if (text[0] == '\0') strncat(text, message, MESSAGE_LENGTH - 1);
 }
 
-static void tell_impossible_start(struct Instance *instance, const char *reason) {
-  if (instance->told_impossible_start) return;
+static void report_impossible_start(struct Instance *instance, const char *reason) {
+  if (instance->reported_impossible_start) return;
   log_message(instance, STATUS_WARNING,
               "values in initialization mode are those that were set, since there is no consistent start: %s", reason);
-  instance->told_impossible_start = true;
+  instance->reported_impossible_start = true;
 }
 
 /* Computes the reported values on the copy, without messages: the function that starts there will report failures. */
 static void find_silently(struct Instance *instance) {
   char reason[MESSAGE_LENGTH] = "";
   struct Log log = instance->log;
-  uint64_t told_singularity = instance->told_singularity;
-  bool starts = instance->situation->phase == PHASE_INITIALIZATION;
+  uint64_t reported_singularity = instance->reported_singularity;
+  bool starts = instance->fmu_state->phase == PHASE_INITIALIZATION;
   instance->log = (struct Log){keep_message, reason, 1u << STATUS_DISCARD | 1u << STATUS_ERROR};
   if (starts) instance->shown_is_found = start_find(instance) == STATUS_DONE;
   else instance->shown_is_found = evaluate_prepare(instance) == STATUS_DONE && start_step(instance);
   instance->log = log;
-  instance->told_singularity = told_singularity;
+  instance->reported_singularity = reported_singularity;
   if (instance->shown_is_found) return;
-  memcpy(instance->situation, instance->given, situation_size());
-  if (starts) tell_impossible_start(instance, reason);
+  memcpy(instance->fmu_state, instance->given, fmu_state_size());
+  if (starts) report_impossible_start(instance, reason);
 }
 
 void reading_begin(struct Instance *instance) {
   if (!may_differ(instance)) return;
-  bool is_new = memcmp(instance->given, instance->situation, situation_size()) != 0;
-  if (is_new) memcpy(instance->given, instance->situation, situation_size());
-  if (is_new || !instance->shown_is_found) memcpy(instance->shown, instance->situation, situation_size());
-  exchange_situations(instance);
+  bool is_new = memcmp(instance->given, instance->fmu_state, fmu_state_size()) != 0;
+  if (is_new) memcpy(instance->given, instance->fmu_state, fmu_state_size());
+  if (is_new || !instance->shown_is_found) memcpy(instance->shown, instance->fmu_state, fmu_state_size());
+  exchange_fmu_states(instance);
   if (is_new) find_silently(instance);
   instance->modes_stay = instance->shown_is_found;
-  instance->prepared_is_stale = true;
+  instance->parameter_constants_is_stale = true;
   instance->is_reading = true;
 }
 
 void reading_end(struct Instance *instance) {
   if (!instance->is_reading) return;
-  bool failed = instance->situation->phase == PHASE_ERROR;
-  exchange_situations(instance);
+  bool failed = instance->fmu_state->phase == PHASE_ERROR;
+  exchange_fmu_states(instance);
   instance->is_reading = instance->modes_stay = false;
   if (!failed) return;
-  instance->shown->phase = instance->situation->phase;
-  instance->situation->phase = PHASE_ERROR;
+  instance->shown->phase = instance->fmu_state->phase;
+  instance->fmu_state->phase = PHASE_ERROR;
 }
 
 /*
@@ -105,8 +105,8 @@ static double size_of_seed(const struct Instance *instance, const struct Seed *s
  */
 static bool find_displaced(struct Instance *instance, const struct Seed *seed, double step, double *set,
                            bool *is_moved) {
-  memcpy(instance->situation, instance->given, situation_size());
-  instance->situation->time += step * seed->time;
+  memcpy(instance->fmu_state, instance->given, fmu_state_size());
+  instance->fmu_state->time += step * seed->time;
   for (size_t i = 0; i < lagrangian.state_count; i++) instance->state[i] += step * seed->state[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) instance->input[i] += step * seed->input[i];
   for (size_t i = 0; i < lagrangian.parameter_count; i++) instance->parameter[i] += step * seed->parameter[i];
@@ -127,12 +127,12 @@ struct Slope {
   char other[MESSAGE_LENGTH]; /* the element that has another mode in a displaced start; empty for none */
 };
 
-/* Names an element whose mode differs from that in another situation. Leaves the name as it is if there is none. */
-static void name_other_mode(const struct Instance *instance, const struct Situation *situation, char *name) {
+/* Names an element whose mode differs from that in another snapshot. Leaves the name as it is if there is none. */
+static void name_other_mode(const struct Instance *instance, const struct FmuState *fmu_state, char *name) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches == NULL) return;
   const double *mode = instance->parameter;
-  const double *other = situation->values + (instance->parameter - instance->situation->values);
+  const double *other = fmu_state->values + (instance->parameter - instance->fmu_state->values);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (mode[switches->contacts[i].mode] != other[switches->contacts[i].mode])
       snprintf(name, MESSAGE_LENGTH, "'%s'", switches->contacts[i].name);
@@ -145,9 +145,9 @@ static void name_other_mode(const struct Instance *instance, const struct Situat
                switches->branches[i].file);
 }
 
-/* Computes central difference quotients of fourth order about the start; the situation is then undefined. */
+/* Computes central difference quotients of fourth order about the start; the snapshot is then undefined. */
 static bool find_differences(struct Instance *instance, const struct Seed *seed, double step,
-                             const struct Situation *start, struct Slope *slope) {
+                             const struct FmuState *start, struct Slope *slope) {
   static const double weight[] = {1.0 / 12.0, -2.0 / 3.0, 2.0 / 3.0, -1.0 / 12.0};
   static const double bending[] = {0.0, 1.0, 1.0, 0.0};
   static const double at[] = {-2.0, -1.0, 1.0, 2.0};
@@ -175,15 +175,15 @@ static bool is_smooth(const struct Slope *slope, const double *state, double siz
 }
 
 /*
- * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of situation_size() bytes. False if the
+ * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of fmu_state_size() bytes. False if the
  * start has none; slope->other then names the cause, if it is known.
  */
-static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct Situation *kept,
+static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct FmuState *kept,
                        struct Slope *slope) {
   struct Log log = instance->log;
   double size = size_of_seed(instance, seed);
   bool is_found = size == 0.0;
-  memcpy(kept, instance->situation, situation_size());
+  memcpy(kept, instance->fmu_state, fmu_state_size());
   instance->log.wanted = 0;
   for (size_t k = 0; k < sizeof displacement / sizeof *displacement && !is_found; k++) {
     slope->exists = find_differences(instance, seed, displacement[k] / size, kept, slope);
@@ -191,8 +191,8 @@ static bool find_along(struct Instance *instance, const struct Seed *seed, doubl
     if (is_found && slope->is_moved) memcpy(state, slope->along, lagrangian.state_count * sizeof *state);
   }
   instance->log = log;
-  memcpy(instance->situation, kept, situation_size());
-  instance->prepared_is_stale = instance->modes_stay = true;
+  memcpy(instance->fmu_state, kept, fmu_state_size());
+  instance->parameter_constants_is_stale = instance->modes_stay = true;
   return is_found;
 }
 
@@ -207,10 +207,10 @@ static enum Status discard_kink(struct Instance *instance, const struct Slope *s
 
 enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state) {
   bool is_moved =
-      instance->is_reading && instance->shown_is_found && instance->situation->phase == PHASE_INITIALIZATION;
+      instance->is_reading && instance->shown_is_found && instance->fmu_state->phase == PHASE_INITIALIZATION;
   if (!is_moved) return STATUS_DONE;
   struct Slope slope = {.along = instance->memory.allocate(3 * lagrangian.state_count, sizeof *slope.along)};
-  struct Situation *kept = instance->memory.allocate(1, situation_size());
+  struct FmuState *kept = instance->memory.allocate(1, fmu_state_size());
   bool has_memory = slope.along != NULL && kept != NULL;
   if (has_memory) slope.bend = slope.along + lagrangian.state_count;
   if (has_memory) slope.set = slope.bend + lagrangian.state_count;

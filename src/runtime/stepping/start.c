@@ -5,9 +5,9 @@
 #include "instance/projection.h"
 #include "instance/event_laws.h"
 
-static bool is_prepared(struct Instance *instance) {
-  instance->singular = lagrangian.prepare(instance->parameter, instance->prepared);
-  if (instance->singular == 0) instance->prepared_is_stale = false;
+static bool is_parameter_constants(struct Instance *instance) {
+  instance->singular = lagrangian.prepare(instance->parameter, instance->parameter_constants);
+  if (instance->singular == 0) instance->parameter_constants_is_stale = false;
   return instance->singular == 0;
 }
 
@@ -19,22 +19,22 @@ static bool has_accelerations(struct Instance *instance) {
 enum Status start_find(struct Instance *instance) {
   if (initial_state_check(instance) != STATUS_DONE) return STATUS_ERROR;
   if (lagrangian.event_laws != NULL) lagrangian.event_laws->guess(instance);
-  bool is_ready = is_prepared(instance);
+  bool is_ready = is_parameter_constants(instance);
   if (is_ready && lagrangian.constraints.projection != NULL &&
       !lagrangian.constraints.projection->make_consistent(instance))
     return STATUS_ERROR;
   if (is_ready && lagrangian.event_laws != NULL && !lagrangian.event_laws->start(instance)) return STATUS_ERROR;
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
-  log_singularity(instance, STATUS_ERROR, instance->situation->time);
+  log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
   const char *state = is_ready ? evaluate_rate_without_value(instance) : NULL;
   if (state != NULL) return refuse_call(instance, "the rate of '%s' cannot be computed at the start values", state);
   return refuse_call(instance, "the accelerations cannot be computed at the start values");
 }
 
 bool start_step(struct Instance *instance) {
-  double time = instance->situation->time;
+  double time = instance->fmu_state->time;
   if (lagrangian.event_laws != NULL && !lagrangian.event_laws->part(instance, time)) return false;
   if (lagrangian.constraints.projection != NULL && !lagrangian.constraints.projection->follow_change(instance))
     return false;
-  return lagrangian.event_laws == NULL || lagrangian.event_laws->settle_change(instance, time);
+  return lagrangian.event_laws == NULL || lagrangian.event_laws->resolve_change(instance, time);
 }

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "evaluation/guides.h"
+#include "evaluation/prescribed_inputs.h"
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 #include "instance/projection.h"
@@ -42,20 +42,20 @@ static const char usual_remedy[] = "retrying will not help; restore an earlier s
 /* Brings the solver to the start of the step: it continues its last step or restarts. */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
-  bool goes_on = !solver->starts_anew && situation->changed == CHANGED_NOTHING &&
-                 step->start >= situation->last_step.start && step->start <= situation->last_step.end &&
+  bool goes_on = !solver->starts_anew && fmu_state->changed == CHANGED_NOTHING &&
+                 step->start >= fmu_state->last_step.start && step->start <= fmu_state->last_step.end &&
                  (!instance->solver_is_stale || solver->resume != NULL);
   if (!goes_on) {
-    situation_begin(situation, step->start);
+    fmu_state_begin(fmu_state, step->start);
     /* State or parameters may have been set, unless an event has made all consistent. */
-    bool is_settled = situation->changed == CHANGED_BY_EVENT;
-    if (!is_settled && !start_step(instance)) return STEP_PARTIAL;
+    bool is_resolved = fmu_state->changed == CHANGED_BY_EVENT;
+    if (!is_resolved && !start_step(instance)) return STEP_PARTIAL;
     if (solver->restart != NULL && !solver->restart(instance, instance->state, step)) return STEP_FAILED;
   } else if (instance->solver_is_stale) solver->resume(instance);
   instance->solver_is_stale = false;
-  situation->changed = CHANGED_NOTHING;
+  fmu_state->changed = CHANGED_NOTHING;
   return STEP_DONE;
 }
 
@@ -64,7 +64,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
   log_message(instance, STATUS_WARNING,
               "slow: %s has taken %ld steps from time %.15g to %.15g, and needs to reach %.15g; it stops after %ld, "
               "which maxSteps of <solver> %s",
-              lagrangian.solver->name, step->count, step->start, instance->situation->last_step.end, step->end,
+              lagrangian.solver->name, step->count, step->start, instance->fmu_state->last_step.end, step->end,
               lagrangian.steps.max_steps > 0 ? lagrangian.steps.max_steps
                                              : (long)((double)step->count * WORK_LIMIT / work),
               lagrangian.steps.max_steps > 0 ? "sets" : "can change (default: about 10 s of work)");
@@ -82,7 +82,7 @@ struct Course {
 /* Returns the operations in the communication step. */
 static double work_in_step(const struct Instance *instance, const struct CommunicationStep *step,
                            const struct Course *course) {
-  const int64_t *present = instance->situation->statistics, *before = course->before;
+  const int64_t *present = instance->fmu_state->statistics, *before = course->before;
   return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.steps.work.evaluation +
          (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.steps.work.event +
          (double)step->count * lagrangian.steps.work.step;
@@ -113,7 +113,7 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
 /* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
 static const char *advance_once(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
   const struct EventLaws *laws = lagrangian.event_laws;
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
   struct CommunicationStep near = *step;
@@ -133,8 +133,8 @@ static const char *pass_events(struct Instance *instance, struct CommunicationSt
   return lagrangian.event_laws != NULL ? lagrangian.event_laws->pass(instance, step, &course->progress) : NULL;
 }
 
-static void tell_observer(struct Instance *instance, struct CommunicationStep *step) {
-  double time = instance->situation->last_step.end;
+static void notify_observer(struct Instance *instance, struct CommunicationStep *step) {
+  double time = instance->fmu_state->last_step.end;
   bool is_inside = time > step->start && time < step->end;
   if (instance->observe != NULL && is_inside) instance->observe(instance, step, time);
 }
@@ -145,18 +145,18 @@ static void tell_observer(struct Instance *instance, struct CommunicationStep *s
  */
 static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
                          double *reached) {
-  struct Course course = {.progress = {.searched = step->start, .gathered = instance->situation->gathered}};
-  memcpy(course.before, instance->situation->statistics, sizeof course.before);
+  struct Course course = {.progress = {.searched = step->start, .gathered = instance->fmu_state->gathered}};
+  memcpy(course.before, instance->fmu_state->statistics, sizeof course.before);
   for (;;) {
     const char *problem = pass_events(instance, step, &course);
     *ends_at_event = problem != NULL;
-    *reached = course.progress.is_lost ? course.progress.searched : instance->situation->last_step.end;
+    *reached = course.progress.is_lost ? course.progress.searched : instance->fmu_state->last_step.end;
     if (problem != NULL) return problem;
-    tell_observer(instance, step);
+    notify_observer(instance, step);
     if (*reached >= step->end) return NULL;
     problem = advance_once(instance, step, &course);
     *ends_at_event = problem != NULL && course.ends_at_event;
-    *reached = instance->situation->last_step.end;
+    *reached = instance->fmu_state->last_step.end;
     if (problem != NULL) return problem;
   }
 }
@@ -198,12 +198,12 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   if (!is_explained && unkept > 0) log_unkept(instance, STATUS_DISCARD, reached, unkept - 1);
   if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
-  instance->situation->changed = CHANGED_VALUES;
+  instance->fmu_state->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
 }
 
 static enum StepResult advance_to_end(struct Instance *instance, struct CommunicationStep *step, double *reached) {
-  const struct Span *last = &instance->situation->last_step;
+  const struct Span *last = &instance->fmu_state->last_step;
   *reached = step->end;
   if (lagrangian.solver == NULL) return STEP_DONE;
   enum StepResult readiness = make_ready(instance, step);
@@ -255,61 +255,61 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
  * Returns how far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at
  * each step, and at most half a step.
  */
-static double rounding_of_sum(const struct Situation *situation, double end, double size) {
-  double steps = (end - situation->start_time) / size + 1.0;
-  return fmin(0.5 * DBL_EPSILON * steps * fmax(fabs(end), fabs(situation->start_time)), 0.5 * size);
+static double rounding_of_sum(const struct FmuState *fmu_state, double end, double size) {
+  double steps = (end - fmu_state->start_time) / size + 1.0;
+  return fmin(0.5 * DBL_EPSILON * steps * fmax(fabs(end), fabs(fmu_state->start_time)), 0.5 * size);
 }
 
 /* Checks the arguments of a communication step; logs an error. */
 static enum Status check_step(struct Instance *instance, double time, double size) {
-  const struct Situation *situation = instance->situation;
+  const struct FmuState *fmu_state = instance->fmu_state;
   if (!isfinite(time)) return refuse_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
   if (!isfinite(size) || size <= 0.0)
     return refuse_call(instance, "step %g at time %g; expected a finite step larger than 0", size, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
-  if (fabs(time - situation->time) > rounding)
+  if (fabs(time - fmu_state->time) > rounding)
     return refuse_call(instance, "currentCommunicationPoint is %.15g; expected %.15g, where the instance is", time,
-                       situation->time);
+                       fmu_state->time);
   if (time + size <= time)
     return refuse_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
   if (!isfinite(time + size))
     return refuse_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
                        time);
-  double allowed = fmax(rounding, rounding_of_sum(situation, time + size, size));
-  if (situation->stop_time_defined && time + size - situation->stop_time > allowed)
+  double allowed = fmax(rounding, rounding_of_sum(fmu_state, time + size, size));
+  if (fmu_state->stop_time_defined && time + size - fmu_state->stop_time > allowed)
     return refuse_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
-                       situation->stop_time);
+                       fmu_state->stop_time);
   return STATUS_DONE;
 }
 
 /* Returns the step to time + size, or to stopTime if only rounding leads past it. */
-static struct CommunicationStep step_within_experiment(const struct Situation *situation, double time, double size) {
-  double stop = situation->stop_time;
-  if (situation->stop_time_defined && time < stop && stop < time + size)
+static struct CommunicationStep step_within_experiment(const struct FmuState *fmu_state, double time, double size) {
+  double stop = fmu_state->stop_time;
+  if (fmu_state->stop_time_defined && time < stop && stop < time + size)
     return (struct CommunicationStep){.start = time, .end = stop, .length = stop - time};
   return (struct CommunicationStep){.start = time, .end = time + size, .length = size};
 }
 
 enum Status communication_step(struct Instance *instance, double time, double size) {
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   if (check_step(instance, time, size) != STATUS_DONE) return STATUS_ERROR;
   if (evaluate_prepare(instance) != STATUS_DONE)
     return refuse_call(instance, "the accelerations cannot be computed with these parameters at time %g", time);
-  situation->time = time;
-  if (!situation->input_derivatives_set)
+  fmu_state->time = time;
+  if (!fmu_state->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
-  struct CommunicationStep step = step_within_experiment(situation, time, size);
+  struct CommunicationStep step = step_within_experiment(fmu_state, time, size);
   if (instance->request_inputs != NULL) instance->request_inputs(instance, &step);
-  if (situation->phase == PHASE_ERROR) return STATUS_ERROR;
-  guides_begin_step(instance);
+  if (fmu_state->phase == PHASE_ERROR) return STATUS_ERROR;
+  prescribed_inputs_begin_step(instance);
   instance->unkept = 0;
   double reached;
   enum StepResult result = run(instance, &step, &reached);
   if (result == STEP_FAILED) return refuse_call(instance, "the step from time %g failed", time);
   evaluate_advance_inputs(instance, reached);
-  situation->input_derivatives_set = 0;
-  situation->time = reached;
+  fmu_state->input_derivatives_set = 0;
+  fmu_state->time = reached;
   if (result == STEP_DONE) return STATUS_DONE;
-  situation->phase = PHASE_STEP_FAILED;
+  fmu_state->phase = PHASE_STEP_FAILED;
   return STATUS_DISCARD;
 }

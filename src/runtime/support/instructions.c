@@ -4,13 +4,13 @@
 
 #include "ldlt.h"
 
-enum { INDEX_MASK = (1 << PLACE_BITS) - 1 };
+enum { INDEX_MASK = (1 << SLOT_BITS) - 1 };
 
 struct Frame instructions_frame(const struct InstructionTables *tables, const struct Point *point) {
   struct Frame frame = {.tables = tables};
   frame.base[SPACE_NUMBER] = (Real *)tables->numbers;
   frame.base[SPACE_PARAMETER] = (Real *)point->parameter;
-  frame.base[SPACE_PREPARED] = (Real *)point->prepared;
+  frame.base[SPACE_PARAMETER_CONSTANTS] = (Real *)point->parameter_constants;
   frame.base[SPACE_STATE] = (Real *)point->state;
   frame.base[SPACE_INPUT] = (Real *)point->input;
   frame.base[SPACE_TIME] = (Real *)&point->time;
@@ -30,8 +30,8 @@ void instructions_seed(struct Frame *frame, const struct Seed *seed) {
   frame->base[SPACE_SEED_RESULT] = (Real *)seed->result;
 }
 
-static inline Real *at(Real *const *base, Place place) {
-  return base[place >> PLACE_BITS] + (place & INDEX_MASK);
+static inline Real *at(Real *const *base, Slot slot) {
+  return base[slot >> SLOT_BITS] + (slot & INDEX_MASK);
 }
 
 /* Factors a block of M. Returns 0, or 1 + the coordinate in which it is singular. */
@@ -109,7 +109,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     case SQUARE_ROOT: EACH(2, R = sqrt(A));
     case INVERSE_ROOT: EACH(2, R = 1.0 / sqrt(A));
     case LESS_THAN: EACH(3, R = WHERE(A < B, 1.0, 0.0));
-    case GATE_OF: EACH(3, R = WHERE(A > 0.0, B, 0.0));
+    case GUARD_OF: EACH(3, R = WHERE(A > 0.0, B, 0.0));
     case SIGN_OF: EACH(2, R = WHERE(A > 0.0, 1.0, WHERE(A < 0.0, -1.0, 0.0)));
     case CALL: {
       Real (*function)(Real) = frame->tables->functions[*code++];
@@ -154,7 +154,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_SUM: EACH(3, R = A + B);
     case SERIES_DIFFERENCE: EACH(3, R = A - B);
     case SERIES_NEGATION: EACH(2, R = -A);
-    case SERIES_GATE: EACH(3, R = WHERE(*ROW_A > 0.0, B, 0.0));
+    case SERIES_GUARD: EACH(3, R = WHERE(*ROW_A > 0.0, B, 0.0));
     case SERIES_MULTIPLE: EACH(3, R = *ROW_A * B);
     case SERIES_SHARE: EACH(3, R = A / *ROW_B);
     case SERIES_PRODUCT: EACH(3, R = series_product(k, ROW_A, ROW_B));
@@ -211,7 +211,7 @@ void instructions_limit(const struct Frame *frame, const struct LimitCheck *chec
                         struct SeriesLimit *limit) {
   for (size_t i = 0; i < count; i++) {
     const struct LimitCheck *check = &checks[i];
-    if (check->is_gated) LIMIT_WHERE(*at(frame->base, check->opener) > 0.0, check_limit(frame, check, limit));
+    if (check->is_gated) LIMIT_WHERE(*at(frame->base, check->guard_condition) > 0.0, check_limit(frame, check, limit));
     else check_limit(frame, check, limit);
   }
 }

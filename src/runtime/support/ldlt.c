@@ -24,8 +24,8 @@ static size_t factor_full(size_t n, Real *m) {
   return 0;
 }
 
-Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t place) {
-  size_t j = column[place], a = place, b = start[j + 1] - 1;
+Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t slot) {
+  size_t j = column[slot], a = slot, b = start[j + 1] - 1;
   Real sum = REAL(0.0);
   while (a > start[i] && b > start[j]) {
     if (column[a - 1] > column[b - 1]) a--;

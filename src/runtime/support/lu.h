@@ -17,7 +17,7 @@ struct Lu {
   /* Returns the doubles that a matrix, and later its factors, takes. */
   size_t (*size)(size_t width);
   /* Returns the index of the element in this row and column. */
-  size_t (*place)(size_t row, size_t column);
+  size_t (*slot)(size_t row, size_t column);
   /* Replaces a matrix by its factors. work: two numbers per row. False if the matrix is singular to rounding. */
   bool (*factor)(size_t width, double *matrix, double *work);
   /* Replaces the right side x by the solution. work: one number per row. */

@@ -8,7 +8,7 @@ static size_t dense_size(size_t width) {
   return width * n * n + n;
 }
 
-static size_t dense_place(size_t row, size_t column) {
+static size_t dense_slot(size_t row, size_t column) {
   return row * lu_rows() + column;
 }
 
@@ -73,4 +73,4 @@ static void dense_solve(size_t width, const double *factors, double *x, double *
   }
 }
 
-const struct Lu lu_dense = {.size = dense_size, .place = dense_place, .factor = dense_factor, .solve = dense_solve};
+const struct Lu lu_dense = {.size = dense_size, .slot = dense_slot, .factor = dense_factor, .solve = dense_solve};

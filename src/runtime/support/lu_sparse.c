@@ -14,9 +14,9 @@ static size_t sparse_size(size_t width) {
   return 2 * width * element_count();
 }
 
-static size_t sparse_place(size_t row, size_t column) {
+static size_t sparse_slot(size_t row, size_t column) {
   const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
-  int i = pattern->place[row], j = pattern->place[column], low = i < j ? i : j;
+  int i = pattern->slot[row], j = pattern->slot[column], low = i < j ? i : j;
   int k = pattern->start[i < j ? j : i];
   while (pattern->column[k] < low) k++;
   return (size_t)k + (i < j ? element_count() : 0);
@@ -78,7 +78,7 @@ static void sparse_solve(size_t width, const double *factors, double *x, double 
   const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;
   size_t n = lu_rows();
   const double *u = factors + width * element_count();
-  for (size_t i = 0; i < n; i++) copy_number(width, work + width * (size_t)pattern->place[i], x + width * i);
+  for (size_t i = 0; i < n; i++) copy_number(width, work + width * (size_t)pattern->slot[i], x + width * i);
   for (size_t i = 0; i < n; i++)
     subtract_products(width, pattern->start[i], pattern->start[i + 1] - 1, work + width * i, factors, work);
   for (size_t i = n; i-- > 0;) {
@@ -88,8 +88,7 @@ static void sparse_solve(size_t width, const double *factors, double *x, double 
     for (int k = first; k < last; k++)
       number_subtract_product(width, work + width * (size_t)pattern->column[k], u + width * (size_t)k, solved);
   }
-  for (size_t i = 0; i < n; i++) copy_number(width, x + width * i, work + width * (size_t)pattern->place[i]);
+  for (size_t i = 0; i < n; i++) copy_number(width, x + width * i, work + width * (size_t)pattern->slot[i]);
 }
 
-const struct Lu lu_sparse = {
-    .size = sparse_size, .place = sparse_place, .factor = sparse_factor, .solve = sparse_solve};
+const struct Lu lu_sparse = {.size = sparse_size, .slot = sparse_slot, .factor = sparse_factor, .solve = sparse_solve};

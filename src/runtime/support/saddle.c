@@ -70,7 +70,7 @@ static Condition has_row(const size_t *start, const Real *m, size_t i) {
 }
 
 /* Returns the offset of null-space vector c, which follows the workspace. */
-static size_t place_of_balance(size_t n, const size_t *start, size_t c) {
+static size_t slot_of_balance(size_t n, const size_t *start, size_t c) {
   return 2 * start[n] + 1 + 2 * n + c * (c + 1) / 2;
 }
 
@@ -96,7 +96,7 @@ static void take_along(size_t c, const Real *balance, Real *force) {
  */
 static void balance_constraint(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
                                size_t i, size_t c) {
-  Real *balance = m + place_of_balance(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
+  Real *balance = m + slot_of_balance(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
   Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row(start, m, i));
   balance[c] = REAL(0.0);
   if (!ANYWHERE(follows)) return;
@@ -104,7 +104,7 @@ static void balance_constraint(size_t n, const size_t *start, const size_t *colu
   for (size_t row = 0, k = 0; row < i; row++)
     if (coordinate[row] < 0) balance[k++] = forces[row];
   balance[c] = REAL(1.0);
-  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + place_of_balance(n, start, j % c), balance);
+  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + slot_of_balance(n, start, j % c), balance);
   for (size_t k = 0; k < c; k++) length += balance[k] * balance[k];
   balance[c] = WHERE(follows, 1.0 / length, 0.0);
 }
@@ -124,13 +124,13 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       m[last] = REAL(-INFINITY);
       continue;
     }
-    Real diagonal = m[last], pivot = diagonal, mobility = REAL(0.0);
+    Real diagonal = m[last], pivot = diagonal, delassus = REAL(0.0);
     for (size_t k = start[i]; k < last; k++)
       if (!ldlt_is_idle(m[start[column[k] + 1] - 1])) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1], term = l * m[k];
       pivot -= term;
-      mobility += saddle_mobility(term);
+      delassus += saddle_delassus(term);
       m[k] = l;
     }
     if (coordinate[i] > 0) {
@@ -139,9 +139,9 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       continue;
     }
     Real hold = -pivot;
-    Condition doubts = saddle_is_doubtful(hold, mobility, *weakest);
+    Condition doubts = saddle_is_doubtful(hold, delassus, *weakest);
     if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
-    m[last] = saddle_pivot(hold, mobility, weakest);
+    m[last] = saddle_pivot(hold, delassus, weakest);
   }
   saddle_balance(n, start, column, coordinate, m);
   return 0;
@@ -165,7 +165,7 @@ static void shorten_forces(size_t n, const size_t *start, const int *coordinate,
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) force[count++] = x[i];
-  for (size_t c = 0; c < count; c++) take_along(c, m + place_of_balance(n, start, c), force);
+  for (size_t c = 0; c < count; c++) take_along(c, m + slot_of_balance(n, start, c), force);
   for (size_t i = n; i-- > 0;)
     if (coordinate[i] < 0) x[i] = force[--count];
 }
@@ -189,7 +189,7 @@ static bool has_balances(size_t n, const size_t *start, const int *coordinate, c
   bool has = false;
   for (size_t i = 0, c = 0; i < n; i++) {
     if (coordinate[i] >= 0) continue;
-    has |= ANYWHERE(m[place_of_balance(n, start, c) + c] > 0.0);
+    has |= ANYWHERE(m[slot_of_balance(n, start, c) + c] > 0.0);
     c++;
   }
   return has;

@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 #include "instance/time_laws.h"
 #include "timing/time_events.h"
 
@@ -18,13 +18,13 @@ static double first_count(double time, double offset, double period) {
 /* A period that is not positive is an error at the start (conditions.c); the sample is then put there. */
 void samples_start(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  struct Settlement settlement = settlement_of(instance);
-  double time = instance->situation->time;
-  time_events_values(&settlement, time);
+  struct Resolution resolution = resolution_of(instance);
+  double time = instance->fmu_state->time;
+  time_events_values(&resolution, time);
   for (size_t i = 0; i < switches->sample_count; i++) {
-    const struct SampleFacts *sample = &switches->samples[i];
-    double period = settlement.value[sample_place(switches, i, SAMPLE_EVERY)];
-    double offset = settlement.value[sample_place(switches, i, SAMPLE_OFFSET)];
+    const struct SampleMetadata *sample = &switches->samples[i];
+    double period = resolution.value[sample_slot(switches, i, SAMPLE_EVERY)];
+    double offset = resolution.value[sample_slot(switches, i, SAMPLE_OFFSET)];
     bool is_right = is_period(period, offset, time);
     instance->parameter[sample->base] = is_right ? offset : time;
     instance->parameter[sample->count] = is_right ? first_count(time, offset, period) : 0.0;

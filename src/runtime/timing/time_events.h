@@ -2,9 +2,9 @@
 #ifndef TIME_EVENTS_H
 #define TIME_EVENTS_H
 
-#include "events/settlement.h"
+#include "events/resolution.h"
 
 /* Evaluates value[] of the switch table at a time. Values that depend on accelerations are undefined. */
-void time_events_values(struct Settlement *settlement, double time);
+void time_events_values(struct Resolution *resolution, double time);
 
 #endif

@@ -137,13 +137,13 @@ static struct Fraction convert(struct Converter *converter, Node node, const str
   const struct Vertex *vertex = &converter->graph->vertices[node];
   switch (vertex->operation) {
   case CONSTANT: return (struct Fraction){polynomial_constant(vertex->value), polynomial_constant(1.0)};
-  case ADD: return fraction_add(&known[cone_place(cone, vertex->left)], &known[cone_place(cone, vertex->right)]);
+  case ADD: return fraction_add(&known[cone_slot(cone, vertex->left)], &known[cone_slot(cone, vertex->right)]);
   case MULTIPLY:
-    return fraction_multiply(&known[cone_place(cone, vertex->left)], &known[cone_place(cone, vertex->right)]);
+    return fraction_multiply(&known[cone_slot(cone, vertex->left)], &known[cone_slot(cone, vertex->right)]);
   case POWER: {
     double exponent =
         graph_is_constant(converter->graph, vertex->right) ? graph_value(converter->graph, vertex->right) : NAN;
-    const struct Fraction *base = &known[cone_place(cone, vertex->left)];
+    const struct Fraction *base = &known[cone_slot(cone, vertex->left)];
     bool invertible = exponent > 0 || base->above.count > 0;
     if (exponent == floor(exponent) && fabs(exponent) <= 20 && invertible) return fraction_power(base, (int)exponent);
     return atom_fraction(converter, node);
@@ -210,8 +210,7 @@ static size_t work_of(const struct Graph *graph, const struct Fraction *known, s
   size_t terms = result->above.count + result->below.count;
   if (result->below.count > 1 || vertex->operation == POWER) return terms * terms;
   if (vertex->operation != MULTIPLY) return terms;
-  const struct Fraction *left = &known[cone_place(cone, vertex->left)],
-                        *right = &known[cone_place(cone, vertex->right)];
+  const struct Fraction *left = &known[cone_slot(cone, vertex->left)], *right = &known[cone_slot(cone, vertex->right)];
   return terms + left->above.count * right->above.count;
 }
 
@@ -230,7 +229,7 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
     }
   }
   for (size_t i = 0; i < count && !converter->overflow; i++)
-    fractions[i] = fraction_copy(&known[cone_place(cone, nodes[i])]);
+    fractions[i] = fraction_copy(&known[cone_slot(cone, nodes[i])]);
   for (size_t place = 0; place < cone->count; place++) fraction_free(&known[place]);
   release(known);
   return !converter->overflow;

@@ -90,8 +90,8 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
  */
 struct Load {
   Node mass;
-  Node lever; /* at most the mass times the distance of the centre of mass from the link's origin */
-  Node trace; /* at most the trace of the moments about the origin */
+  Node jacobian_row; /* at most the mass times the distance of the centre of mass from the link's origin */
+  Node trace;        /* at most the trace of the moments about the origin */
 };
 
 static Node length_of(struct Graph *graph, struct Vector vector) {
@@ -101,9 +101,9 @@ static Node length_of(struct Graph *graph, struct Vector vector) {
 /* Returns the load of a link, with that of the outward links. */
 static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bodies, const struct Load *behind) {
   const struct Vector *moment = bodies->moment.row, *coupling = bodies->coupling.row;
-  struct Vector lever = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* from -[lever] */
+  struct Vector jacobian_row = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* from -[lever] */
   struct Load load = {.mass = add(graph, bodies->mass.row[0].along[0], behind->mass),
-                      .lever = add(graph, length_of(graph, lever), behind->lever),
+                      .jacobian_row = add(graph, length_of(graph, jacobian_row), behind->jacobian_row),
                       .trace = behind->trace};
   for (int i = 0; i < 3; i++) load.trace = add(graph, load.trace, moment[i].along[i]);
   return load;
@@ -111,9 +111,9 @@ static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bod
 
 static void add_load_to_parent(struct Graph *graph, struct Load *parent, const struct Pose *pose, struct Load load) {
   Node distance = length_of(graph, pose->origin), shift = multiply(graph, load.mass, distance);
-  Node steiner = multiply(graph, distance, add(graph, scale(graph, 2.0, load.lever), shift));
+  Node steiner = multiply(graph, distance, add(graph, scale(graph, 2.0, load.jacobian_row), shift));
   parent->mass = add(graph, parent->mass, load.mass);
-  parent->lever = add(graph, parent->lever, add(graph, load.lever, shift));
+  parent->jacobian_row = add(graph, parent->jacobian_row, add(graph, load.jacobian_row, shift));
   parent->trace = add(graph, parent->trace, add(graph, load.trace, scale(graph, 2.0, steiner)));
 }
 

@@ -79,7 +79,7 @@ static void take_response(struct Graph *graph, size_t count, const Node *respons
   for (size_t i = 0; i < count; i++) x[i] = subtract(graph, x[i], multiply(graph, response[i], own));
 }
 
-/* Solves with the columns of oblique.h added to K, one after the other. */
+/* Solves with the columns of nonsymmetric.h added to K, one after the other. */
 static void solve_with_columns(struct Graph *graph, const struct InertiaBlock *block, Node *x) {
   const struct FactorPattern pattern = pattern_of(block);
   size_t n = block->count;
@@ -87,7 +87,7 @@ static void solve_with_columns(struct Graph *graph, const struct InertiaBlock *b
   factors_solve(graph, &pattern, block->factor, x);
   for (size_t k = 0; k < block->force_count; k++) {
     Node *response = responses + k * n;
-    for (size_t i = 0; i < n; i++) response[i] = block->oblique[k * n + i];
+    for (size_t i = 0; i < n; i++) response[i] = block->nonsymmetric[k * n + i];
     factors_solve(graph, &pattern, block->factor, response);
     for (size_t j = 0; j < k; j++) take_response(graph, n, responses + j * n, block->forces[j], response);
     take_response(graph, n, response, block->forces[k], x);

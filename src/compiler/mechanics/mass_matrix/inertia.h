@@ -30,9 +30,9 @@ struct InertiaBlock {
   bool is_unrolled;        /* solved symbolically, as straight-line code; else numerically at run time */
   size_t *start, *column;
   Node *mass; /* elements of K; ZERO at fill-in */
-  /* Forces on which generalized forces depend: number, row of each, columns added to K; see oblique.h. */
+  /* Forces on which generalized forces depend: number, row of each, columns added to K; see nonsymmetric.h. */
   size_t force_count, *forces;
-  Node *oblique;
+  Node *nonsymmetric;
   Node *factor; /* unrolled blocks: the elements of L, and of D on the diagonal; else NULL */
   /* A kinematic tree, which replaces elements and factors; else NULL. Its rows are ascending. */
   const struct ArticulatedTree *tree;

@@ -107,25 +107,25 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
 }
 
 /* Returns the column of a force on which generalized forces depend; appends it if needed. */
-static size_t oblique_column(struct InertiaBlock *block, size_t force) {
+static size_t nonsymmetric_column(struct InertiaBlock *block, size_t force) {
   for (size_t k = 0; k < block->force_count; k++)
     if (block->forces[k] == force) return k;
   size_t count = block->force_count++;
   block->forces = make_room(block->forces, count, sizeof *block->forces);
   for (size_t i = 0; i < block->count; i++) {
-    block->oblique = make_room(block->oblique, count * block->count + i, sizeof *block->oblique);
-    block->oblique[count * block->count + i] = ZERO;
+    block->nonsymmetric = make_room(block->nonsymmetric, count * block->count + i, sizeof *block->nonsymmetric);
+    block->nonsymmetric[count * block->count + i] = ZERO;
   }
   block->forces[count] = force;
   return count;
 }
 
-static void add_oblique(struct Inertia *inertia, const struct Elements *oblique) {
-  for (size_t k = 0; k < oblique->count; k++) {
-    size_t row = inertia->coordinate_count + oblique->positions[k].row, column = oblique->positions[k].column;
+static void add_nonsymmetric(struct Inertia *inertia, const struct Elements *nonsymmetric) {
+  for (size_t k = 0; k < nonsymmetric->count; k++) {
+    size_t row = inertia->coordinate_count + nonsymmetric->positions[k].row, column = nonsymmetric->positions[k].column;
     struct InertiaBlock *block = &inertia->blocks[inertia->block_of[row]];
-    size_t place = oblique_column(block, inertia->place_of[row]);
-    block->oblique[place * block->count + inertia->place_of[column]] = oblique->nodes[k];
+    size_t place = nonsymmetric_column(block, inertia->place_of[row]);
+    block->nonsymmetric[place * block->count + inertia->place_of[column]] = nonsymmetric->nodes[k];
   }
 }
 
@@ -145,34 +145,37 @@ static void append_open_rows(const struct Model *model, struct Elements *element
 
 /* Creates the blocks of K. */
 static struct Inertia *create_bordered(const struct Model *model, struct Elements *elements,
-                                       const struct Border *border, const struct Trees *trees) {
+                                       const struct ConstraintBlock *constraint_block, const struct Trees *trees) {
   const struct Graph *graph = model->graph;
-  const struct Elements *jacobian = border->jacobian;
+  const struct Elements *jacobian = constraint_block->jacobian;
   size_t count = model->coordinates.count;
   if (model->unrolled) append_open_rows(model, elements);
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
-  struct Inertia *inertia = create_blocks(graph, count + border->count, border->count, elements, trees);
-  add_oblique(inertia, border->oblique);
+  struct Inertia *inertia =
+      create_blocks(graph, count + constraint_block->count, constraint_block->count, elements, trees);
+  add_nonsymmetric(inertia, constraint_block->nonsymmetric);
   return inertia;
 }
 
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
-                               const struct Border *border, struct Diagnostics *diagnostics) {
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node regularization,
+                               const struct ConstraintBlock *constraint_block, struct Diagnostics *diagnostics) {
   size_t count = model->coordinates.count;
   bool is_linear = model->linearized || (model->solver.method != NULL && model->solver.method->needs_linear);
-  size_t rows = count + border->count;
+  size_t rows = count + constraint_block->count;
   /* Formulas of linear systems need the elements of M. */
-  struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, border, stillness);
+  struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, constraint_block, regularization);
   struct Trees trees = find_trees(model, links, rows);
   struct Elements elements = elements_of(model, momentum, trees.tree_of);
   couple_trees(&trees, count, &elements);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
-  if (!is_right || border->count > 0) inertia = is_right ? create_bordered(model, &elements, border, &trees) : NULL;
+  if (!is_right || constraint_block->count > 0)
+    inertia = is_right ? create_bordered(model, &elements, constraint_block, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of prescribed motions depends on accelerations, whose derivatives must be expressions. */
-  bool power_has_accelerations = (model->given.drive_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
+  bool power_has_accelerations =
+      (model->given.prescribed_motion_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
   bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];

@@ -1,7 +1,7 @@
 /* Derivation of the mass matrix, its blocks and its checks. */
 #pragma once
 
-#include "mechanics/mass_matrix/border.h"
+#include "mechanics/mass_matrix/constraint_block.h"
 #include "mechanics/mass_matrix/inertia.h"
 
 /*
@@ -11,8 +11,8 @@
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * Returns K from the momenta dL/dv of all coordinates; stillness is energy_of_stillness(). Returns NULL after reporting
+ * Returns K from the momenta dL/dv of all coordinates; stillness is energy_of_regularization(). Returns NULL after reporting
  * a coordinate without inertia, or an M that is singular everywhere, or not positive definite at the start values.
  */
-struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node stillness,
-                               const struct Border *border, struct Diagnostics *diagnostics);
+struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node regularization,
+                               const struct ConstraintBlock *constraint_block, struct Diagnostics *diagnostics);

@@ -55,7 +55,8 @@ static void find_coordinates(const struct Builder *builder, struct Link *link, s
   for (size_t i = 0; i < cone->count; i++) {
     if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
     size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
-    if (builder->model->given.drives[coordinate].given || place_in_link(link, coordinate) < link->count) continue;
+    if (builder->model->given.prescribed_motions[coordinate].given || place_in_link(link, coordinate) < link->count)
+      continue;
     append_row(link, coordinate);
   }
 }
@@ -168,18 +169,18 @@ static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
 /*
  * Adds the inertia of <kinetic> terms, potentials and regularization. It must couple coordinates of the same link only.
  */
-static void add_further_inertia(struct Builder *builder, Node stillness) {
+static void add_further_inertia(struct Builder *builder, Node regularization) {
   const struct Model *model = builder->model;
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
   Node *momentum = allocate(n, sizeof *momentum);
-  Node kinetic = add(graph, model->energies.explicit_kinetic.node, stillness);
+  Node kinetic = add(graph, model->energies.explicit_kinetic.node, regularization);
   gradient_of(graph, subtract(graph, kinetic, model->energies.potential.node), VELOCITY, n, momentum);
   for (size_t i = 0; i < n && graph_limit(graph) == NULL; i++) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (model->given.drives[i].given || model->given.drives[j].given) continue;
+      if (model->given.prescribed_motions[i].given || model->given.prescribed_motions[j].given) continue;
       if (builder->link_of[i] == builder->link_of[j] && builder->link_of[i] != NO_LINK)
         add_inertia(&builder->links->items[builder->link_of[i]], i, j, row.values[k]);
       else builder->is_elsewhere[i] = builder->is_elsewhere[j] = true;
@@ -225,13 +226,13 @@ static void leave_shared_links(const struct Builder *builder, const size_t *link
  * Returns, for each constraint, whether it is local: permanent, and the only one on the coordinates of a single link,
  * as the norm of a quaternion is. If coordinates are fixed at the start, none is.
  */
-static bool *find_local_constraints(const struct Builder *builder, const struct Border *border) {
+static bool *find_local_constraints(const struct Builder *builder, const struct ConstraintBlock *constraint_block) {
   const struct Model *model = builder->model;
-  const struct Elements *jacobian = border->jacobian;
-  bool *is_local = allocate(border->count, sizeof *is_local);
-  size_t *link = allocate(border->count, sizeof *link);
-  bool *is_met = allocate(border->count, sizeof *is_met);
-  for (size_t j = 0; j < border->count; j++)
+  const struct Elements *jacobian = constraint_block->jacobian;
+  bool *is_local = allocate(constraint_block->count, sizeof *is_local);
+  size_t *link = allocate(constraint_block->count, sizeof *link);
+  bool *is_met = allocate(constraint_block->count, sizeof *is_met);
+  for (size_t j = 0; j < constraint_block->count; j++)
     is_local[j] =
         !graph_depends_on(model->graph, model->constraints.items[j].node, MODE) && !has_fixed_coordinates(model);
   for (size_t k = 0; k < jacobian->count; k++) {
@@ -240,18 +241,18 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
     link[row] = of;
     is_met[row] = true;
   }
-  for (size_t j = 0; j < border->count; j++) is_local[j] &= is_met[j];
-  leave_shared_links(builder, link, border->count, is_local);
+  for (size_t j = 0; j < constraint_block->count; j++) is_local[j] &= is_met[j];
+  leave_shared_links(builder, link, constraint_block->count, is_local);
   return is_local;
 }
 
 /* Adds a constraint within one link to its rows, without motion. Others exclude a tree; saddle.h solves them. */
-static void add_constraints(struct Builder *builder, const struct Border *border) {
-  const struct Elements *jacobian = border->jacobian;
+static void add_constraints(struct Builder *builder, const struct ConstraintBlock *constraint_block) {
+  const struct Elements *jacobian = constraint_block->jacobian;
   size_t n = builder->model->coordinates.count;
-  const bool *is_local = find_local_constraints(builder, border);
+  const bool *is_local = find_local_constraints(builder, constraint_block);
   mark_columns(builder, jacobian, is_local);
-  mark_columns(builder, border->oblique, NULL);
+  mark_columns(builder, constraint_block->nonsymmetric, NULL);
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t row = n + jacobian->positions[k].row;
     if (!is_local[row - n] || builder->link_of[row] != NO_LINK) continue;
@@ -261,8 +262,8 @@ static void add_constraints(struct Builder *builder, const struct Border *border
 }
 
 /* Fills in the elements of J in these rows. */
-static void set_constraints(struct Builder *builder, const struct Border *border) {
-  const struct Elements *jacobian = border->jacobian;
+static void set_constraints(struct Builder *builder, const struct ConstraintBlock *constraint_block) {
+  const struct Elements *jacobian = constraint_block->jacobian;
   size_t n = builder->model->coordinates.count;
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t row = n + jacobian->positions[k].row, column = jacobian->positions[k].column;
@@ -315,12 +316,12 @@ static bool choose_trees(struct Builder *builder, const struct Components *compo
  * Fills in motion subspaces and inertias. No node is made before, so that systems without trees have the same nodes as
  * without this search.
  */
-static void set_links(struct Builder *builder, const struct Border *border, Node stillness) {
+static void set_links(struct Builder *builder, const struct ConstraintBlock *constraint_block, Node regularization) {
   for (size_t i = 0; i < builder->links->count; i++) set_motion(builder, &builder->links->items[i]);
   for (size_t i = 0; i < builder->model->mechanism.body_count; i++)
     if (builder->model->mechanism.bodies[i].is_in_frame) set_inertia_of_body(builder, i);
-  add_further_inertia(builder, stillness);
-  set_constraints(builder, border);
+  add_further_inertia(builder, regularization);
+  set_constraints(builder, constraint_block);
 }
 
 struct Links *links_without_trees(size_t row_count) {
@@ -330,8 +331,9 @@ struct Links *links_without_trees(size_t row_count) {
   return links;
 }
 
-struct Links *links_create(const struct Model *model, const struct Border *border, Node stillness) {
-  size_t rows = model->coordinates.count + border->count;
+struct Links *links_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
+                           Node regularization) {
+  size_t rows = model->coordinates.count + constraint_block->count;
   struct Builder builder = {.model = model,
                             .links = links_without_trees(rows),
                             .row_count = rows,
@@ -343,10 +345,10 @@ struct Links *links_create(const struct Model *model, const struct Border *borde
   for (size_t i = 0; i < rows; i++) builder.link_of[i] = NO_LINK;
   create_links_of_frames(&builder);
   append_links_of_bodies(&builder);
-  add_constraints(&builder, border);
+  add_constraints(&builder, constraint_block);
   struct Components components = couple(&builder);
   if (!choose_trees(&builder, &components)) return builder.links;
-  set_links(&builder, border, stillness);
+  set_links(&builder, constraint_block, regularization);
   choose_trees(&builder, &components);
   return builder.links;
 }

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "mechanics/mass_matrix/border.h"
+#include "mechanics/mass_matrix/constraint_block.h"
 #include "mechanics/mass_matrix/spatial.h"
 
 struct Link {
@@ -30,9 +30,10 @@ struct Links {
 
 /*
  * Finds the kinematic trees of a model: those that are deep enough for articulated inertias to pay, and whose
- * constraints stay within single links. stillness is energy_of_stillness().
+ * constraints stay within single links. stillness is energy_of_regularization().
  */
-struct Links *links_create(const struct Model *model, const struct Border *border, Node stillness);
+struct Links *links_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
+                           Node regularization);
 
 /* Returns links without trees, for so many rows. */
 struct Links *links_without_trees(size_t row_count);

@@ -43,16 +43,16 @@ static void mirror(struct Matrix *matrix) {
 struct SpatialInertia spatial_inertia_of_body(struct Graph *graph, Node mass, struct Vector offset,
                                               const struct Matrix *tensor) {
   struct SpatialInertia inertia = {0};
-  struct Vector lever = vector_scale(graph, mass, offset);
+  struct Vector jacobian_row = vector_scale(graph, mass, offset);
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     inertia.mass.row[i].along[i] = mass;
-    inertia.coupling.row[i].along[j] = lever.along[k]; /* -[lever] */
-    inertia.coupling.row[j].along[i] = negate(graph, lever.along[k]);
-    Node square = multiply(graph, lever.along[j], offset.along[j]);
-    square = add(graph, square, multiply(graph, lever.along[k], offset.along[k]));
+    inertia.coupling.row[i].along[j] = jacobian_row.along[k]; /* -[lever] */
+    inertia.coupling.row[j].along[i] = negate(graph, jacobian_row.along[k]);
+    Node square = multiply(graph, jacobian_row.along[j], offset.along[j]);
+    square = add(graph, square, multiply(graph, jacobian_row.along[k], offset.along[k]));
     inertia.moment.row[i].along[i] = add(graph, tensor->row[i].along[i], square);
-    Node product = multiply(graph, lever.along[i], offset.along[j]);
+    Node product = multiply(graph, jacobian_row.along[i], offset.along[j]);
     inertia.moment.row[i].along[j] = subtract(graph, tensor->row[i].along[j], product);
     inertia.moment.row[j].along[i] = inertia.moment.row[i].along[j];
   }
@@ -106,9 +106,9 @@ struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struc
   struct Matrix coupling = matrix_turned(graph, &pose->rotation, &inertia->coupling);
   struct Matrix moment = matrix_turned(graph, &pose->rotation, &inertia->moment);
   /* (X [r])^T = -[r] X^T */
-  struct Matrix lever = crossed(graph, r, &result.mass);
-  lever = matrix_transposed(&lever);
-  result.coupling = matrix_add(graph, &coupling, &lever);
+  struct Matrix jacobian_row = crossed(graph, r, &result.mass);
+  jacobian_row = matrix_transposed(&jacobian_row);
+  result.coupling = matrix_add(graph, &coupling, &jacobian_row);
   struct Matrix first = crossed(graph, r, &coupling), second = crossed(graph, r, &result.coupling);
   first = matrix_transposed(&first);
   moment = matrix_add(graph, &moment, &first);

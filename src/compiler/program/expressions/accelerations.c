@@ -9,14 +9,15 @@
 #include "program/expressions/accelerations.h"
 
 #include "base/memory.h"
-#include "oblique.h"
+#include "nonsymmetric.h"
 #include "saddle.h"
 
 static size_t mass_count_of(const struct InertiaBlock *block) {
   size_t elements = block->start[block->count];
   if (block->constraint_count == 0) return elements;
   if (block->force_count == 0) return SADDLE_MASS(elements, block->count, block->constraint_count);
-  return SADDLE_MASS(elements, block->count, block->constraint_count) + OBLIQUE_MASS(block->count, block->force_count);
+  return SADDLE_MASS(elements, block->count, block->constraint_count) +
+         NONSYMMETRIC_MASS(block->count, block->force_count);
 }
 
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
@@ -36,13 +37,13 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
   return blocks;
 }
 
-bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot) {
+bool pivot_is_parameter_constants(const struct Graph *graph, const struct Pivot *pivot) {
   return graph_is_constant_in_time(graph, pivot->value) && graph_is_constant_in_time(graph, pivot->scale);
 }
 
 void append_elements(struct NodeList *targets, const struct InertiaBlock *block) {
   append_nodes(targets, block->mass, block->start[block->count]);
-  append_nodes(targets, block->oblique, block->force_count * block->count);
+  append_nodes(targets, block->nonsymmetric, block->force_count * block->count);
 }
 
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations, bool with_forces) {
@@ -58,15 +59,15 @@ struct NodeList accelerations_targets(const struct Graph *graph, const struct Eq
   }
   for (size_t i = 0; i < inertia->pivot_count; i++) {
     const struct Pivot *pivot = &inertia->pivots[i];
-    if (pivot_is_prepared(graph, pivot)) continue;
+    if (pivot_is_parameter_constants(graph, pivot)) continue;
     append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
   }
   return targets;
 }
 
 void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
-  Place number = (Place)pivot->coordinate + 1, value = values_place(values, pivot->value);
-  Place diagonal = values_place(values, pivot->diagonal), scale = values_place(values, pivot->scale);
+  Slot number = (Slot)pivot->coordinate + 1, value = values_slot(values, pivot->value);
+  Slot diagonal = values_slot(values, pivot->diagonal), scale = values_slot(values, pivot->scale);
   if (value != diagonal) routine_append(values->routine, CHECK_PIVOT, number, value, diagonal, 0);
   if (diagonal != scale) routine_append(values->routine, CHECK_DIAGONAL, number, diagonal, scale, 0);
   if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
@@ -75,8 +76,8 @@ void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
 void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *side) {
   const struct LoopedBlock *looped = &blocks->items[number];
   for (size_t i = 0; i < looped->block->count; i++)
-    values_copy(values, place_in(SPACE_SIDE, looped->first_side + i), side[looped->block->coordinates[i]]);
-  routine_append(values->routine, SOLVE, (Place)number, 0, 0, 0);
+    values_copy(values, slot_in(SPACE_SIDE, looped->first_side + i), side[looped->block->coordinates[i]]);
+  routine_append(values->routine, SOLVE, (Slot)number, 0, 0, 0);
 }
 
 /* Returns the arithmetic operations of one factorization and one solution of the block. */
@@ -91,14 +92,14 @@ static size_t factor_operations(const struct InertiaBlock *block) {
 void append_masses(struct Values *values, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
-    values_copy(values, place_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+    values_copy(values, slot_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    values_copy(values, place_in(SPACE_MASS, first + i), block->oblique[i]);
+    values_copy(values, slot_in(SPACE_MASS, first + i), block->nonsymmetric[i]);
 }
 
 void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
-  routine_append(values->routine, FACTOR, (Place)number, 0, 0, 0);
+  routine_append(values->routine, FACTOR, (Slot)number, 0, 0, 0);
   values->routine->operation_count += factor_operations(blocks->items[number].block);
 }
 
@@ -126,18 +127,18 @@ static void append_block(struct Values *values, const struct Equations *equation
   append_masses(values, looped);
   append_factor(values, blocks, number);
   append_solution(values, blocks, number, equations->right_side);
-  if (with_forces && has_least_forces(block)) routine_append(values->routine, LEAST_FORCES, (Place)number, 0, 0, 0);
+  if (with_forces && has_least_forces(block)) routine_append(values->routine, LEAST_FORCES, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
-      routine_copy(values->routine, place_in(SPACE_ACCELERATION, block->coordinates[i]),
-                   place_in(SPACE_SIDE, looped->first_side + i));
+      routine_copy(values->routine, slot_in(SPACE_ACCELERATION, block->coordinates[i]),
+                   slot_in(SPACE_SIDE, looped->first_side + i));
 }
 
 void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      values_hold(values, symbol[looped->block->coordinates[i]], place_in(SPACE_SIDE, looped->first_side + i));
+      values_hold(values, symbol[looped->block->coordinates[i]], slot_in(SPACE_SIDE, looped->first_side + i));
   }
 }
 
@@ -145,7 +146,7 @@ void hold_unknowns(struct Values *values, const struct Equations *equations, con
                    const Node *symbol) {
   if (!rates_use_unknowns(values->graph, equations)) return;
   for (size_t b = 0; b < blocks->count; b++)
-    if (has_least_forces(blocks->items[b].block)) routine_append(values->routine, LEAST_FORCES, (Place)b, 0, 0, 0);
+    if (has_least_forces(blocks->items[b].block)) routine_append(values->routine, LEAST_FORCES, (Slot)b, 0, 0, 0);
   hold_solutions(values, blocks, symbol);
 }
 
@@ -155,8 +156,9 @@ void append_accelerations(struct Values *values, const struct Equations *equatio
   struct NodeList targets = accelerations_targets(values->graph, equations, with_forces);
   values_compute(values, targets.nodes, targets.count, false);
   for (size_t i = 0; i < inertia->pivot_count; i++)
-    if (!pivot_is_prepared(values->graph, &inertia->pivots[i])) append_pivot_check(values, &inertia->pivots[i]);
+    if (!pivot_is_parameter_constants(values->graph, &inertia->pivots[i]))
+      append_pivot_check(values, &inertia->pivots[i]);
   for (size_t i = 0; i < (with_forces ? row_count(equations) : equations->count); i++)
-    if (!is_looped(equations, i)) values_copy(values, place_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
+    if (!is_looped(equations, i)) values_copy(values, slot_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
   for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block, with_forces);
 }

@@ -27,7 +27,7 @@ void append_elements(struct NodeList *targets, const struct InertiaBlock *block)
 struct NodeList accelerations_targets(const struct Graph *graph, const struct Equations *equations, bool with_forces);
 
 /* True if the pivot is constant in time, so that prepare() checks it when parameters change. */
-bool pivot_is_prepared(const struct Graph *graph, const struct Pivot *pivot);
+bool pivot_is_parameter_constants(const struct Graph *graph, const struct Pivot *pivot);
 
 /* Appends the check that makes the function return an error where the pivot vanishes; the pivot must be computed. */
 void append_pivot_check(struct Values *values, const struct Pivot *pivot);

@@ -102,7 +102,7 @@ static void add_push(const struct Model *model, Node along, enum SymbolKind kind
   struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    if (model->given.drives[coordinate].given) continue;
+    if (model->given.prescribed_motions[coordinate].given) continue;
     push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
   }
 }
@@ -308,7 +308,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   const struct SwitchingExpressions *switching = expressions->equations->switching;
   if (switching != NULL) {
     append_nodes(&targets, switching->indicators, switching->indicator_count);
-    append_nodes(&targets, switching->roundings, switching->indicator_count);
+    append_nodes(&targets, switching->rounding_bounds, switching->indicator_count);
     append_nodes(&targets, switching->values, switching->value_count);
   }
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series,

@@ -38,7 +38,7 @@ static void append(struct ElementList *list, size_t row, size_t column, Node val
 }
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
-  return state_place(coordinates, graph_symbol_of(graph, symbol));
+  return state_slot(coordinates, graph_symbol_of(graph, symbol));
 }
 
 static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,

@@ -19,9 +19,9 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
-#include "program/series/openers.h"
+#include "program/series/guard_conditions.h"
 
-static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
+static const struct LimitMetadata metadata[LIMIT_RULE_COUNT] = {
     [LIMIT_EXPONENTIAL] = {.name = "exponential", .has_function = true},
     [LIMIT_HYPERBOLIC] = {.name = "hyperbolic", .has_function = true},
     [LIMIT_BOUNDED] = {.name = "bounded", .has_function = true},
@@ -37,8 +37,8 @@ static const struct LimitFacts facts[LIMIT_RULE_COUNT] = {
     [LIMIT_ANGLE] = {.name = "angle", .has_two_rows = true},
 };
 
-const struct LimitFacts *limit_facts(enum LimitRule rule) {
-  return &facts[rule];
+const struct LimitMetadata *limit_metadata(enum LimitRule rule) {
+  return &metadata[rule];
 }
 
 /* A check before its rows have places; ZERO for rows that it does not have. */
@@ -50,25 +50,25 @@ struct Check {
   double share;  /* for powers with a constant exponent, else NAN */
   size_t next;   /* 1 + the next check with the same first row, 0 for none */
   bool is_covered;
-  Node opener; /* the guard condition under which it applies; ZERO: always */
+  Node guard_condition; /* the guard condition under which it applies; ZERO: always */
 };
 
 struct CheckList {
   const struct SeriesBuilder *builder;
   struct Check *items;
   size_t count;
-  size_t *first;                 /* for each node: 1 + the first check with this row, 0 for none */
-  const struct Openers *openers; /* guard conditions of the present node; NULL: always needed */
+  size_t *first;                                  /* for each node: 1 + the first check with this row, 0 for none */
+  const struct GuardConditions *guard_conditions; /* guard conditions of the present node; NULL: always needed */
 };
 
 /* Adds a check, or merges it with an equal one. Of two powers of one base, the smaller share is the stricter. */
-static void append_under(struct CheckList *list, struct Check check, Node opener) {
-  check.opener = opener;
+static void append_under(struct CheckList *list, struct Check check, Node guard_condition) {
+  check.guard_condition = guard_condition;
   size_t *end = &list->first[check.rows[0]];
   for (; *end != 0; end = &list->items[*end - 1].next) {
     struct Check *other = &list->items[*end - 1];
     if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent ||
-        other->opener != check.opener)
+        other->guard_condition != check.guard_condition)
       continue;
     if (check.share < other->share) other->share = check.share;
     return;
@@ -81,12 +81,12 @@ static void append_under(struct CheckList *list, struct Check check, Node opener
 
 /* Adds a check for each guard condition of the present node. */
 static void append(struct CheckList *list, struct Check check) {
-  const struct Openers *openers = list->openers;
-  if (openers == NULL || openers->always) {
+  const struct GuardConditions *guard_conditions = list->guard_conditions;
+  if (guard_conditions == NULL || guard_conditions->always) {
     append_under(list, check, ZERO);
     return;
   }
-  for (size_t i = 0; i < openers->count; i++) append_under(list, check, openers->nodes[i]);
+  for (size_t i = 0; i < guard_conditions->count; i++) append_under(list, check, guard_conditions->nodes[i]);
 }
 
 static bool can_have_row(const struct SeriesBuilder *builder, Node node) {
@@ -147,7 +147,7 @@ static void check_power(struct CheckList *list, Node node) {
 
 static enum LimitRule rule_named(const char *name) {
   int rule = 0;
-  while (strcmp(facts[rule].name, name) != 0) rule++;
+  while (strcmp(metadata[rule].name, name) != 0) rule++;
   return (enum LimitRule)rule;
 }
 
@@ -177,7 +177,7 @@ static void find_covered(struct CheckList *list) {
     if (check->rule != LIMIT_DIVISION) continue;
     for (size_t j = list->first[check->rows[0]]; j != 0; j = list->items[j - 1].next)
       check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share &&
-                           list->items[j - 1].opener == check->opener;
+                           list->items[j - 1].guard_condition == check->guard_condition;
   }
 }
 
@@ -190,9 +190,9 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
     *taken = (struct LimitCheck){.rule = check->rule, .function = check->function, .share = check->share};
     taken->row = series_row(builder, check->rows[0]);
     if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
-    if (check->exponent != ZERO) taken->exponent = values_place(builder->values, check->exponent);
-    taken->is_gated = check->opener != ZERO;
-    if (taken->is_gated) taken->opener = values_place(builder->values, check->opener);
+    if (check->exponent != ZERO) taken->exponent = values_slot(builder->values, check->exponent);
+    taken->is_gated = check->guard_condition != ZERO;
+    if (taken->is_gated) taken->guard_condition = values_slot(builder->values, check->guard_condition);
   }
   return checks;
 }
@@ -201,17 +201,17 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
   struct CheckList list = {.builder = builder,
                            .items = make_room(NULL, 0, sizeof *list.items),
                            .first = allocate(builder->graph->count, sizeof(size_t))};
-  struct Openers *openers = openers_of(builder->graph, builder->plan);
+  struct GuardConditions *guard_conditions = guard_conditions_of(builder->graph, builder->plan);
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
-    list.openers = openers != NULL ? &openers[node] : NULL;
+    list.guard_conditions = guard_conditions != NULL ? &guard_conditions[node] : NULL;
     struct Form form = form_of(builder->needs, node);
     if (form.kind == FORM_POWER) check_power(&list, node);
     else if (form.kind == FORM_FUNCTION) check_function(&list, node);
     else if (form.kind == FORM_QUOTIENT && can_have_row(builder, form.right))
       check_division(&list, form.left, form.right);
   }
-  if (openers != NULL) release(openers);
+  if (guard_conditions != NULL) release(guard_conditions);
   find_covered(&list);
   return take_rows(builder, &list);
 }

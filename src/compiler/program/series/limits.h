@@ -10,12 +10,12 @@ struct LimitChecks {
 };
 
 /* The function series_limit_NAME() of a rule, and its arguments after the first row. */
-struct LimitFacts {
+struct LimitMetadata {
   const char *name;
   bool has_two_rows, has_function, has_exponent, has_share;
 };
 
-const struct LimitFacts *limit_facts(enum LimitRule rule);
+const struct LimitMetadata *limit_metadata(enum LimitRule rule);
 
 /* Returns the checks of all nodes in the series; their arguments get rows. */
 struct LimitChecks limits_of(struct SeriesBuilder *builder);

@@ -23,37 +23,37 @@ bool is_constant_series(const struct SeriesBuilder *builder, Node node) {
   return graph_is_constant_in_time(builder->graph, node);
 }
 
-Place series_coefficient(const struct SeriesBuilder *builder, Node node) {
-  if (is_constant_series(builder, node)) return place_in(SPACE_NUMBER, ZERO);
-  if (builder->is_computed[node]) return place_in((enum Space)SPACE_OF_NODES, node);
+Slot series_coefficient(const struct SeriesBuilder *builder, Node node) {
+  if (is_constant_series(builder, node)) return slot_in(SPACE_NUMBER, ZERO);
+  if (builder->is_computed[node]) return slot_in((enum Space)SPACE_OF_NODES, node);
   const struct Symbol *symbol = graph_symbol_of(builder->graph, node);
   size_t index = (size_t)symbol->index;
   switch (symbol->kind) {
-  case TIME: return place_in(SPACE_TIME_ROW, 0);
-  case INPUT: return place_in(SPACE_INPUT_ROW, index);
-  case COORDINATE: return place_in(SPACE_STATE_ROW, index);
-  case VELOCITY: return place_in(SPACE_STATE_ROW, builder->coordinates + index);
-  case STATE: return place_in(SPACE_STATE_ROW, 2 * builder->coordinates + index);
-  default: return place_in((enum Space)SPACE_OF_ACCELERATIONS, index);
+  case TIME: return slot_in(SPACE_TIME_ROW, 0);
+  case INPUT: return slot_in(SPACE_INPUT_ROW, index);
+  case COORDINATE: return slot_in(SPACE_STATE_ROW, index);
+  case VELOCITY: return slot_in(SPACE_STATE_ROW, builder->coordinates + index);
+  case STATE: return slot_in(SPACE_STATE_ROW, 2 * builder->coordinates + index);
+  default: return slot_in((enum Space)SPACE_OF_ACCELERATIONS, index);
   }
 }
 
-Place series_row(struct SeriesBuilder *builder, Node node) {
+Slot series_row(struct SeriesBuilder *builder, Node node) {
   builder->has_row[node] = true;
   return series_coefficient(builder, node);
 }
 
-static void append(struct SeriesBuilder *builder, enum Opcode opcode, Place result, Place a, Place b, Place c) {
+static void append(struct SeriesBuilder *builder, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c) {
   routine_append(builder->order, opcode, result, a, b, c);
 }
 
 /* Returns the place of a value that is constant in time. */
-static Place value_of(const struct SeriesBuilder *builder, Node node) {
-  return values_place(builder->values, node);
+static Slot value_of(const struct SeriesBuilder *builder, Node node) {
+  return values_slot(builder->values, node);
 }
 
-static Place new_local(struct SeriesBuilder *builder) {
-  return place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+static Slot new_local(struct SeriesBuilder *builder) {
+  return slot_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
 }
 
 static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
@@ -62,18 +62,18 @@ static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
 }
 
 /* Returns the row of the time derivative: that of a velocity, or one that all functions of the operand share. */
-static Place rate_row(struct SeriesBuilder *builder, Node operand) {
+static Slot rate_row(struct SeriesBuilder *builder, Node operand) {
   if (is_coordinate(builder, operand))
-    return place_in(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
+    return slot_in(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
   if (builder->rate[operand] == 0) {
     builder->rate[operand] = ++builder->further_rows;
-    append(builder, SERIES_RATE, place_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1),
+    append(builder, SERIES_RATE, slot_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1),
            series_coefficient(builder, operand), 0, 0);
   }
-  return place_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1);
+  return slot_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1);
 }
 
-static void append_product(struct SeriesBuilder *builder, Place result, Node left, Node right) {
+static void append_product(struct SeriesBuilder *builder, Slot result, Node left, Node right) {
   if (is_constant_series(builder, left))
     append(builder, SERIES_MULTIPLE, result, value_of(builder, left), series_coefficient(builder, right), 0);
   else if (is_constant_series(builder, right))
@@ -90,19 +90,19 @@ static void append_quotient(struct SeriesBuilder *builder, Node node, Node top, 
   }
   if (builder->inverse[below] == 0) builder->inverse[below] = ++builder->further_rows;
   append(builder, SERIES_QUOTIENT, series_row(builder, node), series_coefficient(builder, top),
-         series_row(builder, below), place_in((enum Space)SPACE_OF_RATES, builder->inverse[below] - 1));
+         series_row(builder, below), slot_in((enum Space)SPACE_OF_RATES, builder->inverse[below] - 1));
 }
 
 /* Returns the coefficient k of sign * factor * top, where factor is constant in time. */
-static Place scaled(struct SeriesBuilder *builder, double sign, Node factor, Node top) {
-  Place coefficient = series_coefficient(builder, top);
+static Slot scaled(struct SeriesBuilder *builder, double sign, Node factor, Node top) {
+  Slot coefficient = series_coefficient(builder, top);
   if (factor != ONE) {
-    Place product = new_local(builder);
+    Slot product = new_local(builder);
     append(builder, SERIES_MULTIPLE, product, value_of(builder, factor), coefficient, 0);
     coefficient = product;
   }
   if (sign < 0.0) {
-    Place negative = new_local(builder);
+    Slot negative = new_local(builder);
     append(builder, SERIES_NEGATION, negative, coefficient, 0, 0);
     coefficient = negative;
   }
@@ -112,7 +112,7 @@ static Place scaled(struct SeriesBuilder *builder, double sign, Node factor, Nod
 /* Appends y' = sign factor top' / below. */
 static void append_ratio_integral(struct SeriesBuilder *builder, Node node, double sign, Node factor, Node top,
                                   Node below) {
-  Place coefficient = scaled(builder, sign, factor, top);
+  Slot coefficient = scaled(builder, sign, factor, top);
   if (is_constant_series(builder, below))
     append(builder, SERIES_SHARE, series_coefficient(builder, node), coefficient, value_of(builder, below), 0);
   else append(builder, SERIES_RATIO_INTEGRAL, series_row(builder, node), coefficient, series_row(builder, below), 0);
@@ -120,7 +120,7 @@ static void append_ratio_integral(struct SeriesBuilder *builder, Node node, doub
 
 /* Appends y' = sign operand' factor. */
 static void append_integral(struct SeriesBuilder *builder, Node node, double sign, Node operand, Node factor) {
-  Place result = series_coefficient(builder, node);
+  Slot result = series_coefficient(builder, node);
   if (is_constant_series(builder, operand)) append(builder, SERIES_ZERO, result, 0, 0, 0);
   else if (is_constant_series(builder, factor))
     append(builder, SERIES_COPY, result, scaled(builder, sign, factor, operand), 0, 0);
@@ -128,7 +128,7 @@ static void append_integral(struct SeriesBuilder *builder, Node node, double sig
     append(builder, sign < 0.0 ? SERIES_NEGATIVE_TURN : SERIES_TURN, result,
            value_of(builder, builder->plan->slope[operand]), series_row(builder, factor), 0);
   else {
-    Place rate = rate_row(builder, operand);
+    Slot rate = rate_row(builder, operand);
     append(builder, sign < 0.0 ? SERIES_NEGATIVE_INTEGRAL : SERIES_INTEGRAL, result, rate, series_row(builder, factor),
            0);
   }
@@ -148,7 +148,7 @@ bool is_integrated_power(const struct SeriesBuilder *builder, Node node) {
 static void append_power(struct SeriesBuilder *builder, Node node, Node base, Node exponent) {
   const struct Graph *graph = builder->graph;
   Node auxiliary = builder->plan->auxiliary[node];
-  Place result = series_coefficient(builder, node);
+  Slot result = series_coefficient(builder, node);
   double n = graph_is_constant(graph, exponent) ? graph_value(graph, exponent) : NAN;
   if (n == 2.0) append(builder, SERIES_SQUARE, result, series_row(builder, base), 0, 0);
   else if (n == -1.0) append_quotient(builder, node, ONE, base);
@@ -170,7 +170,7 @@ static void append_angle(struct SeriesBuilder *builder, Node node, Node y, Node 
   if (is_constant_series(builder, x)) append_ratio_integral(builder, node, 1.0, x, y, square);
   else if (is_constant_series(builder, y)) append_ratio_integral(builder, node, -1.0, y, x, square);
   else if (is_constant_series(builder, square)) {
-    Place area = new_local(builder);
+    Slot area = new_local(builder);
     append(builder, SERIES_AREA, area, series_row(builder, y), series_row(builder, x), 0);
     append(builder, SERIES_SHARE, series_coefficient(builder, node), area, value_of(builder, square), 0);
   } else
@@ -184,7 +184,7 @@ static void append_angle(struct SeriesBuilder *builder, Node node, Node y, Node 
  */
 static void append_choice(struct SeriesBuilder *builder, Node node, Node left, Node right, Node difference) {
   enum Opcode opcode = builder->graph->vertices[node].operation == MAXIMUM ? SERIES_LARGER : SERIES_SMALLER;
-  Place result = series_coefficient(builder, node), first = series_coefficient(builder, left);
+  Slot result = series_coefficient(builder, node), first = series_coefficient(builder, left);
   if (is_constant_series(builder, difference)) append(builder, SERIES_COPY, result, first, 0, 0);
   else append(builder, opcode, result, series_row(builder, difference), first, series_coefficient(builder, right));
 }
@@ -207,7 +207,7 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
       append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0);
       return;
     }
-    append(builder, SERIES_GATE, series_coefficient(builder, node), value_of(builder, operand),
+    append(builder, SERIES_GUARD, series_coefficient(builder, node), value_of(builder, operand),
            series_coefficient(builder, vertex->right), 0);
     return;
   case ARITHMETIC: return; /* not a function */
@@ -215,8 +215,8 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
 }
 
 static void append_sum(struct SeriesBuilder *builder, Node node, struct Form form) {
-  Place result = series_coefficient(builder, node);
-  Place left = series_coefficient(builder, form.left), right = series_coefficient(builder, form.right);
+  Slot result = series_coefficient(builder, node);
+  Slot left = series_coefficient(builder, form.left), right = series_coefficient(builder, form.right);
   bool is_difference = form.kind == FORM_DIFFERENCE;
   if (is_constant_series(builder, form.right)) append(builder, SERIES_COPY, result, left, 0, 0);
   else if (is_constant_series(builder, form.left))
@@ -226,7 +226,7 @@ static void append_sum(struct SeriesBuilder *builder, Node node, struct Form for
 
 void append_recurrence(struct SeriesBuilder *builder, Node node) {
   struct Form form = form_of(builder->needs, node);
-  Place result = series_coefficient(builder, node);
+  Slot result = series_coefficient(builder, node);
   switch (form.kind) {
   case FORM_NEGATION: append(builder, SERIES_NEGATION, result, series_coefficient(builder, form.left), 0, 0); return;
   case FORM_SUM:

@@ -36,8 +36,8 @@ struct SeriesBuilder {
 bool is_constant_series(const struct SeriesBuilder *builder, Node node);
 
 /* Return the place of a node that changes in time; series_row() also keeps all its coefficients in a row. */
-Place series_coefficient(const struct SeriesBuilder *builder, Node node);
-Place series_row(struct SeriesBuilder *builder, Node node);
+Slot series_coefficient(const struct SeriesBuilder *builder, Node node);
+Slot series_row(struct SeriesBuilder *builder, Node node);
 
 /* Returns the operand whose time derivative the node's recurrence needs; ZERO for none. */
 Node integrated_operand(const struct SeriesBuilder *builder, Node node);

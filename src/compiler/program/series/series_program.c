@@ -22,15 +22,15 @@ static void find_computed(struct SeriesBuilder *builder) {
   const struct Cone *cone = needs->cone;
   bool *below = allocate(cone->count, sizeof *below);
   for (size_t i = 0; i < builder->plan->targets.count; i++)
-    below[cone_place(cone, builder->plan->targets.nodes[i])] = true;
+    below[cone_slot(cone, builder->plan->targets.nodes[i])] = true;
   for (size_t i = cone->count; i-- > 0;) {
     Node node = cone->nodes[i];
     if (!below[i] || is_fetched(needs, node)) continue;
     builder->is_computed[node] = true;
     if (is_integrated_power(builder, node)) continue;
     struct Form form = form_of(needs, node);
-    below[cone_place(cone, form.left)] = true;
-    if (form.arity == 2) below[cone_place(cone, form.right)] = true;
+    below[cone_slot(cone, form.left)] = true;
+    if (form.arity == 2) below[cone_slot(cone, form.right)] = true;
   }
   for (size_t i = 0; i < cone->count; i++)
     if (builder->is_computed[cone->nodes[i]]) append_node(&builder->nodes, cone->nodes[i]);
@@ -94,8 +94,8 @@ static void append_nodes_before_blocks(struct SeriesBuilder *builder) {
     if (!has_accelerations(builder, builder->nodes.nodes[i])) append_next(builder, builder->nodes.nodes[i]);
 }
 
-static Place acceleration_row(size_t coordinate) {
-  return place_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
+static Slot acceleration_row(size_t coordinate) {
+  return slot_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
 /* An element of M that changes in time. */
@@ -121,8 +121,8 @@ static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder,
 }
 
 /* Appends sum - (M_ij a_j)_k without the term with a_k, which is solved for. */
-static Place append_rest(struct SeriesBuilder *builder, Place sum, Node mass, size_t coordinate) {
-  Place rest = place_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+static Slot append_rest(struct SeriesBuilder *builder, Slot sum, Node mass, size_t coordinate) {
+  Slot rest = slot_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
   routine_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
   return rest;
 }
@@ -134,31 +134,31 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
   size_t mass_count;
   const struct ChangingMass *masses = changing_masses(builder, block, &mass_count), *next = masses;
   for (size_t i = 0; i < block->count; i++) {
-    Place sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
+    Slot sum = series_coefficient(builder, equations->right_side[block->coordinates[i]]);
     for (; next < masses + mass_count && next->at.column == i; next++)
       sum = append_rest(builder, sum, next->mass, block->coordinates[next->at.row]);
     for (size_t k = 0; k < block->force_count; k++) {
-      Node oblique = block->oblique[k * block->count + i];
-      if (!is_constant_series(builder, oblique))
-        sum = append_rest(builder, sum, oblique, block->coordinates[block->forces[k]]);
+      Node nonsymmetric = block->nonsymmetric[k * block->count + i];
+      if (!is_constant_series(builder, nonsymmetric))
+        sum = append_rest(builder, sum, nonsymmetric, block->coordinates[block->forces[k]]);
     }
-    routine_append(builder->order, SERIES_COPY, place_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
+    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
   }
-  routine_append(builder->order, SERIES_SOLVE, (Place)number, 0, 0, 0);
+  routine_append(builder->order, SERIES_SOLVE, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
-                   place_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+                   slot_in(SPACE_SIDE, looped->first_side + i), 0, 0);
 }
 
-static void append_state(struct SeriesBuilder *builder, size_t state, Place derivative) {
-  routine_append(builder->order, SERIES_STATE, place_in(SPACE_STATE_ROW, state), derivative, 0, 0);
+static void append_state(struct SeriesBuilder *builder, size_t state, Slot derivative) {
+  routine_append(builder->order, SERIES_STATE, slot_in(SPACE_STATE_ROW, state), derivative, 0, 0);
 }
 
 /* Appends the coefficients k + 1 of the state from the coefficients k of its derivative. */
 static void append_states(struct SeriesBuilder *builder, const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
-    append_state(builder, i, place_in(SPACE_STATE_ROW, n + i));
+    append_state(builder, i, slot_in(SPACE_STATE_ROW, n + i));
     append_state(builder, n + i, series_coefficient(builder, equations->acceleration[i]));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
@@ -171,25 +171,25 @@ struct Rows {
   size_t *row; /* for each node with has_row of the builder: its row */
   size_t acceleration_row, further_row;
   struct Routine *order;
-  Place *local; /* for each node with has_local: its local variable */
+  Slot *local; /* for each node with has_local: its local variable */
   bool *has_local;
-  Place *factor; /* of each local variable that belongs to no node; 0: not assigned yet */
+  Slot *factor; /* of each local variable that belongs to no node; 0: not assigned yet */
 };
 
-static Place settled(struct Rows *rows, Place place) {
-  size_t index = index_in(place);
-  switch ((int)space_of(place)) {
+static Slot resolved(struct Rows *rows, Slot slot) {
+  size_t index = index_in(slot);
+  switch ((int)space_of(slot)) {
   case SPACE_OF_NODES:
-    if (rows->builder->has_row[index]) return place_in(SPACE_ROW, rows->row[index]);
+    if (rows->builder->has_row[index]) return slot_in(SPACE_ROW, rows->row[index]);
     if (!rows->has_local[index]) rows->local[index] = routine_local(rows->order);
     rows->has_local[index] = true;
     return rows->local[index];
-  case SPACE_OF_ACCELERATIONS: return place_in(SPACE_ROW, rows->acceleration_row + index);
-  case SPACE_OF_RATES: return place_in(SPACE_ROW, rows->further_row + index);
+  case SPACE_OF_ACCELERATIONS: return slot_in(SPACE_ROW, rows->acceleration_row + index);
+  case SPACE_OF_RATES: return slot_in(SPACE_ROW, rows->further_row + index);
   case SPACE_OF_FACTORS:
     if (rows->factor[index] == 0) rows->factor[index] = routine_local(rows->order);
     return rows->factor[index];
-  default: return place;
+  default: return slot;
   }
 }
 
@@ -213,16 +213,16 @@ static bool *find_used(const struct SeriesBuilder *builder) {
 }
 
 /* Returns the instructions of an order with final places. */
-static struct Routine *settle(struct Rows *rows) {
+static struct Routine *resolve(struct Rows *rows) {
   const struct Routine *open = rows->builder->order;
   bool *is_used = find_used(rows->builder);
   rows->order = routine_create();
   for (size_t i = 0; i < open->count; i++) {
     const struct Instruction *from = &open->instructions[i];
     if (!is_used[i]) continue;
-    Place operands[OPERAND_LIMIT] = {0};
-    for (int j = 0; j < opcode_arity(from->opcode); j++) operands[j] = settled(rows, from->operands[j]);
-    Place result = from->opcode == SERIES_SOLVE ? from->result : settled(rows, from->result);
+    Slot operands[OPERAND_LIMIT] = {0};
+    for (int j = 0; j < opcode_arity(from->opcode); j++) operands[j] = resolved(rows, from->operands[j]);
+    Slot result = from->opcode == SERIES_SOLVE ? from->result : resolved(rows, from->result);
     routine_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
   }
   return rows->order;
@@ -234,9 +234,9 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   size_t size = builder->graph->count, count = 0;
   struct Rows rows = {.builder = builder,
                       .row = allocate(size, sizeof(size_t)),
-                      .local = allocate(size, sizeof(Place)),
+                      .local = allocate(size, sizeof(Slot)),
                       .has_local = allocate(size, sizeof(bool)),
-                      .factor = allocate(builder->factor_count, sizeof(Place))};
+                      .factor = allocate(builder->factor_count, sizeof(Slot))};
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (builder->has_row[builder->nodes.nodes[i]]) rows.row[builder->nodes.nodes[i]] = count++;
   rows.acceleration_row = program->acceleration_row = count;
@@ -249,12 +249,12 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
 
 /* Completes the order, and the places of the limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
-  program->order = settle(rows);
+  program->order = resolve(rows);
   for (size_t i = 0; i < program->order->count; i++)
-    program->recurrences += opcode_facts(program->order->instructions[i].opcode)->is_recurrence;
+    program->recurrences += opcode_metadata(program->order->instructions[i].opcode)->is_recurrence;
   for (size_t i = 0; i < program->limit.count; i++) {
-    program->limit.items[i].row = settled(rows, program->limit.items[i].row);
-    program->limit.items[i].other_row = settled(rows, program->limit.items[i].other_row);
+    program->limit.items[i].row = resolved(rows, program->limit.items[i].row);
+    program->limit.items[i].other_row = resolved(rows, program->limit.items[i].other_row);
   }
 }
 
@@ -283,13 +283,13 @@ static void copy_first(const struct Rows *rows, struct Values *values) {
   const struct SeriesBuilder *builder = rows->builder;
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
-    if (builder->has_row[node]) values_copy(values, place_in(SPACE_ROW, rows->row[node]), node);
+    if (builder->has_row[node]) values_copy(values, slot_in(SPACE_ROW, rows->row[node]), node);
   }
   for (size_t i = 0; i < builder->needs->cone->count; i++) {
     Node node = builder->needs->cone->nodes[i];
     if (builder->inverse[node] == 0) continue;
-    Place row = place_in(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
-    routine_append(values->routine, RECIPROCAL, row, values_place(values, node), 0, 0);
+    Slot row = slot_in(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
+    routine_append(values->routine, RECIPROCAL, row, values_slot(values, node), 0, 0);
   }
 }
 
@@ -313,15 +313,15 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   hold_unknowns(values, equations, blocks, expressions->unknowns);
   compute_first(builder, values, equations->rates.nodes, equations->rates.count);
   copy_first(&rows, values);
-  for (size_t i = 0; i < n; i++) routine_copy(program->start, target_place(i), place_in(SPACE_STATE, n + i));
+  for (size_t i = 0; i < n; i++) routine_copy(program->start, target_slot(i), slot_in(SPACE_STATE, n + i));
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
-                   place_in(SPACE_SIDE, looped->first_side + i));
+      routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+                   slot_in(SPACE_SIDE, looped->first_side + i));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
-    values_copy(values, target_place(2 * n + i), equations->rates.nodes[i]);
+    values_copy(values, target_slot(2 * n + i), equations->rates.nodes[i]);
   return program;
 }
 
@@ -338,23 +338,23 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   struct SeriesBuilder *builder = builder_create(plan, values);
   bool with_accelerations = uses_accelerations(plan, values->graph);
   for (size_t i = 0; with_accelerations && i < n; i++)
-    routine_append(builder->order, SERIES_SLOPE, acceleration_row(i), place_in(SPACE_STATE_ROW, n + i), 0, 0);
+    routine_append(builder->order, SERIES_SLOPE, acceleration_row(i), slot_in(SPACE_STATE_ROW, n + i), 0, 0);
   append_nodes_of_order(builder);
   for (size_t i = 0; i < count; i++)
-    routine_append(builder->order, SERIES_COPY, place_in(SPACE_TARGET_ROW, i),
+    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_TARGET_ROW, i),
                    series_coefficient(builder, expressions->result[i]), 0, 0);
   struct Rows rows = rows_create(builder, with_accelerations ? n : 0, 0, program);
   complete(program, &rows);
 
   program->start = values_begin(values);
   for (size_t i = 0; with_accelerations && i < n; i++) {
-    Place acceleration = place_in(SPACE_ACCELERATION, i);
-    routine_append(program->start, FIRST_SLOPE, acceleration, place_in(SPACE_STATE_ROW, n + i), 0, 0);
-    routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
+    Slot acceleration = slot_in(SPACE_ACCELERATION, i);
+    routine_append(program->start, FIRST_SLOPE, acceleration, slot_in(SPACE_STATE_ROW, n + i), 0, 0);
+    routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
   }
   compute_first(builder, values, expressions->result, count);
   copy_first(&rows, values);
-  for (size_t i = 0; i < count; i++) values_copy(values, place_in(SPACE_TARGET_ROW, i), expressions->result[i]);
+  for (size_t i = 0; i < count; i++) values_copy(values, slot_in(SPACE_TARGET_ROW, i), expressions->result[i]);
   return program;
 }
 
@@ -374,6 +374,6 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   compute_first(builder, values, NULL, 0);
   copy_first(&rows, values);
   for (size_t i = 0; i < forces; i++)
-    routine_copy(program->start, place_in(SPACE_ROW, rows.acceleration_row + i), place_in(SPACE_ACCELERATION, i));
+    routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), slot_in(SPACE_ACCELERATION, i));
   return program->limit.count > 0 ? program : NULL;
 }

@@ -38,7 +38,7 @@ static void note(void *target, enum FunctionName name, const struct Routine *rou
 static void note_limit(struct Encoding *encoding, const struct SeriesProgram *series) {
   for (size_t i = 0; series != NULL && i < series->limit.count; i++) {
     const struct LimitCheck *check = &series->limit.items[i];
-    if (limit_facts(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
+    if (limit_metadata(check->rule)->has_exponent && space_of(check->exponent) == SPACE_NUMBER)
       add_number(encoding, (Node)index_in(check->exponent));
   }
 }
@@ -75,9 +75,9 @@ size_t encoding_work_count(const struct Encoding *encoding) {
 }
 
 /* Returns the index of a place in its space, in numbers; rows have SERIES_LENGTH numbers each. */
-static uint32_t index_of(const struct Encoding *encoding, Place place) {
-  enum Space space = space_of(place);
-  size_t index = index_in(place);
+static uint32_t index_of(const struct Encoding *encoding, Slot slot) {
+  enum Space space = space_of(slot);
+  size_t index = index_in(slot);
   if (space == SPACE_NUMBER) return (uint32_t)encoding->number[index] - 1;
   return (uint32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
 }
@@ -116,11 +116,11 @@ void encode(const struct Encoding *encoding, const struct Routine *routine, stru
 
 struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
                                 const struct ResultGroups *groups) {
-  struct RoutineTables tables = {.start = allocate(groups->count, sizeof *tables.start), .place = groups->place};
+  struct RoutineTables tables = {.start = allocate(groups->count, sizeof *tables.start), .slot = groups->slot};
   for (size_t i = 0; i < groups->count; i++) {
     size_t leader = groups->leader[i];
     tables.start[i] = leader < i ? tables.start[leader] : tables.words.count;
-    if (tables.place[i] > tables.largest_place) tables.largest_place = tables.place[i];
+    if (tables.slot[i] > tables.largest_slot) tables.largest_slot = tables.slot[i];
     if (routines[i] == NULL) continue;
     encode(encoding, routines[i], &tables.words);
     tables.operation_count += routines[i]->operation_count;
@@ -129,18 +129,18 @@ struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine 
   return tables;
 }
 
-static Place encoded(const struct Encoding *encoding, Place place) {
-  return place_in(space_of(place), index_of(encoding, place));
+static Slot encoded(const struct Encoding *encoding, Slot slot) {
+  return slot_in(space_of(slot), index_of(encoding, slot));
 }
 
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check) {
-  const struct LimitFacts *facts = limit_facts(check->rule);
+  const struct LimitMetadata *metadata = limit_metadata(check->rule);
   return (struct LimitCheck){.rule = check->rule,
                              .row = encoded(encoding, check->row),
-                             .other_row = facts->has_two_rows ? encoded(encoding, check->other_row) : 0,
-                             .function = facts->has_function ? check->function : NULL,
+                             .other_row = metadata->has_two_rows ? encoded(encoding, check->other_row) : 0,
+                             .function = metadata->has_function ? check->function : NULL,
                              .share = check->share,
-                             .exponent = facts->has_exponent ? encoded(encoding, check->exponent) : 0,
+                             .exponent = metadata->has_exponent ? encoded(encoding, check->exponent) : 0,
                              .is_gated = check->is_gated,
-                             .opener = check->is_gated ? encoded(encoding, check->opener) : 0};
+                             .guard_condition = check->is_gated ? encoded(encoding, check->guard_condition) : 0};
 }

@@ -30,9 +30,9 @@ void encode(const struct Encoding *encoding, const struct Routine *routine, stru
 /* Consecutive tables of several routines. */
 struct RoutineTables {
   struct Words words;
-  size_t *start;       /* of each routine: the offset of its table, or of its leader's */
-  const size_t *place; /* of each routine: its index among the targets of the leader's table */
-  size_t largest_place, operation_count;
+  size_t *start;      /* of each routine: the offset of its table, or of its leader's */
+  const size_t *slot; /* of each routine: its index among the targets of the leader's table */
+  size_t largest_slot, operation_count;
 };
 
 /* Encodes the routines that lead a group; routines may be NULL. */

@@ -21,8 +21,8 @@ struct Accesses {
   size_t count[SPACE_COUNT];
 };
 
-static void extend(struct Accesses *accesses, Place place) {
-  if (index_in(place) >= accesses->count[space_of(place)]) accesses->count[space_of(place)] = index_in(place) + 1;
+static void extend(struct Accesses *accesses, Slot slot) {
+  if (index_in(slot) >= accesses->count[space_of(slot)]) accesses->count[space_of(slot)] = index_in(slot) + 1;
 }
 
 static struct Accesses accesses_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
@@ -39,8 +39,8 @@ static struct Accesses accesses_create(const struct Routine *routine, const stru
   return accesses;
 }
 
-static struct Access *access_of(const struct Accesses *accesses, Place place) {
-  return &accesses->of[space_of(place)][index_in(place)];
+static struct Access *access_of(const struct Accesses *accesses, Slot slot) {
+  return &accesses->of[space_of(slot)][index_in(slot)];
 }
 
 /* Returns the level of an instruction on a block, which reads and writes the block's whole ranges of both spaces. */
@@ -65,11 +65,11 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
 /* Returns the level of an instruction, above the given level, and records its accesses. */
 static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
                        const struct LoopedBlocks *blocks, size_t level) {
-  const struct OpcodeFacts *facts = opcode_facts(instruction->opcode);
-  if (facts->result == BLOCK)
+  const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
+  if (metadata->result == BLOCK)
     return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
-    if (facts->operands[j] != ROW_OF_PAST)
+    if (metadata->operands[j] != ROW_OF_PAST)
       level = larger(level, access_of(accesses, instruction->operands[j])->written);
   if (opcode_has_result(instruction->opcode)) {
     const struct Access *result = access_of(accesses, instruction->result);
@@ -78,7 +78,7 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
   level++;
   for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
     struct Access *operand = access_of(accesses, instruction->operands[j]);
-    if (facts->operands[j] != ROW_OF_PAST) operand->read = larger(operand->read, level);
+    if (metadata->operands[j] != ROW_OF_PAST) operand->read = larger(operand->read, level);
   }
   if (opcode_has_result(instruction->opcode)) access_of(accesses, instruction->result)->written = level;
   return level;
@@ -88,7 +88,7 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
  * True if the instruction may return. Such instructions keep their order, so that the first failing check is reported.
  */
 static bool may_return(enum Opcode opcode) {
-  return opcode == FACTOR || opcode_facts(opcode)->result == NUMBER;
+  return opcode == FACTOR || opcode_metadata(opcode)->result == NUMBER;
 }
 
 struct Turn {

@@ -2,7 +2,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "program/values/prepared.h"
+#include "program/values/parameter_constants.h"
 
 struct Needs *needs_create(const struct Graph *graph) {
   struct Needs *needs = allocate(1, sizeof *needs);
@@ -34,19 +34,19 @@ void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool 
     needs->uses = reallocate(needs->uses, needs->capacity, sizeof *needs->uses);
   }
   for (size_t i = 0; i < cone->count; i++) needs->uses[i] = 0;
-  for (size_t i = 0; i < count; i++) needs->uses[cone_place(cone, targets[i])] += 2;
+  for (size_t i = 0; i < count; i++) needs->uses[cone_slot(cone, targets[i])] += 2;
   for (size_t i = 0; i < cone->count; i++) {
     const struct Vertex *vertex = &graph->vertices[cone->nodes[i]];
     if (is_fetched(needs, cone->nodes[i])) continue;
-    needs->uses[cone_place(cone, vertex->left)]++;
-    if (operation_arity(vertex->operation) == 2) needs->uses[cone_place(cone, vertex->right)]++;
+    needs->uses[cone_slot(cone, vertex->left)]++;
+    if (operation_arity(vertex->operation) == 2) needs->uses[cone_slot(cone, vertex->right)]++;
   }
 }
 
 static bool is_inverse_for_one(const struct Needs *needs, Node node) {
   const struct Vertex *vertex = &needs->graph->vertices[node];
   return !is_fetched(needs, node) && vertex->operation == POWER && graph_is_constant(needs->graph, vertex->right) &&
-         graph_value(needs->graph, vertex->right) == -1.0 && needs->uses[cone_place(needs->cone, node)] == 1;
+         graph_value(needs->graph, vertex->right) == -1.0 && needs->uses[cone_slot(needs->cone, node)] == 1;
 }
 
 static bool is_negation(const struct Needs *needs, Node node) {

@@ -12,7 +12,7 @@ struct Form {
 };
 
 /*
- * The nodes needed for some targets, with use counts. Fetched nodes (symbols, numbers and prepared values) are
+ * The nodes needed for some targets, with use counts. Fetched nodes (symbols, numbers and parameter constants) are
  * members, but their operands are not.
  */
 struct Needs {

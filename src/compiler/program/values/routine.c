@@ -3,7 +3,7 @@
 #include "base/memory.h"
 
 /* FACTOR, SOLVE and the like have no expression; the writers know their statements. */
-static const struct OpcodeFacts facts[OPCODE_COUNT] = {
+static const struct OpcodeMetadata metadata[OPCODE_COUNT] = {
     [COPY] = {"$1", VALUE, {VALUE}, 0, false},
     [FIRST_SLOPE] = {"$1[1]", VALUE, {ROW}, 0, false},
     [SUM] = {"$1 + $2", VALUE, {VALUE, VALUE}, 1, false},
@@ -22,7 +22,7 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
     [INVERSE_ROOT] = {"1.0 / sqrt($1)", VALUE, {VALUE}, 2, false},
     [LESS_THAN] = {"WHERE($1 < $2, 1.0, 0.0)", VALUE, {VALUE, VALUE}, 1, false},
     [SIGN_OF] = {"WHERE($1 > 0.0, 1.0, WHERE($1 < 0.0, -1.0, 0.0))", VALUE, {VALUE}, 1, false},
-    [GATE_OF] = {"WHERE($1 > 0.0, $2, 0.0)", VALUE, {VALUE, VALUE}, 1, false},
+    [GUARD_OF] = {"WHERE($1 > 0.0, $2, 0.0)", VALUE, {VALUE, VALUE}, 1, false},
     [CALL] = {"$f($1)", VALUE, {VALUE}, 1, false},
     [CALL_OF_TWO] = {"$f($1, $2)", VALUE, {VALUE, VALUE}, 1, false},
     [CHECK_POSITIVE] = {"REQUIRE($1 > 0.0, $0)", NUMBER, {VALUE}, 0, false},
@@ -56,7 +56,7 @@ static const struct OpcodeFacts facts[OPCODE_COUNT] = {
         {"WHERE(series_sign(k, $1) > 0.0, $2, $3)", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
     [SERIES_SMALLER] =
         {"WHERE(series_sign(k, $1) < 0.0, $2, $3)", COEFFICIENT, {ROW, COEFFICIENT, COEFFICIENT}, 1, true},
-    [SERIES_GATE] = {"WHERE($1 > 0.0, $2, 0.0)", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
+    [SERIES_GUARD] = {"WHERE($1 > 0.0, $2, 0.0)", COEFFICIENT, {VALUE, COEFFICIENT}, 1, false},
     [SERIES_REST] = {"$1 - series_rest$(k, $2, $3)", COEFFICIENT, {COEFFICIENT, ROW, ROW_OF_PAST}, 2, true},
     [SERIES_SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SERIES_STATE] = {"$1 * reciprocal[k + 1]", NEXT_COEFFICIENT, {COEFFICIENT}, 1, false},
@@ -69,8 +69,8 @@ static const char *const factors[OPCODE_COUNT] = {
     [SERIES_REST] = "$2, 1, $3",
 };
 
-const struct OpcodeFacts *opcode_facts(enum Opcode opcode) {
-  return &facts[opcode];
+const struct OpcodeMetadata *opcode_metadata(enum Opcode opcode) {
+  return &metadata[opcode];
 }
 
 const char *opcode_factors(enum Opcode opcode) {
@@ -78,12 +78,12 @@ const char *opcode_factors(enum Opcode opcode) {
 }
 
 bool opcode_has_result(enum Opcode opcode) {
-  return facts[opcode].result != NUMBER && facts[opcode].result != BLOCK;
+  return metadata[opcode].result != NUMBER && metadata[opcode].result != BLOCK;
 }
 
 int opcode_arity(enum Opcode opcode) {
   int arity = 0;
-  while (arity < OPERAND_LIMIT && facts[opcode].operands[arity] != NO_OPERAND) arity++;
+  while (arity < OPERAND_LIMIT && metadata[opcode].operands[arity] != NO_OPERAND) arity++;
   return arity;
 }
 
@@ -94,26 +94,26 @@ struct Routine *routine_create(void) {
 static void append(struct Routine *routine, struct Instruction instruction) {
   routine->instructions = make_room(routine->instructions, routine->count, sizeof *routine->instructions);
   routine->instructions[routine->count++] = instruction;
-  routine->operation_count += facts[instruction.opcode].operations;
+  routine->operation_count += metadata[instruction.opcode].operations;
   if (opcode_has_result(instruction.opcode)) routine->spaces |= 1u << space_of(instruction.result);
   for (int i = 0; i < opcode_arity(instruction.opcode); i++) routine->spaces |= 1u << space_of(instruction.operands[i]);
 }
 
-void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c) {
+void routine_append(struct Routine *routine, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c) {
   append(routine, (struct Instruction){.opcode = opcode, .result = result, .operands = {a, b, c}});
 }
 
-void routine_copy(struct Routine *routine, Place to, Place from) {
+void routine_copy(struct Routine *routine, Slot to, Slot from) {
   routine_append(routine, COPY, to, from, 0, 0);
 }
 
-void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b) {
+void routine_append_call(struct Routine *routine, enum Operation function, Slot result, Slot a, Slot b) {
   enum Opcode opcode = operation_arity(function) == 2 ? CALL_OF_TWO : CALL;
   append(routine, (struct Instruction){.opcode = opcode, .function = function, .result = result, .operands = {a, b}});
 }
 
-Place routine_local(struct Routine *routine) {
-  return place_in(SPACE_LOCAL, routine->local_count++);
+Slot routine_local(struct Routine *routine) {
+  return slot_in(SPACE_LOCAL, routine->local_count++);
 }
 
 bool routine_uses(const struct Routine *routine, enum Space space) {

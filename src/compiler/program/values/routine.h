@@ -15,8 +15,8 @@ enum { OPERAND_LIMIT = 3 };
 struct Instruction {
   enum Opcode opcode;
   enum Operation function; /* of CALL and CALL_OF_TWO */
-  Place result;            /* of checks: the number to return; of FACTOR, SOLVE and LEAST_FORCES: the block */
-  Place operands[OPERAND_LIMIT];
+  Slot result;             /* of checks: the number to return; of FACTOR, SOLVE and LEAST_FORCES: the block */
+  Slot operands[OPERAND_LIMIT];
 };
 
 struct Routine {
@@ -27,21 +27,21 @@ struct Routine {
   uint32_t spaces;        /* bit s: some operand or result is in space s */
 };
 
-static inline Place place_in(enum Space space, size_t index) {
-  return (Place)space << PLACE_BITS | (Place)index;
+static inline Slot slot_in(enum Space space, size_t index) {
+  return (Slot)space << SLOT_BITS | (Slot)index;
 }
 
 /* Returns the place of an element of the array that the function fills. */
-static inline Place target_place(size_t index) {
-  return place_in(SPACE_TARGET, index);
+static inline Slot target_slot(size_t index) {
+  return slot_in(SPACE_TARGET, index);
 }
 
-static inline enum Space space_of(Place place) {
-  return (enum Space)(place >> PLACE_BITS);
+static inline enum Space space_of(Slot slot) {
+  return (enum Space)(slot >> SLOT_BITS);
 }
 
-static inline size_t index_in(Place place) {
-  return place & ((1u << PLACE_BITS) - 1);
+static inline size_t index_in(Slot slot) {
+  return slot & ((1u << SLOT_BITS) - 1);
 }
 
 /* How an instruction uses an operand or result, at the order k of a series. */
@@ -58,7 +58,7 @@ enum Role {
 };
 
 /* Properties of an opcode for the writers and the schedule. */
-struct OpcodeFacts {
+struct OpcodeMetadata {
   /* C expression: $0 is the result; $1, $2, $3 are the operands, $f is the function; $( opens the arguments */
   const char *statement;
   enum Role result, operands[OPERAND_LIMIT];
@@ -66,7 +66,7 @@ struct OpcodeFacts {
   bool is_recurrence;
 };
 
-const struct OpcodeFacts *opcode_facts(enum Opcode opcode);
+const struct OpcodeMetadata *opcode_metadata(enum Opcode opcode);
 
 /* Returns the arguments of the opcode's Cauchy product for SERIES_MIDDLES of include/series.h; NULL if it has none. */
 const char *opcode_factors(enum Opcode opcode);
@@ -79,14 +79,14 @@ int opcode_arity(enum Opcode opcode);
 struct Routine *routine_create(void);
 
 /* Appends an instruction; operands beyond the opcode's arity are ignored. */
-void routine_append(struct Routine *routine, enum Opcode opcode, Place result, Place a, Place b, Place c);
+void routine_append(struct Routine *routine, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c);
 
-void routine_copy(struct Routine *routine, Place to, Place from);
+void routine_copy(struct Routine *routine, Slot to, Slot from);
 
-void routine_append_call(struct Routine *routine, enum Operation function, Place result, Place a, Place b);
+void routine_append_call(struct Routine *routine, enum Operation function, Slot result, Slot a, Slot b);
 
 /* Returns a new local variable. */
-Place routine_local(struct Routine *routine);
+Slot routine_local(struct Routine *routine);
 
 /* True if any operand or result is in the space. */
 bool routine_uses(const struct Routine *routine, enum Space space);

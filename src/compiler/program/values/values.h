@@ -2,21 +2,22 @@
 #pragma once
 
 #include "program/values/form.h"
-#include "program/values/prepared.h"
+#include "program/values/parameter_constants.h"
 #include "program/values/routine.h"
 
 struct Values {
   const struct Graph *graph;
-  const struct Prepared *prepared;
+  const struct ParameterConstants *parameter_constants;
   size_t coordinates; /* number of coordinates, after which the velocities follow in the state */
   struct Needs *needs;
   struct Routine *routine; /* the routine under construction */
-  Place *local;            /* for each node with has_local: the place of its value in the routine */
+  Slot *local;             /* for each node with has_local: the place of its value in the routine */
   bool *has_local;
   struct NodeList computed; /* the nodes with has_local */
 };
 
-struct Values *values_create(const struct Graph *graph, const struct Prepared *prepared, size_t coordinates);
+struct Values *values_create(const struct Graph *graph, const struct ParameterConstants *parameter_constants,
+                             size_t coordinates);
 
 /* Begins a new routine. */
 struct Routine *values_begin(struct Values *values);
@@ -25,10 +26,10 @@ struct Routine *values_begin(struct Values *values);
 void values_compute(struct Values *values, const Node *targets, size_t count, bool preparing);
 
 /* Returns the place of a symbol, a number, a prepared value or a computed node. */
-Place values_place(const struct Values *values, Node node);
+Slot values_slot(const struct Values *values, Node node);
 
 /* Declares that the routine has the value of the node in this place. */
-void values_hold(struct Values *values, Node node, Place place);
+void values_hold(struct Values *values, Node node, Slot slot);
 
 /* Appends a copy of the node's value to a place. */
-void values_copy(struct Values *values, Place target, Node node);
+void values_copy(struct Values *values, Slot target, Node node);

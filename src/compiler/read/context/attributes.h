@@ -68,7 +68,7 @@ void report_at(const struct Reader *reader, xmlNodePtr node, const char *format,
 
 enum {
   IN_MASS = KIND(PARAMETER),
-  IN_DRIVE = KIND(PARAMETER) | KIND(MODE) | KIND(TIME) | KIND(INPUT),
+  IN_PRESCRIBED_MOTION = KIND(PARAMETER) | KIND(MODE) | KIND(TIME) | KIND(INPUT),
   IN_INERTIA = KIND(PARAMETER) | KIND(MODE) | KIND(COORDINATE) | KIND(TIME) | KIND(DISPLACEMENT),
   WITH_RATES = 1 << 30, /* inputs need time derivatives, as they prescribe a motion */
   IN_POSITION = IN_INERTIA | KIND(INPUT) | KIND(STATE) | WITH_RATES, /* see state_checks.h */

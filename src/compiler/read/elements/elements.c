@@ -131,10 +131,11 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   reader->present->number = (size_t)index;
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
-  model->given.drives = make_room(model->given.drives, (size_t)index, sizeof *model->given.drives);
-  model->given.drives[index] = (struct Drive){.given = has_attribute(node, "acceleration")};
-  model->given.drive_count += model->given.drives[index].given;
-  model->forces.any |= model->given.drives[index].given;
+  model->given.prescribed_motions =
+      make_room(model->given.prescribed_motions, (size_t)index, sizeof *model->given.prescribed_motions);
+  model->given.prescribed_motions[index] = (struct PrescribedMotion){.given = has_attribute(node, "acceleration")};
+  model->given.prescribed_motion_count += model->given.prescribed_motions[index].given;
+  model->forces.any |= model->given.prescribed_motions[index].given;
 }
 
 /* A displacement has a rate, which is zero too: it lets velocities contribute to the force along the displacement. */
@@ -172,10 +173,10 @@ static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* Reads the prescribed acceleration of a coordinate. */
-static void read_drive(struct Reader *reader, xmlNodePtr node) {
+static void read_prescribed_motion(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Quantity acceleration = {.node = ZERO};
-  if (!expression_attribute(reader, node, "acceleration", IN_DRIVE, &acceleration)) return;
+  if (!expression_attribute(reader, node, "acceleration", IN_PRESCRIBED_MOTION, &acceleration)) return;
   char *name = name_attribute(reader, node, "name");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL) return; /* the name was taken, which has been reported */
@@ -183,7 +184,7 @@ static void read_drive(struct Reader *reader, xmlNodePtr node) {
   if (velocity->dimension.known)
     require_unit(reader, line_of_attribute(node, "acceleration"), "the acceleration", acceleration,
                  dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
-  model->given.drives[symbol->index].acceleration = acceleration.node;
+  model->given.prescribed_motions[symbol->index].acceleration = acceleration.node;
 }
 
 static void read_output(struct Reader *reader, xmlNodePtr node) {
@@ -194,8 +195,8 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
   if (!output.dimension.known) output.dimension = value.dimension;
   value.node = without_displacements(reader, output.line, what, value.node);
   /* The output itself stays whole and needs no events, unlike expressions that use its name. */
-  Node told = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
-  output.node = without_displacements(reader, output.line, what, told);
+  Node reported = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
+  output.node = without_displacements(reader, output.line, what, reported);
   value.dimension = output.dimension;
   scope_define(reader->scope, output.name, value, output.line);
   output.line = scope_line(reader->scope, output.line);
@@ -331,14 +332,14 @@ static const struct Element elements[] = {
     {"constant", read_constant, NULL, NULL, NULL, false},
     {"constraint", declare_constraint, NULL, NULL, read_constraint, false},
     {"contact", declare_contact, NULL, NULL, read_contact, false},
-    {"coordinate", read_coordinate, NULL, read_start_expressions, read_drive, false},
+    {"coordinate", read_coordinate, NULL, read_start_expressions, read_prescribed_motion, false},
     {"define", NULL, collect_value, NULL, NULL, false},
     {"displacement", read_displacement, NULL, NULL, NULL, false},
     {"dissipation", NULL, NULL, NULL, read_dissipation, false},
     {"event", NULL, NULL, NULL, read_event, false},
     {"experiment", read_experiment, NULL, NULL, NULL, true},
     {"force", NULL, NULL, NULL, read_force, false},
-    {"frame", declare_frame, collect_components, read_body, add_stillness_of_norm, false},
+    {"frame", declare_frame, collect_components, read_body, add_regularization_of_norm, false},
     {"friction", declare_friction, NULL, NULL, read_friction, false},
     {"function", declare_function, NULL, NULL, NULL, false},
     {"gravity", NULL, NULL, NULL, read_gravity, false},

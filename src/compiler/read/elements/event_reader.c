@@ -51,7 +51,7 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
 static void check_target(struct Reader *reader, xmlNodePtr node, const struct Event *event, Node symbol) {
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
-  if (is_state && reader->model->given.drives[target->index].given)
+  if (is_state && reader->model->given.prescribed_motions[target->index].given)
     report_at(reader, node, "<set> of '%s', which is driven; expected another one", target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
     if (event->assignments[i].symbol == symbol)
@@ -110,7 +110,7 @@ static Node condition_of_modes(struct Reader *reader, Node value, long line) {
   struct Graph *graph = reader->model->graph;
   if (!graph_depends_on(graph, value, PARAMETER)) return value;
   if (!graph_depends_on(graph, value, MODE)) return tuned_condition(reader->scope, value, line);
-  Node holds = function(graph, GATE, value, ONE), half = graph_constant(graph, 0.5);
+  Node holds = function(graph, GUARD, value, ONE), half = graph_constant(graph, 0.5);
   return tuned_condition(reader->scope, subtract(graph, holds, half), line);
 }
 
@@ -253,7 +253,7 @@ void read_sample(struct Reader *reader, xmlNodePtr node) {
   Node next = add(graph, sample->base, multiply(graph, sample->count, sample->period));
   Node left = subtract(graph, next, scope_find(reader->scope, "time")->node);
   sample->branch = tuned_condition(reader->scope, left, line_of(node));
-  event.condition = subtract(graph, ONE, function(graph, GATE, sample->branch, ONE));
+  event.condition = subtract(graph, ONE, function(graph, GUARD, sample->branch, ONE));
   read_assignments(reader, node, &event);
   count_on(graph, &event);
   append_event(reader, &event);

@@ -124,7 +124,7 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
   constraint->is_of_velocities = true;
   constraint->dimension = dimension_multiply(unit_of("W"), unit, -1.0);
   scope_set_dimension(reader->scope, constraint_force_name(constraint), unit);
-  constraint->node = function(graph, GATE, friction_sticks(graph, friction), friction->velocity);
+  constraint->node = function(graph, GUARD, friction_sticks(graph, friction), friction->velocity);
   if (friction->velocity != ZERO) check_constraint(reader, constraint);
 }
 
@@ -132,8 +132,8 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
 static void add_push(struct Reader *reader, const struct Friction *friction) {
   struct Graph *graph = reader->model->graph;
   Node push = negate(graph, sliding_push(graph, friction));
-  const struct Gradient levers = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
-  add_virtual_work(reader->model, push, &levers);
+  const struct Gradient jacobian_rows = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
+  add_virtual_work(reader->model, push, &jacobian_rows);
 }
 
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit) {

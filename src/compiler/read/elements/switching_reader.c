@@ -23,7 +23,7 @@ Node new_mode(struct Reader *reader, const char *of, const char *what) {
 }
 
 /* Adds a mode that expressions know by name: the observed mode of a contact or friction, a variable of the FMU. */
-static Node new_told_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
+static Node new_reported_mode(struct Reader *reader, const struct Variable *constraint, const char *what) {
   Node mode = new_mode(reader, constraint->name, what);
   char *name = format_text("%s.%s", constraint->name, what);
   scope_define(reader->scope, name, (struct Quantity){.node = mode, .dimension = dimension_one}, constraint->line);
@@ -56,7 +56,7 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
   switches->contacts = make_room(switches->contacts, switches->contact_count, sizeof *switches->contacts);
   switches->contacts[switches->contact_count++] =
-      (struct Contact){.mode = new_told_mode(reader, &constraint, "closed")};
+      (struct Contact){.mode = new_reported_mode(reader, &constraint, "closed")};
   switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
 }
 
@@ -100,8 +100,9 @@ static void declare_plane(struct Reader *reader, struct Friction *along, struct 
 }
 
 static void declare_friction_of(struct Reader *reader, struct Variable constraint, bool is_in_plane) {
-  Node mode = new_mode(reader, constraint.name, "sliding"), told = new_told_mode(reader, &constraint, "sliding");
-  struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .told = told});
+  Node mode = new_mode(reader, constraint.name, "sliding"),
+       reported = new_reported_mode(reader, &constraint, "sliding");
+  struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .reported = reported});
   friction->constraint = declare_held(reader, constraint);
   if (is_in_plane) declare_plane(reader, friction, constraint);
   reader->model->forces.any = true;
@@ -178,7 +179,7 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
                  "the gap of the contact '%s' contains no coordinate; expected an expression such as y - r, which is 0 "
                  "where it touches",
                  constraint->name);
-  constraint->node = function(model->graph, GATE, contact->mode, negate(model->graph, gap));
+  constraint->node = function(model->graph, GUARD, contact->mode, negate(model->graph, gap));
   if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
 }
 

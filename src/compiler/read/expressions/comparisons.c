@@ -64,7 +64,7 @@ static void refuse_equality(struct Parser *parser) {
 }
 
 static Node is_positive(struct Graph *graph, Node condition) {
-  return function(graph, GATE, condition, ONE);
+  return function(graph, GUARD, condition, ONE);
 }
 
 static Node negation(struct Graph *graph, Node condition) {
@@ -72,7 +72,7 @@ static Node negation(struct Graph *graph, Node condition) {
 }
 
 static Node both(struct Graph *graph, Node first, Node second) {
-  return function(graph, GATE, first, is_positive(graph, second));
+  return function(graph, GUARD, first, is_positive(graph, second));
 }
 
 /* Parses a comparison of two sums with equal units, or a single mode or Boolean parameter. */

@@ -19,7 +19,7 @@
 /* Nodes that lagc chooses of itself; of integrals whose limits move, as where one is time. */
 enum { CHOICE_LIMIT = 32, MOVING_CHOICE_LIMIT = 128, SAMPLES = 6 };
 
-/* Spreads from the start value: where nodes are chosen, if they are enough there, and where a variable may go without end. */
+/* Spreads from the start value: where nodes are chosen, if they are enough there, and where the range of a variable has no limit. */
 static const double wide = 4.0, endless = 1e6, nearest = 1e-3;
 
 /* Relative to the integral of the magnitude: of what lagc calls exact, and where the FMU does not stop yet. */
@@ -53,24 +53,24 @@ Node replaced(struct Graph *graph, Node node, Node symbol, Node by) {
   return result;
 }
 
-static double error_by(struct Sampling *sampling, const double *roundings, size_t nodes) {
+static double error_by(struct Sampling *sampling, const double *rounding_bounds, size_t nodes) {
   const struct Rule rule = rule_of(nodes);
-  return sampling_error(sampling, &rule, roundings);
+  return sampling_error(sampling, &rule, rounding_bounds);
 }
 
 /* As many as this state needs, from a number that others need; its error where the limit is not enough. */
 static size_t nodes_at(struct Sampling *sampling, size_t nodes, size_t limit, double *error) {
-  double *roundings = NULL;
+  double *rounding_bounds = NULL;
   size_t first = nodes;
   for (int attempt = 0; attempt < 2; attempt++) {
-    *error = error_by(sampling, roundings, nodes);
-    while (nodes < limit && !(*error <= exactness && error_by(sampling, roundings, nodes + 1) <= exactness))
-      *error = error_by(sampling, roundings, nodes += nodes < CHOICE_LIMIT ? 1 : 4);
+    *error = error_by(sampling, rounding_bounds, nodes);
+    while (nodes < limit && !(*error <= exactness && error_by(sampling, rounding_bounds, nodes + 1) <= exactness))
+      *error = error_by(sampling, rounding_bounds, nodes += nodes < CHOICE_LIMIT ? 1 : 4);
     if (*error <= exactness || attempt == 1) break;
-    roundings = sampling_roundings(sampling);
+    rounding_bounds = sampling_rounding_bounds(sampling);
     nodes = first;
   }
-  release(roundings);
+  release(rounding_bounds);
   return nodes;
 }
 
@@ -228,7 +228,7 @@ static struct Choice choose_nodes(struct Parser *parser, const struct Integral *
 
 /* 1 where a node is positive, else 0. */
 static Node one_above_zero(struct Graph *graph, Node node) {
-  return function(graph, GATE, function(graph, SIGN, node, ZERO), ONE);
+  return function(graph, GUARD, function(graph, SIGN, node, ZERO), ONE);
 }
 
 /* The sum within the ranges; beyond them it is divided by 0. */

@@ -6,7 +6,7 @@
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
-#include "algebra/roundings.h"
+#include "algebra/rounding_bounds.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/mass_matrix/pivots.h"
@@ -164,12 +164,12 @@ bool sampling_at(struct Sampling *sampling, size_t symbol, double spreads) {
   return find_reference(sampling);
 }
 
-double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *roundings) {
+double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *rounding_bounds) {
   double worst = 0.0;
   clear_sums(sampling);
   add_part(sampling, rule, 0.0, 1.0);
   for (size_t j = 0; j < sampling->count; j++) {
-    double rounding = roundings != NULL ? 4.0 * DBL_EPSILON * roundings[j] : 0.0;
+    double rounding = rounding_bounds != NULL ? 4.0 * DBL_EPSILON * rounding_bounds[j] : 0.0;
     double error = fabs(sampling->sums[j] - sampling->reference[j]) - rounding;
     double size = fmax(sampling->sizes[j], sampling->reference_size[j]);
     if (size > 0.0 && !(error / size <= worst)) worst = error / size;
@@ -178,11 +178,11 @@ double sampling_error(struct Sampling *sampling, const struct Rule *rule, const 
 }
 
 /* By the integrals of their bounds. */
-double *sampling_roundings(const struct Sampling *sampling) {
+double *sampling_rounding_bounds(const struct Sampling *sampling) {
   struct Graph *graph = sampling->scope->graph;
   size_t count = sampling->count;
   Node *bounds = allocate(count, sizeof *bounds);
-  roundings_of(graph, sampling->targets, count, bounds);
+  rounding_bounds_of(graph, sampling->targets, count, bounds);
   struct Sampling bounded = *sampling;
   bounded.targets = bounds;
   bounded.values = allocate(graph->count, sizeof *bounded.values);

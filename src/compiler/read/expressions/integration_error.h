@@ -42,7 +42,7 @@ bool sampling_at(struct Sampling *sampling, size_t symbol, double spreads);
 double sampling_value(const struct Sampling *sampling, size_t symbol, double spreads);
 
 /* What rounding may make of each target at the last state, in units of DBL_EPSILON; the caller releases it. */
-double *sampling_roundings(const struct Sampling *sampling);
+double *sampling_rounding_bounds(const struct Sampling *sampling);
 
 /* The largest error of a rule at the last state, relative to the integral of the magnitude, beyond these roundings; NULL for none. */
-double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *roundings);
+double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *rounding_bounds);

@@ -183,25 +183,25 @@ static const struct Site *choose_farthest(const struct Site **sites, size_t coun
  * Inserts sites until none is farther than `nearest`, or the hull is full. Returns false if all sites lie in a plane.
  * *lack: largest distance of a site from the hull's faces, in steps.
  */
-static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest, double *lack) {
+static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest, double *residual) {
   if (!begin_hull(hull, sites, count, nearest)) return false;
   const struct Site **outside = allocate(count, sizeof(struct Site *));
   for (size_t i = 0; i < count; i++) outside[i] = &sites[i];
   for (;;) {
     const struct Face *farthest = &hull->faces[0];
     size_t left = 0;
-    *lack = 0.0;
+    *residual = 0.0;
     for (size_t i = 0; i < count; i++) {
       const struct Face *face = farthest;
       double height = beyond(hull, outside[i], &face);
       if (height > 0.0) outside[left++] = outside[i];
-      if (!(height > *lack)) continue;
-      *lack = height;
+      if (!(height > *residual)) continue;
+      *residual = height;
       farthest = face;
     }
     count = left;
-    if (!(*lack > nearest) || hull->corner_count == MOST_CORNERS) break;
-    add_corner(hull, choose_farthest(outside, count, farthest, *lack));
+    if (!(*residual > nearest) || hull->corner_count == MOST_CORNERS) break;
+    add_corner(hull, choose_farthest(outside, count, farthest, *residual));
   }
   release(outside);
   return true;
@@ -214,9 +214,9 @@ static bool is_needless(const struct Hull *hull, size_t corner) {
   for (size_t i = 0; i < hull->corner_count; i++)
     if (i != corner) others[count++] = *hull->corners[i];
   struct Hull rest;
-  double lack;
+  double residual;
   const struct Face *face;
-  return grow_hull(&rest, others, count, 0.0, &lack) && beyond(&rest, hull->corners[corner], &face) <= tolerance;
+  return grow_hull(&rest, others, count, 0.0, &residual) && beyond(&rest, hull->corners[corner], &face) <= tolerance;
 }
 
 static int compare_sites(const void *first, const void *second) {
@@ -269,18 +269,18 @@ static size_t drop_marked(struct Site *sites, size_t count) {
 bool mesh_find_corners(struct Mesh *mesh) {
   if (mesh->corner_count > 0) return true;
   struct Site *sites = allocate(mesh->point_count, sizeof *sites);
-  double step, lack = 0.0;
+  double step, residual = 0.0;
   size_t count = find_sites(mesh, sites, &step), dropped = 0;
   struct Hull hull = {.corner_count = 0};
   bool is_full = false;
   do { /* if needless corners filled the hull, repeat without them */
     count = drop_marked(sites, count);
-    if (!grow_hull(&hull, sites, count, tolerance, &lack)) hull.corner_count = 0;
+    if (!grow_hull(&hull, sites, count, tolerance, &residual)) hull.corner_count = 0;
     is_full = hull.corner_count == MOST_CORNERS;
     dropped = drop_needless(&hull, sites);
   } while (is_full && dropped > 0);
   mesh->corner_count = hull.corner_count;
-  mesh->lack = lack * step;
+  mesh->residual = residual * step;
   for (size_t i = 0; i < mesh->corner_count; i++) mesh->corners[i] = hull.corners[i]->point;
   sort_sizes(mesh->corners, mesh->corner_count);
   release(sites);

@@ -12,10 +12,10 @@
 enum { COMPARISONS = 8 };
 
 static bool tells_of_contacts(const struct Switches *switches, const struct Cone *cone) {
-  bool tells = false;
-  for (size_t i = 0; i < switches->contact_count; i++) tells |= cone_has(cone, switches->contacts[i].mode);
-  for (size_t i = 0; i < switches->friction_count; i++) tells |= cone_has(cone, switches->frictions[i].told);
-  return tells;
+  bool determines = false;
+  for (size_t i = 0; i < switches->contact_count; i++) determines |= cone_has(cone, switches->contacts[i].mode);
+  for (size_t i = 0; i < switches->friction_count; i++) determines |= cone_has(cone, switches->frictions[i].reported);
+  return determines;
 }
 
 unsigned kinds_that_decide(const struct Scope *scope, Node node) {
@@ -118,7 +118,7 @@ Node floor_of(struct Scope *scope, Node node, long line) {
 static Node pieces_of_less(struct Scope *scope, Node left, Node right, long line) {
   Node difference = subtract(scope->graph, right, left);
   if (graph_is_constant_in_time(scope->graph, difference)) return function(scope->graph, LESS, left, right);
-  return function(scope->graph, GATE, branch_of(scope, difference, "a condition", line), ONE);
+  return function(scope->graph, GUARD, branch_of(scope, difference, "a condition", line), ONE);
 }
 
 static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
@@ -146,11 +146,11 @@ Node with_pieces(struct Scope *scope, Node node, long line) {
   for (size_t place = 0; place < cone->count; place++) {
     const struct Vertex vertex = graph->vertices[cone->nodes[place]];
     int arity = operation_arity(vertex.operation);
-    Node left = arity > 0 ? mapped[cone_place(cone, vertex.left)] : ZERO;
-    Node right = arity > 1 ? mapped[cone_place(cone, vertex.right)] : ZERO;
+    Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
+    Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO;
     mapped[place] = arity == 0 ? cone->nodes[place] : rebuilt(scope, vertex.operation, left, right, line);
   }
-  Node result = mapped[cone_place(cone, node)];
+  Node result = mapped[cone_slot(cone, node)];
   release(mapped);
   cone_release(cone);
   return result;

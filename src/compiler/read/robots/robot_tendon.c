@@ -91,13 +91,13 @@ static char *coefficient_of(const struct Writer *writer, const struct Robot *rob
 
 void write_tendon_link(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link) {
   const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];
-  char *lack = format_text("%s - (%s)", extension_of(first), number(link->coefficient[0]));
+  char *residual = format_text("%s - (%s)", extension_of(first), number(link->coefficient[0]));
   for (int power = 1; power < TENDON_POWERS; power++)
     if (link->coefficient[power] != 0)
-      lack =
-          format_text("%s - %s*(%s)^%d", lack, coefficient_of(writer, robot, link, power), extension_of(second), power);
+      residual = format_text("%s - %s*(%s)^%d", residual, coefficient_of(writer, robot, link, power),
+                             extension_of(second), power);
   xmlNodePtr constraint = write_element(writer, "constraint");
   set_attribute(constraint, "name", robot_symbol(link->name));
   set_attribute(constraint, "unit", copy_text(transmission_unit(&first->transmission)));
-  set_content(constraint, lack);
+  set_content(constraint, residual);
 }

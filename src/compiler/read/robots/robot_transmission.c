@@ -120,13 +120,13 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
   bool slides = transmission_slides(transmission), has_spring = actuator->bias[1] != 0,
        has_damper = actuator->bias[2] != 0;
   bool is_servo = has_spring && actuator->gain == -actuator->bias[1];
-  bool is_drive = !has_spring && has_damper && actuator->gain == -actuator->bias[2];
+  bool is_prescribed_motion = !has_spring && has_damper && actuator->gain == -actuator->bias[2];
   const char *length = transmission_length(transmission), *rate = transmission_rate(transmission);
   char *name = format_text("%s_control", robot_symbol(actuator->name)), *gear = number(actuator->gear);
   char *control = clamped(actuator->control, name), *gain = number(actuator->gain);
-  char *force = is_servo   ? format_text("%s_stiffness*%s", name, control)
-                : is_drive ? format_text("%s_damping*%s", name, control)
-                           : format_text("%s*%s", gain, control);
+  char *force = is_servo               ? format_text("%s_stiffness*%s", name, control)
+                : is_prescribed_motion ? format_text("%s_damping*%s", name, control)
+                                       : format_text("%s*%s", gain, control);
   const char *unit = slides ? "N" : "N.m";
   if (has_spring) {
     write_parameter(writer, format_text("%s_stiffness", name), -actuator->bias[1], slides ? "N/m" : "N.m/rad",
@@ -145,7 +145,7 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
   }
   xmlNodePtr input = write_element(writer, "input");
   if (is_servo) unit = slides ? "m" : "rad";
-  if (is_drive) unit = slides ? "m/s" : "rad/s";
+  if (is_prescribed_motion) unit = slides ? "m/s" : "rad/s";
   set_attribute(input, "name", name);
   set_attribute(input, "unit", copy_text(unit));
   set_number(input, "start", actuator->start);

@@ -450,6 +450,6 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
     check_attributes(&urdf, root, attributes);
     check_simulators(&urdf, root);
   }
-  tell_left_out(&urdf);
+  report_left_out(&urdf);
   return urdf.robot;
 }

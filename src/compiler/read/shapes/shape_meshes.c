@@ -62,11 +62,11 @@ bool prepare_corners(struct Reader *reader, xmlNodePtr node, const struct Contac
         shape->name);
     return false;
   }
-  if (mesh->corner_count == MOST_CORNERS && mesh->lack > 0.0)
+  if (mesh->corner_count == MOST_CORNERS && mesh->residual > 0.0)
     report_warning(
         reader->diagnostics, line_of(node),
         "the convex hull of the shape '%s' has many corners, and touches at %d of them; it reaches up to %.2g m "
         "beyond these",
-        shape->name, MOST_CORNERS, mesh->lack);
+        shape->name, MOST_CORNERS, mesh->residual);
   return true;
 }

@@ -131,7 +131,7 @@ static Node read_size(struct Reader *reader, xmlNodePtr node, const struct Conta
 }
 
 /* Sets the frame or particle of the shape; the base if the element names none. */
-static void place_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
+static void slot_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   if (!has_attribute(node, "in")) return;
   char *name = reference_attribute(reader, node, "in");
   struct SpatialPoint point;
@@ -167,7 +167,7 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   if (!has_attribute(node, "name")) return;
   struct Graph *graph = reader->model->graph;
   struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
-  place_in(reader, node, shape);
+  slot_in(reader, node, shape);
   turn_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;

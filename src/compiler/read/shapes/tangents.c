@@ -6,7 +6,7 @@
  * Orthonormal vectors, oblique to the base's axes: normals of shapes that are placed along these axes are never
  * opposite to the third vector.
  */
-static const double oblique[3][3] = {
+static const double nonsymmetric[3][3] = {
     {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
@@ -14,13 +14,13 @@ static struct Vector velocity_of_material(struct Reader *reader, const struct Si
   struct Graph *graph = reader->model->graph;
   struct Vector spin = matrix_apply(graph, &side->pose.rotation, side->pose.angular_velocity), velocity;
   for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->pose.origin.along[i]);
-  struct Vector lever = vector_subtract(graph, point, side->pose.origin);
-  return vector_add(graph, velocity, vector_cross(graph, spin, lever));
+  struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin);
+  return vector_add(graph, velocity, vector_cross(graph, spin, jacobian_row));
 }
 
 static struct Vector oblique_axis(struct Graph *graph, int which) {
   struct Vector axis;
-  for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, oblique[which][i]);
+  for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, nonsymmetric[which][i]);
   return axis;
 }
 

@@ -58,11 +58,11 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   add_term(model, &model->forces.along[index], without_displacements(reader, line_of(node), "the force", force.node));
 }
 
-void add_virtual_work(struct Model *model, Node force, const struct Gradient *levers) {
-  for (size_t i = 0; i < levers->count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(model->graph, levers->symbols[i]);
+void add_virtual_work(struct Model *model, Node force, const struct Gradient *jacobian_rows) {
+  for (size_t i = 0; i < jacobian_rows->count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(model->graph, jacobian_rows->symbols[i]);
     struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];
-    add_term(model, sum, multiply(model->graph, force, levers->values[i]));
+    add_term(model, sum, multiply(model->graph, force, jacobian_rows->values[i]));
   }
 }
 
@@ -96,9 +96,9 @@ static struct Matrix rotation_of(struct Reader *reader, long line, const struct 
 
 void add_force_along(struct Reader *reader, long line, const char *name, Node displaced, Node force) {
   struct Model *model = reader->model;
-  struct Gradient levers = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
-                                             KIND(COORDINATE) | KIND(TIME));
-  add_virtual_work(model, force, &levers);
+  struct Gradient jacobian_rows = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
+                                                    KIND(COORDINATE) | KIND(TIME));
+  add_virtual_work(model, force, &jacobian_rows);
   append_point_force(model, displaced, force);
 }
 
@@ -148,8 +148,8 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
-  struct Gradient levers = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
-  add_virtual_work(model, ONE, &levers);
+  struct Gradient jacobian_rows = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
+  add_virtual_work(model, ONE, &jacobian_rows);
   add_term(model, &model->forces.driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
   model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};

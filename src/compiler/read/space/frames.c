@@ -359,25 +359,25 @@ static Node inertia_of_norm(const struct Model *model, size_t frame) {
     const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame || !is_inside(model, body->frame, frame)) continue;
     for (int axis = 0; axis < 3; axis++) {
-      Node lever = body->frame == frame ? body->offset.along[axis] : ZERO;
-      if (!graph_is_constant_in_time(graph, lever)) lever = ZERO;
-      Node moment = multiply(graph, body->mass.node, power_number(graph, lever, 2.0));
+      Node jacobian_row = body->frame == frame ? body->offset.along[axis] : ZERO;
+      if (!graph_is_constant_in_time(graph, jacobian_row)) jacobian_row = ZERO;
+      Node moment = multiply(graph, body->mass.node, power_number(graph, jacobian_row, 2.0));
       sum = add(graph, sum, add(graph, body->tensor.row[axis].along[axis], moment));
     }
   }
   return scale(graph, 1.0 / 3.0, sum);
 }
 
-void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node) {
+void add_regularization_of_norm(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   if (quaternion_of(node) == NULL) return;
   char *name = name_attribute(reader, node, "name");
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
     const struct Variable *norm = &model->constraints.items[reader->present->number];
-    model->mechanism.stillnesses =
-        make_room(model->mechanism.stillnesses, model->mechanism.stillness_count, sizeof *model->mechanism.stillnesses);
-    model->mechanism.stillnesses[model->mechanism.stillness_count++] =
-        (struct Stillness){norm->node, inertia_of_norm(model, *frame)};
+    model->mechanism.stillnesses = make_room(model->mechanism.stillnesses, model->mechanism.regularization_count,
+                                             sizeof *model->mechanism.stillnesses);
+    model->mechanism.stillnesses[model->mechanism.regularization_count++] =
+        (struct Regularization){norm->node, inertia_of_norm(model, *frame)};
   }
 }

@@ -54,4 +54,4 @@ const struct ReferenceFrame *find_frame(const struct Reader *reader, const char 
 const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Adds the regularizing inertia of a quaternion's norm, see struct Stillness; called when all bodies are known. */
-void add_stillness_of_norm(struct Reader *reader, xmlNodePtr node);
+void add_regularization_of_norm(struct Reader *reader, xmlNodePtr node);

@@ -74,8 +74,8 @@ Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, 
 }
 
 /* Returns the vector from the centre to the lowest point: downward, and for a wheel perpendicular to its axis. */
-static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct Side *from,
-                              const struct Side *to) {
+static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct Side *from,
+                                     const struct Side *to) {
   struct Vector up = axis_of_side(from, Z);
   if (is_sphere(node)) return vector_scale(graph, negate(graph, radius), up);
   struct Tilt tilt = tilt_of(graph, from, to);
@@ -85,19 +85,20 @@ static struct Vector lever_of(struct Graph *graph, xmlNodePtr node, Node radius,
 }
 
 /* Returns the velocity along the base's axes of the point at `lever` from the end, which rotates with it. */
-static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side, struct Vector lever) {
+static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side,
+                                 struct Vector jacobian_row) {
   struct Graph *graph = reader->model->graph;
   struct Vector spin = angular_velocity_of_side(reader, node, side), velocity;
   for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->position.along[i]);
-  return vector_add(graph, velocity, vector_cross(graph, spin, lever));
+  return vector_add(graph, velocity, vector_cross(graph, spin, jacobian_row));
 }
 
 Node slip_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to, int axis) {
   struct Graph *graph = reader->model->graph;
   Node radius = read_length(reader, node, "radius"), minus = graph_constant(graph, -1.0);
-  struct Vector lever = lever_of(graph, node, radius, from, to);
+  struct Vector jacobian_row = jacobian_row_of(graph, node, radius, from, to);
   struct Vector between = vector_add(graph, to->position, vector_scale(graph, minus, from->position));
-  struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, lever));
-  struct Vector rim = velocity_of(reader, node, to, lever);
+  struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, jacobian_row));
+  struct Vector rim = velocity_of(reader, node, to, jacobian_row);
   return vector_dot(graph, axis_of_side(from, axis), vector_add(graph, rim, vector_scale(graph, minus, ground)));
 }

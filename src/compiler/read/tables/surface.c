@@ -15,7 +15,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/tables/pieces.h"
+#include "read/tables/piecewise.h"
 
 /* Sets the slopes of `count` parallel grid lines with `length` knots each. The steps are distances in the arrays. */
 static void slopes_of_lines(const double *knots, size_t length, size_t count, size_t step_in_line, size_t step_of_lines,

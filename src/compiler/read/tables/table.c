@@ -1,7 +1,7 @@
 #include "read/tables/table.h"
 
 #include "algebra/simplify.h"
-#include "read/tables/pieces.h"
+#include "read/tables/piecewise.h"
 
 const struct Table *table_named(const struct Scope *scope, const char *full_name) {
   return names_find(scope->tables, full_name);

@@ -15,5 +15,5 @@ struct Table {
 /* Returns the table of this full name; NULL for none. */
 const struct Table *table_named(const struct Scope *scope, const char *full_name);
 
-/* Returns the table at its one or two arguments as an expression of pieces.h. line: of its use, for messages. */
+/* Returns the table at its one or two arguments as an expression of piecewise.h. line: of its use, for messages. */
 Node table_at(struct Scope *scope, const struct Table *table, const Node arguments[2], long line);

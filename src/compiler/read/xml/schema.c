@@ -19,7 +19,7 @@ struct Choices {
   size_t count;
 };
 
-struct Check {
+struct SchemaCheck {
   xmlDocPtr schema;
   struct Diagnostics *diagnostics;
   xmlNodePtr last; /* the element at which validation was cut off; NULL for none */
@@ -29,7 +29,7 @@ struct Check {
  * Cuts off all nodes after the element, at every level up to the root, so that validation ends there. libxml2 counts
  * all preceding elements for each error, which is quadratic in files with many errors. show_rest() restores the nodes.
  */
-static void hide_rest(struct Check *check, xmlNodePtr element) {
+static void hide_rest(struct SchemaCheck *check, xmlNodePtr element) {
   check->last = element;
   for (xmlNodePtr node = element; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
     node->_private = node->next;
@@ -37,7 +37,7 @@ static void hide_rest(struct Check *check, xmlNodePtr element) {
   }
 }
 
-static void show_rest(struct Check *check) {
+static void show_rest(struct SchemaCheck *check) {
   for (xmlNodePtr node = check->last; node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent) {
     node->next = node->_private;
     node->_private = NULL;
@@ -85,7 +85,7 @@ static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const
  * Returns the declaration of an element: the one in the type named after its parent if there is one, else the first one
  * in the schema.
  */
-static xmlNodePtr declaration_of(const struct Check *check, xmlNodePtr element) {
+static xmlNodePtr declaration_of(const struct SchemaCheck *check, xmlNodePtr element) {
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);
   bool is_inside = element->parent->type == XML_ELEMENT_NODE;
   xmlNodePtr around = is_inside ? find_declared(schema, "complexType", (const char *)element->parent->name) : NULL;
@@ -93,7 +93,7 @@ static xmlNodePtr declaration_of(const struct Check *check, xmlNodePtr element) 
   return own != NULL ? own : find_declared(schema, "element", (const char *)element->name);
 }
 
-static struct Choices choices_in(const struct Check *check, xmlNodePtr element, const char *kind) {
+static struct Choices choices_in(const struct SchemaCheck *check, xmlNodePtr element, const char *kind) {
   struct Choices choices = {.count = 0};
   xmlNodePtr place = declaration_of(check, element);
   if (place != NULL) collect(xmlDocGetRootElement(check->schema), place, kind, "name", &choices);
@@ -104,7 +104,7 @@ static struct Choices choices_in(const struct Check *check, xmlNodePtr element, 
  * Returns the values that the schema lists for an attribute, from the type named after its element or else from
  * anywhere. Empty if the schema lists none.
  */
-static struct Choices choices_of_value(const struct Check *check, xmlNodePtr element, const char *attribute) {
+static struct Choices choices_of_value(const struct SchemaCheck *check, xmlNodePtr element, const char *attribute) {
   struct Choices choices = {.count = 0};
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);
   xmlNodePtr type = find_declared(schema, "complexType", (const char *)element->name);
@@ -127,7 +127,7 @@ static char *remedy(const char *wanted, struct Choices choices) {
   return close_text(&text);
 }
 
-static void report_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
+static void report_attribute(const struct SchemaCheck *check, xmlNodePtr element, const char *name) {
   const char *of = (const char *)element->name;
   char *what_then = remedy(name, choices_in(check, element, "attribute"));
   report_error(check->diagnostics, line_of_attribute(element, name), "<%s> has no attribute '%s'; %s", of, name,
@@ -135,7 +135,7 @@ static void report_attribute(const struct Check *check, xmlNodePtr element, cons
 }
 
 /* Reports a missing attribute, unless a given one is a probable misspelling, which is reported by itself. */
-static void report_missing_attribute(const struct Check *check, xmlNodePtr element, const char *name) {
+static void report_missing_attribute(const struct SchemaCheck *check, xmlNodePtr element, const char *name) {
   for (const xmlAttr *given = element->properties; given != NULL; given = given->next) {
     struct Similar similar = {.wanted = (const char *)given->name};
     similar_consider(&similar, name);
@@ -145,7 +145,7 @@ static void report_missing_attribute(const struct Check *check, xmlNodePtr eleme
                (const char *)element->name, name, name);
 }
 
-static void report_element(const struct Check *check, xmlNodePtr element) {
+static void report_element(const struct SchemaCheck *check, xmlNodePtr element) {
   const char *name = (const char *)element->name, *parent = (const char *)element->parent->name;
   const char *hint = hint_for_element(name);
   bool is_known = find_declared(xmlDocGetRootElement(check->schema), "element", name) != NULL;
@@ -161,7 +161,7 @@ static xmlNodePtr first_of(xmlNodePtr element, xmlElementType type) {
   return node;
 }
 
-static void report_text(const struct Check *check, const xmlNode *node, const char *where, const char *expected) {
+static void report_text(const struct SchemaCheck *check, const xmlNode *node, const char *where, const char *expected) {
   const char *word = (const char *)node->content + strspn((const char *)node->content, " \t\r\n");
   long line = line_of(node);
   for (const char *c = (const char *)node->content; c < word; c++) line += *c == '\n';
@@ -170,7 +170,7 @@ static void report_text(const struct Check *check, const xmlNode *node, const ch
 }
 
 /* Reports text between elements, or content in an element that must be empty. */
-static void report_content(const struct Check *check, xmlNodePtr element) {
+static void report_content(const struct SchemaCheck *check, xmlNodePtr element) {
   const char *name = (const char *)element->name;
   const xmlNode *text = first_of(element, XML_TEXT_NODE), *inner = first_of(element, XML_ELEMENT_NODE);
   struct Choices elements = choices_in(check, element, "element");
@@ -183,7 +183,7 @@ static void report_content(const struct Check *check, xmlNodePtr element) {
   else if (text != NULL) report_text(check, text, name, "an attribute");
 }
 
-static void report_root(const struct Check *check, xmlNodePtr root) {
+static void report_root(const struct SchemaCheck *check, xmlNodePtr root) {
   const char *name = (const char *)root->name;
   if (root->ns != NULL)
     report_error(check->diagnostics, line_of(root), "<%s> belongs to the namespace '%s'; expected no xmlns", name,
@@ -204,7 +204,7 @@ static char *attribute_in(const char *message) {
   return format_text("%.*s", (int)strcspn(begin, "'"), begin);
 }
 
-static void report_value(const struct Check *check, const xmlError *error, xmlNodePtr element) {
+static void report_value(const struct SchemaCheck *check, const xmlError *error, xmlNodePtr element) {
   char *name = attribute_in(error->message), *what_then = NULL;
   char *value = (char *)xmlGetProp(element, (const xmlChar *)name);
   bool is_text = *name == '\0';
@@ -236,7 +236,7 @@ static void report_value(const struct Check *check, const xmlError *error, xmlNo
 }
 
 static void report_schema_error(void *context, xmlErrorPtr error) {
-  struct Check *check = context;
+  struct SchemaCheck *check = context;
   xmlNodePtr element = error->node;
   if (check->last != NULL) return;
   if (element == NULL || error->message == NULL) {
@@ -264,7 +264,7 @@ static xmlDocPtr schema_document(void) {
 }
 
 void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
-  struct Check check = {.schema = schema_document(), .diagnostics = diagnostics};
+  struct SchemaCheck check = {.schema = schema_document(), .diagnostics = diagnostics};
   xmlSchemaParserCtxtPtr parser = check.schema != NULL ? xmlSchemaNewDocParserCtxt(check.schema) : NULL;
   xmlSchemaPtr schema = parser != NULL ? xmlSchemaParse(parser) : NULL;
   xmlSchemaValidCtxtPtr validation = schema != NULL ? xmlSchemaNewValidCtxt(schema) : NULL;

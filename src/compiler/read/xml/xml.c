@@ -62,8 +62,8 @@ static char *meaning_of(const xmlError *error) {
 
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
-  struct Diagnostics *told = diagnostics;
-  if (error->domain == XML_FROM_PARSER && told->errors > 0) return; /* caused by the first error */
+  struct Diagnostics *reported = diagnostics;
+  if (error->domain == XML_FROM_PARSER && reported->errors > 0) return; /* caused by the first error */
   char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
   if (meaning != NULL) message = meaning;
   int length = (int)strcspn(message, "\n");

@@ -7,7 +7,7 @@
 struct SparseBdf {
   struct Bdf bdf;
   /* The pattern of I - gamma J: that of J, and the diagonal. place[k] is the index of J's element k in it. */
-  sunindextype *start, *row, *place;
+  sunindextype *start, *row, *slot;
 };
 
 /* Merges the diagonal into the pattern of the Jacobian. */
@@ -18,13 +18,13 @@ static void add_diagonal(struct SparseBdf *sparse) {
     int k = pattern->start[j], end = pattern->start[j + 1], diagonal = (int)j;
     sparse->start[j] = count;
     for (; k < end && pattern->row[k] < diagonal; k++) {
-      sparse->place[k] = count;
+      sparse->slot[k] = count;
       sparse->row[count++] = pattern->row[k];
     }
     sparse->row[count++] = diagonal;
-    if (k < end && pattern->row[k] == diagonal) sparse->place[k++] = count - 1;
+    if (k < end && pattern->row[k] == diagonal) sparse->slot[k++] = count - 1;
     for (; k < end; k++) {
-      sparse->place[k] = count;
+      sparse->slot[k] = count;
       sparse->row[count++] = pattern->row[k];
     }
   }
@@ -37,7 +37,7 @@ static void fill(const struct Bdf *bdf, SUNMatrix matrix) {
   for (size_t j = 0; j <= states; j++) SUNSparseMatrix_IndexPointers(matrix)[j] = sparse->start[j];
   for (size_t k = 0; k < count; k++) SUNSparseMatrix_IndexValues(matrix)[k] = sparse->row[k];
   for (size_t k = 0; k < lagrangian.implicit.pattern.count; k++)
-    SUNSparseMatrix_Data(matrix)[sparse->place[k]] = bdf->jacobian[k];
+    SUNSparseMatrix_Data(matrix)[sparse->slot[k]] = bdf->jacobian[k];
 }
 
 static bool configure(struct Instance *instance) {
@@ -47,7 +47,7 @@ static bool configure(struct Instance *instance) {
   size_t states = lagrangian.state_count, elements = lagrangian.implicit.pattern.count;
   sparse->start = sundials_allocate(states + 1 + (elements + states) + elements, sizeof *sparse->start);
   sparse->row = sparse->start + states + 1;
-  sparse->place = sparse->row + elements + states;
+  sparse->slot = sparse->row + elements + states;
   add_diagonal(sparse);
   sunindextype n = (sunindextype)states;
   bdf->fill = fill;

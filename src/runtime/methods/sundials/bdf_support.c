@@ -60,7 +60,7 @@ bool bdf_configure(struct Instance *instance) {
   bdf->jacobian = sundials_allocate(lagrangian.implicit.pattern.count, sizeof *bdf->jacobian);
   bdf->cvode = CVodeCreate(CV_BDF, bdf->sundials.context);
   return bdf->cvode != NULL && SUCCEEDS(instance, CVodeSetErrHandlerFn, bdf->cvode, sundials_ignore_error, NULL) &&
-         SUCCEEDS(instance, CVodeInit, bdf->cvode, sundials_right_side, instance->situation->time,
+         SUCCEEDS(instance, CVodeInit, bdf->cvode, sundials_right_side, instance->fmu_state->time,
                   bdf->sundials.state) &&
          set_tolerances(instance, bdf) && SUCCEEDS(instance, CVodeSetUserData, bdf->cvode, instance) &&
          SUCCEEDS(instance, CVodeSetMaxNumSteps, bdf->cvode, lagrangian.steps.max_steps) &&
@@ -73,7 +73,7 @@ bool bdf_restart(struct Instance *instance, const double *state, const struct Co
   const struct Bdf *bdf = instance->solver_memory;
   (void)step;
   sundials_load(instance, state, safety);
-  return SUCCEEDS(instance, CVodeReInit, bdf->cvode, instance->situation->last_step.end, bdf->sundials.state) &&
+  return SUCCEEDS(instance, CVodeReInit, bdf->cvode, instance->fmu_state->last_step.end, bdf->sundials.state) &&
          set_tolerances(instance, bdf);
 }
 
@@ -98,15 +98,15 @@ static const char *limit_by_functions(struct Instance *instance, const struct Bd
 
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Bdf *bdf = instance->solver_memory;
-  struct Situation *situation = instance->situation;
-  double before = situation->last_step.end, time = before;
+  struct FmuState *fmu_state = instance->fmu_state;
+  double before = fmu_state->last_step.end, time = before;
   if (sundials_tiny_step(instance, step)) return NULL;
   if (CVodeSetMaxStep(bdf->cvode, longest_step(step)) < 0) return "CVODE failed to set the longest step";
   const char *problem = lagrangian.taylor.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, step->end);
   if (problem != NULL) return problem;
   if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "steps were rejected too often";
-  situation->last_step = (struct Span){before, time};
-  situation->statistics[STATISTIC_STEPS]++;
+  fmu_state->last_step = (struct Span){before, time};
+  fmu_state->statistics[STATISTIC_STEPS]++;
   return NULL;
 }
 

@@ -33,7 +33,7 @@ static bool configure(struct Instance *instance) {
   SUNContext context = erk->sundials.context;
   erk->before = N_VClone(erk->sundials.state);
   erk->rate = N_VClone(erk->sundials.state);
-  erk->arkode = ERKStepCreate(sundials_right_side, instance->situation->time, erk->sundials.state, context);
+  erk->arkode = ERKStepCreate(sundials_right_side, instance->fmu_state->time, erk->sundials.state, context);
   return erk->arkode != NULL && SUCCEEDS(instance, ERKStepSetErrHandlerFn, erk->arkode, sundials_ignore_error, NULL) &&
          SUCCEEDS(instance, ERKStepSetUserData, erk->arkode, instance) &&
          SUCCEEDS(instance, ERKStepSetTableNum, erk->arkode, ARKODE_DORMAND_PRINCE_7_4_5) &&
@@ -88,10 +88,10 @@ static bool obeys_equations(struct Instance *instance, const struct Erk *erk, do
   double *derivative = instance->work + lagrangian.input_count;
   if (is_steady(erk, before, time)) return true;
   for (int k = 0; k < SAMPLES; k++) {
-    double place = before + (k + 0.5) / SAMPLES * (time - before);
+    double slot = before + (k + 0.5) / SAMPLES * (time - before);
     N_Vector inside = erk->sundials.inside;
-    if (ERKStepGetDky(erk->arkode, place, 0, inside) < 0 || ERKStepGetDky(erk->arkode, place, 1, erk->rate) < 0 ||
-        !solver_derivatives(instance, place, N_VGetArrayPointer(inside), derivative))
+    if (ERKStepGetDky(erk->arkode, slot, 0, inside) < 0 || ERKStepGetDky(erk->arkode, slot, 1, erk->rate) < 0 ||
+        !solver_derivatives(instance, slot, N_VGetArrayPointer(inside), derivative))
       return false;
     for (size_t i = 0; i < lagrangian.state_count; i++)
       if (differ(&erk->sundials, i, time - before, derivative[i], N_VGetArrayPointer(erk->rate)[i])) return false;
@@ -103,7 +103,7 @@ static bool restart(struct Instance *instance, const double *state, const struct
   struct Erk *erk = instance->solver_memory;
   sundials_load(instance, state, safety);
   erk->trial = step->end - step->start;
-  return start_method(instance, erk, instance->situation->last_step.end, instance->situation->suggested_step,
+  return start_method(instance, erk, instance->fmu_state->last_step.end, instance->fmu_state->suggested_step,
                       step->end);
 }
 
@@ -113,9 +113,9 @@ static bool restart(struct Instance *instance, const double *state, const struct
  */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Erk *erk = instance->solver_memory;
-  struct Situation *situation = instance->situation;
+  struct FmuState *fmu_state = instance->fmu_state;
   N_Vector state = erk->sundials.state;
-  double before = situation->last_step.end, rest = step->end - before, time = before;
+  double before = fmu_state->last_step.end, rest = step->end - before, time = before;
   if (sundials_tiny_step(instance, step)) return NULL;
   double longest = sundials_longest_step(instance, before, rest);
   if (longest < rest && solver_rests(before, longest)) return solver_resting;
@@ -131,9 +131,9 @@ static const char *advance(struct Instance *instance, const struct Communication
     if (!start_method(instance, erk, before, erk->trial, step->end)) return "ERKStep cannot be restarted";
   }
   ERKStepGetCurrentStep(erk->arkode, &erk->trial);
-  situation->suggested_step = erk->trial;
-  situation->last_step = (struct Span){before, time};
-  situation->statistics[STATISTIC_STEPS]++;
+  fmu_state->suggested_step = erk->trial;
+  fmu_state->last_step = (struct Span){before, time};
+  fmu_state->statistics[STATISTIC_STEPS]++;
   return NULL;
 }
 

@@ -26,7 +26,7 @@ bool sundials_create(struct Instance *instance, size_t size, bool (*configure)(s
 void sundials_load(const struct Instance *instance, const double *state, double safety) {
   struct Sundials *sundials = instance->solver_memory;
   memcpy(N_VGetArrayPointer(sundials->state), state, lagrangian.state_count * sizeof(double));
-  sundials->relative = fmax(safety * instance->situation->tolerance, 10 * DBL_EPSILON);
+  sundials->relative = fmax(safety * instance->fmu_state->tolerance, 10 * DBL_EPSILON);
   for (size_t i = 0; i < lagrangian.state_count; i++)
     N_VGetArrayPointer(sundials->tolerance)[i] = sundials->relative * lagrangian.steps.nominal[i];
 }
@@ -40,7 +40,7 @@ bool sundials_interpolate(struct Instance *instance,
                           int (*evaluate)(void *memory, realtype time, int order, N_Vector y), void *memory,
                           double time, double *state) {
   const struct Sundials *sundials = instance->solver_memory;
-  bool is_end = time == instance->situation->last_step.end;
+  bool is_end = time == instance->fmu_state->last_step.end;
   if (!is_end && evaluate(memory, time, 0, sundials->inside) < 0) return false;
   memcpy(state, N_VGetArrayPointer(is_end ? sundials->state : sundials->inside),
          lagrangian.state_count * sizeof(double));
@@ -60,15 +60,15 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
 
 bool sundials_tiny_step(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Sundials *sundials = instance->solver_memory;
-  struct Situation *situation = instance->situation;
-  double start = situation->last_step.end, size = step->end - start;
+  struct FmuState *fmu_state = instance->fmu_state;
+  double start = fmu_state->last_step.end, size = step->end - start;
   if (size > 8 * DBL_EPSILON * fmax(fabs(start), fabs(step->end))) return false;
   double *state = N_VGetArrayPointer(sundials->state), *derivative = instance->work + lagrangian.input_count;
   if (!solver_derivatives(instance, start, state, derivative)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += size * derivative[i];
-  situation->last_step = (struct Span){start, step->end};
-  situation->statistics[STATISTIC_STEPS]++;
-  situation->changed = CHANGED_VALUES;
+  fmu_state->last_step = (struct Span){start, step->end};
+  fmu_state->statistics[STATISTIC_STEPS]++;
+  fmu_state->changed = CHANGED_VALUES;
   return true;
 }
 

@@ -170,7 +170,7 @@ char *color_text(const double rgba[4]) {
   return text;
 }
 
-void tell_left_out(struct RobotFile *file) {
+void report_left_out(struct RobotFile *file) {
   char *list = copy_text("");
   for (size_t i = 0; i < file->left_out_count; i++)
     list = format_text("%s%s%s", list, i > 0 ? ", " : "", file->left_out[i]);

@@ -65,7 +65,7 @@ void note_mesh_problem(struct RobotFile *file, char *problem);
 char *color_text(const double rgba[4]);
 
 /* Warns of all parts that were left out, unless there were errors. */
-void tell_left_out(struct RobotFile *file);
+void report_left_out(struct RobotFile *file);
 
 /* Return the only child element of this name; NULL for none. Report several, and a missing one if required. */
 xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name);

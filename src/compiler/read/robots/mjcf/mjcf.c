@@ -302,6 +302,6 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
     mjcf_check_attributes(&mjcf);
   }
   leave_out_others(&mjcf.file, root, known);
-  tell_left_out(&mjcf.file);
+  report_left_out(&mjcf.file);
   return robot;
 }

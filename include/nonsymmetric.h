@@ -1,0 +1,30 @@
+/*
+ * Solves K x = b with a nonsymmetric K = (M J^T; J 0) + C E^T, by the Woodbury identity. It is needed for forces that
+ * depend on constraint forces, such as the friction of a sliding contact. C has n rows and r columns, one for each
+ * force that others depend on; E^T selects these forces from x. With the symmetric S = (M J^T; J 0)^-1, factored by
+ * saddle.h,
+ *
+ *  K^-1 = S - S C (1 + E^T S C)^-1 E^T S.
+ *
+ * The r by r matrix is factored by Gaussian elimination with row pivoting. A factorization costs r solutions with S
+ * more than that of saddle.h.
+ *
+ * coordinate[] continues behind the n numbers of saddle.h with r and the r rows of these forces. m continues behind the
+ * numbers of saddle.h with NONSYMMETRIC_MASS(n, r) numbers: C by columns, then workspace.
+ */
+#ifndef NONSYMMETRIC_H
+#define NONSYMMETRIC_H
+
+#include <stddef.h>
+
+#include "arithmetic.h"
+
+/* Numbers of storage behind those of saddle.h, see above. */
+#define NONSYMMETRIC_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
+
+/* As in saddle.h. nonsymmetric_factor() also returns 1 if 1 + E^T S C is singular: the friction jams. */
+size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
+void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                        double *x);
+
+#endif

@@ -1,0 +1,115 @@
+"""
+Finds words, sentences and paragraphs that src/STYLE.md excludes, in pages, in comments of C and Python, and in the last commit's subject.
+Prints each with its place and what to write instead; the status is 1 if there are any.
+"""
+
+import io
+import re
+import subprocess
+import sys
+import tokenize
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDERS = ("src", "include", "modelDescription", "scripts", "tests")
+LONGEST_SENTENCE = 45  # words; the guide asks for 25, and tables of values need some more
+MOST_SENTENCES = 6  # of a paragraph of a page; the guide asks for 4
+LONGEST_SUBJECT = 60  # characters
+INSTEAD = {
+    r"(is|are|was|were|be|been) told": "reported, or determined",
+    r"tells? (of|what|how|which|whether|where|when)": "reports, shows or says",
+    r"to be had": "available",
+    r"any more": "nothing: comments speak of the present",
+    r"without end(?! \((Zeno|chatter))": "endlessly, or Zeno behaviour",
+    r"whether what": "a noun in place of the clause",
+    r"behind which": "followed by",
+    r"what is told": "the reported values",
+}
+WRONG = re.compile("|".join(f"(?P<w{i}>\\b{words}\\b)" for i, words in enumerate(INSTEAD)), re.IGNORECASE)
+
+
+def wrong_words(text):
+    for match in WRONG.finditer(text):
+        yield f"'{match[0]}'", list(INSTEAD.values())[int(match.lastgroup[1:])]
+
+
+def c_comments(source):
+    for match in re.finditer(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', source, re.DOTALL):
+        if not match[0].startswith('"'):
+            yield source.count("\n", 0, match.start()) + 1, match[0]
+
+
+def python_comments(source):
+    """Comments, and strings that are statements."""
+    before = tokenize.NEWLINE
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT or (token.type == tokenize.STRING and before in (tokenize.NEWLINE, tokenize.INDENT, tokenize.ENCODING)):
+            yield token.start[0], token.string
+        if token.type not in (tokenize.COMMENT, tokenize.NL):
+            before = token.type
+
+
+def paragraphs(page):
+    """Of a page's running text: without code, tables, headings and lists."""
+    lines, fenced = page.split("\n"), False
+    text, start = [], 0
+    for number, line in enumerate([*lines, ""], 1):
+        fence = line.lstrip().startswith("```")
+        fenced ^= fence
+        if fence or fenced or not line.strip() or re.match(r"(    |\t|\||#|<|!\[|\s*([-*]|\d+\.) )", line):
+            if text:
+                yield start, " ".join(text)
+            text = []
+        else:
+            start = start if text else number
+            text.append(line)
+
+
+def sentences(text):
+    return [sentence for sentence in re.split(r"(?<=[.!?])\s+", text) if sentence]
+
+
+def faults_of_page(page):
+    for number, text in paragraphs(page):
+        if len(sentences(text)) > MOST_SENTENCES:
+            yield number, f"a paragraph of {len(sentences(text))} sentences", "a list, a table, or two paragraphs"
+        for sentence in sentences(text):
+            if len(sentence.split()) > LONGEST_SENTENCE:
+                yield number, f"a sentence of {len(sentence.split())} words", "two sentences"
+    for number, line in enumerate(page.split("\n"), 1):
+        yield from ((number, *fault) for fault in wrong_words(line))
+
+
+def faults_of(path):
+    text = path.read_text()
+    if path.suffix == ".md":
+        yield from faults_of_page(text)
+    else:
+        for number, comment in (python_comments if path.suffix == ".py" else c_comments)(text):
+            yield from ((number, *fault) for fault in wrong_words(comment))
+
+
+def files():
+    yield from ROOT.glob("*.md")
+    yield from ROOT.glob("fmu/*.md")
+    for folder in FOLDERS:
+        for suffix in ("md", "py", "c", "h"):
+            yield from (ROOT / folder).rglob(f"*.{suffix}")
+
+
+def fault_of_subject():
+    subject = subprocess.run(["git", "log", "-1", "--format=%s"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    if len(subject) > LONGEST_SUBJECT or ": " in subject:
+        yield f"the last commit: '{subject}'", f"at most {LONGEST_SUBJECT} characters and one clause"
+
+
+def main():
+    faults = [(f"{path.relative_to(ROOT)}:{number}: {what}", instead) for path in sorted(files()) if path.name != "STYLE.md" for number, what, instead in faults_of(path)]
+    faults += fault_of_subject()
+    for what, instead in faults:
+        print(f"{what}; write {instead}")
+    sys.exit(bool(faults))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,7 +1,0 @@
-/* Metadata of events, contacts and frictions for struct Lagrangian. */
-#pragma once
-
-#include "program/program.h"
-
-/* Returns the table without functions and laws; empty without events. */
-struct SwitchTable switch_facts_of(const struct Program *program);

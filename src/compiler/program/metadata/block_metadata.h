@@ -1,0 +1,12 @@
+/* Metadata of the blocks that are factored at run time, for instruction tables. */
+#pragma once
+
+#include "program/program.h"
+
+struct BlockNumbers {
+  int *items;
+  size_t count;
+};
+
+/* Returns the numbers of a block's rows: 1 + index of coordinates, -1 - index of constraints; see also nonsymmetric.h. */
+struct BlockNumbers block_numbers_of(const struct InertiaBlock *block, size_t coordinates);

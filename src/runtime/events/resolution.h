@@ -1,0 +1,164 @@
+/* An event resolution in progress (resolve.c), shared by the files that find modes and the state after an event. */
+#ifndef RESOLUTION_H
+#define RESOLUTION_H
+
+#include "instance/event_laws.h"
+
+struct Resolution {
+  struct Instance *instance;
+  const struct SwitchTable *switches;
+  double time;
+  double *state;
+  enum Occasion occasion;
+  size_t indicator;            /* of the event, for AT_EVENT */
+  double *value, *error_bound; /* value[] of the switch table, and its rounding error bounds */
+  double *other_error_bound;   /* rounding error bounds by the second pattern, at the start of the event */
+  double *force_error_bound;   /* rounding error bound of the force of each friction's constraint */
+  double *began;               /* mode of each friction at the start of the event */
+  double *largest;             /* of velocities and rates in value[] since the start of the event */
+  double *condition;           /* value of each condition before the last change */
+  double *happened;            /* 1 for each event that happened in this round, else 0 */
+  double *flips, *was_opened;  /* switches in the event; contacts: 1 opened, -1 closed by force, else 0 */
+  double *rate;                /* of each branch before its last switch; 0 if it has not switched */
+  double *takes_part;          /* of each contact, then each friction: 1 if in struct Pushes, else 0 */
+  double *acceleration;        /* accelerations, then constraint forces */
+  double *kept_modes;
+  double *rounded, *derivative, *rounding, *correction;
+  const struct BranchMetadata *switched;  /* the first branch that switched; NULL for none */
+  double overshoot;                       /* time in s since its indicator was 0 */
+  const struct BranchMetadata *energetic; /* the first with holds_energy; NULL for none */
+  double *energy;                         /* energies and momenta before it switched */
+  bool changed, jumped;                   /* jumped: velocities or coordinates jumped */
+  bool moved, thrown, set_mode;           /* events have set coordinates; coordinates or velocities; a mode */
+  bool lags;                              /* frictions have switched, and velocities were not projected since */
+  bool came_to_rest;                      /* contacts came to rest in their last round */
+  bool is_evaluated;                      /* value[] and noise are valid */
+  bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
+  bool has_shared;                        /* contacts at rest share the load */
+  bool has_several_motions;               /* several motions of the frictions were logged */
+  bool has_searched_jam;                  /* all modes of frictions at rest were tried */
+  bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
+  int impacts, lifts;
+  struct {
+    size_t friction;        /* the last one to switch, if nothing else changed since; else friction_count */
+    double mode, certainty; /* its mode before, and how many rounding errors supported leaving it */
+  } last;
+};
+
+/* Returns the status of messages if the motion cannot go on: an error at the start, else a discarded step. */
+static inline enum Status resolution_status(const struct Resolution *resolution) {
+  return resolution->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
+}
+
+struct Pushes;
+
+/* Contacts; FMUs without any do not link them. */
+struct ContactLaws {
+  /*
+   * Handles one impact, contacts that come to rest, or one that opens; sets *again if there was any. Returns NULL, or
+   * the reason why the motion cannot go on.
+   */
+  const char *(*act)(struct Resolution *resolution, bool *again);
+  /*
+   * After frictions: opens and closes contacts at rest according to the unique solution for their forces. Returns NULL,
+   * or the reason why there is none.
+   */
+  const char *(*resolve_forces)(struct Resolution *resolution, bool *again);
+  /* After those: closes contacts that touch at rest, to share the load; sets *again if any. Returns as above. */
+  const char *(*share_load)(struct Resolution *resolution, bool *again);
+  /* Moves start values that penetrate contacts by rounding; false if velocities cannot follow. */
+  bool (*lift_start)(struct Resolution *resolution);
+  /* Opens contacts that were moved apart, before the projection; false after logging one that penetrates. */
+  bool (*part)(struct Resolution *resolution);
+  /* Logs a contact that is penetrated. Returns NULL if there is none, else the reason to stop. */
+  const char *(*check_gaps)(const struct Resolution *resolution);
+  /* Logs the contact that jams where the solver stopped; false if none does. */
+  bool (*explain)(struct Resolution *resolution);
+};
+
+/* Frictions; FMUs without any do not link them. */
+struct FrictionLaws {
+  /* Lets one friction stick or slide; sets *again if any. Returns NULL, or the reason why no mode is consistent. */
+  const char *(*act)(struct Resolution *resolution, bool *again);
+  /* Updates the reported modes; sets *again if any changed. False if the accelerations do not exist. */
+  bool (*report)(struct Resolution *resolution, bool *again);
+  /* Logs that something, such as accelerations, is missing for the frictions; there must be some. */
+  void (*blame)(const struct Resolution *resolution, const char *missing);
+  /* Logs a friction with a negative force. Returns NULL if there is none, else the reason to stop. */
+  const char *(*check)(struct Resolution *resolution);
+  /* Lets frictions slide that stick at a nonzero velocity. */
+  void (*release)(struct Resolution *resolution);
+  /* Finds the unique motion of frictions that follow from forces; false if there is none (jams_resolve()). */
+  bool (*resolve_jam)(struct Resolution *resolution);
+  /* Logs a friction that jams a constraint; false if none does (frictions_explain_jam()). */
+  bool (*explain_jam)(struct Resolution *resolution, size_t branch);
+  /* Sets the modes of frictions in planes from start values, as guess of struct EventLaws; NULL without any. */
+  void (*guess)(struct Instance *instance);
+  /* Lets the friction in a plane slide or stick; NULL without any. */
+  void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
+  /*
+   * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact, such that the rates
+   * after it fulfil the law of impacts. False if none are found. NULL without frictions in planes.
+   */
+  bool (*find_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
+                        double *impulse);
+  /* True if other impulses also fulfil the law of impacts, with another motion. */
+  bool (*has_other_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
+                             const double *impulse);
+};
+
+/* Returns the numbers in value[]. */
+size_t resolution_value_count(const struct SwitchTable *switches);
+
+/* Return the numbers of workspace, and an event resolution in it. */
+size_t resolution_work_count(void);
+struct Resolution resolution_of(struct Instance *instance);
+
+/* Returns an event resolution at a time and a state, for an occasion. */
+struct Resolution resolution_at(struct Instance *instance, double time, double *state, enum Occasion occasion);
+
+/* Evaluates all values and rounding error bounds for the present modes and state. False without accelerations. */
+bool resolution_evaluate(struct Resolution *resolution);
+
+/* Evaluates the values at a state, without rounding error bounds. */
+bool resolution_values(struct Resolution *resolution, const double *state, double *value);
+
+/* Evaluates value[] at a point with accelerations of 0, and the force of one constraint; constraints.count for none. */
+void resolution_values_of_force(const struct Resolution *resolution, const struct Point *point, size_t constraint,
+                                double force, double *value);
+
+/* Returns the accelerations of the last evaluation. */
+const double *resolution_accelerations(const struct Resolution *resolution);
+
+/* Projects the velocities onto the active constraints, by the least change in the metric of M. False if that fails. */
+bool resolution_push(struct Resolution *resolution);
+
+/* True if velocities change along an active constraint, by resolution_push(); false if its row of J is 0. */
+bool resolution_moves(const struct Resolution *resolution, size_t constraint);
+
+/* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */
+bool resolution_move(struct Resolution *resolution);
+
+static inline bool is_hit(const struct Resolution *resolution, size_t indicator) {
+  return resolution->occasion == AT_EVENT && resolution->indicator == indicator;
+}
+
+/* True if a branch or a mode may have changed gaps or their rates. */
+static inline bool may_turn_gaps(const struct Resolution *resolution) {
+  return resolution->switched != NULL || resolution->set_mode;
+}
+
+static inline double mode_of(const struct Resolution *resolution, size_t mode) {
+  return resolution->instance->parameter[mode];
+}
+
+void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
+
+/* Save and restore the modes, around trials of others. */
+void resolution_keep_modes(struct Resolution *resolution);
+void resolution_restore_modes(struct Resolution *resolution);
+
+/* Returns the rounding error bound of a value, with the rounding of time at its rate. */
+double resolution_error_bound(const struct Resolution *resolution, size_t slot, size_t rate);
+
+#endif

@@ -1,0 +1,183 @@
+/*
+ * Event resolution: consistent modes, velocities and state after an event. Several mechanisms may act at once: impacts
+ * and contacts that close or open, pieces of functions, frictions that stick or slip, and <event> elements. Each round
+ * evaluates everything and tries the mechanisms in the order of actions[], up to the first that changes something. The
+ * rounds end when none does: then all modes agree with the state. A mode that keeps switching is an error of its own,
+ * and so are more than ROUND_LIMIT rounds. A round costs a few evaluations of the accelerations, which also bound their
+ * rounding errors.
+ *
+ * Then velocities are projected onto the constraints, and the result is checked: energies and positions must not jump
+ * where no event sets them, and contacts and frictions must obey their laws.
+ */
+#include "events/resolve.h"
+
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "events/branches.h"
+#include "events/conditions.h"
+#include "events/continuity.h"
+
+enum { ROUND_LIMIT = 2000 };
+
+static const char no_accelerations[] = "the accelerations do not exist after an event",
+                  no_first_accelerations[] = "the accelerations do not exist";
+
+static const char *act_by_contacts(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->act(resolution, again) : NULL;
+}
+
+static const char *switch_pieces(struct Resolution *resolution, bool *again) {
+  return branches_switch(resolution, false, again);
+}
+
+static const char *act_by_frictions(struct Resolution *resolution, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  const char *problem = laws != NULL ? laws->act(resolution, again) : NULL;
+  resolution->lags |= *again && resolution->occasion != AT_START;
+  return problem;
+}
+
+static const char *resolve_contact_forces(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->resolve_forces(resolution, again) : NULL;
+}
+
+static const char *let_touching_share(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->share_load(resolution, again) : NULL;
+}
+
+static const char *report_friction_modes(struct Resolution *resolution, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  return laws == NULL || laws->report(resolution, again) ? NULL : no_accelerations;
+}
+
+/*
+ * Switches the signs of the expressions of events. An importer comes to an event late: velocities that stick from it on
+ * are brought to rest first.
+ */
+static const char *switch_sides(struct Resolution *resolution, bool *again) {
+  if (!resolution->switches->has_sides) return NULL;
+  if (!resolution->lags) return branches_switch(resolution, true, again);
+  resolution->lags = false;
+  *again = true;
+  return resolution_push(resolution) ? NULL : constraints_not_kept;
+}
+
+/* The mechanisms that a round tries in turn, up to the first that changes something. */
+static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
+    act_by_contacts,    switch_pieces,         act_by_frictions, resolve_contact_forces,
+    let_touching_share, report_friction_modes, switch_sides,     conditions_happen};
+enum { ACTION_COUNT = sizeof actions / sizeof *actions };
+
+/* Makes one round; sets *again if it changed something. */
+static const char *resolve_once(struct Resolution *resolution, bool *again) {
+  const char *problem = NULL;
+  *again = false;
+  for (int i = 0; i < ACTION_COUNT && problem == NULL && !*again; i++) problem = actions[i](resolution, again);
+  return problem;
+}
+
+static const char *resolve_in_rounds(struct Resolution *resolution) {
+  const char *problem = NULL;
+  bool again = true;
+  for (int round = 0; problem == NULL && again; round++) {
+    if (round == ROUND_LIMIT) return "events follow each other without end (Zeno behaviour)";
+    if (!resolution_evaluate(resolution)) return no_accelerations;
+    if (round == 0) conditions_begin(resolution);
+    problem = resolve_once(resolution, &again);
+  }
+  return problem;
+}
+
+/* Sets the modes to the signs of the start values, or projects the state that the solver has left. */
+static const char *begin_resolution(struct Resolution *resolution) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  if (resolution->occasion != AT_START) return continuity_begin(resolution);
+  if (!branches_begin(resolution)) return no_first_accelerations;
+  if (laws == NULL) return NULL;
+  if (!laws->lift_start(resolution) || !branches_begin(resolution)) return constraints_not_kept;
+  return laws->check_gaps(resolution);
+}
+
+/* Projects velocities that have jumped onto the constraints. */
+static const char *push(struct Resolution *resolution) {
+  bool has_to_keep = resolution->jumped && lagrangian.constraints.projection != NULL;
+  return has_to_keep && !resolution_push(resolution) ? constraints_not_kept : NULL;
+}
+
+/* Checks contacts and frictions after an event. Returns NULL, or the violated law. */
+static const char *check_laws(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  const char *problem = NULL;
+  if (switches->contact_laws != NULL && (resolution->moved || may_turn_gaps(resolution)))
+    problem = switches->contact_laws->check_gaps(resolution);
+  if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(resolution);
+  return problem;
+}
+
+/*
+ * Projects the state for the final modes: the last forces may be those of modes that were tried. An importer that
+ * integrates projects its state itself, in event mode.
+ */
+static const char *keep_on_constraints(const struct Resolution *resolution) {
+  bool has_to_keep = resolution->occasion != AT_START && resolution->occasion != IN_EXCHANGE;
+  if (!resolution->changed || !has_to_keep) return NULL;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return constraints_not_kept;
+  return solver_project(resolution->instance, resolution->time, resolution->state);
+}
+
+bool resolve_explain(struct Instance *instance, double time, double *state) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Resolution resolution = resolution_at(instance, time, state, AT_CHANGE);
+  struct Point point = solver_point(instance, time, state);
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  /* Near a jam, forces may be too large to be determined: evaluate without them. */
+  memset(resolution.acceleration, 0, rows * sizeof *resolution.acceleration);
+  memset(resolution.error_bound, 0, resolution_value_count(lagrangian.switches) * sizeof *resolution.error_bound);
+  lagrangian.switches->switching_values(&point, resolution.acceleration, resolution.value);
+  return laws->explain(&resolution);
+}
+
+/* Logs a friction that jams a contact or a constraint, as where the equations become singular. False if none does. */
+static bool explain_jam(struct Resolution *resolution) {
+  struct Instance *instance = resolution->instance;
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  int singular = instance->singular;
+  bool behind_start = resolution->occasion != AT_START;
+  bool jams = (behind_start && resolve_explain(instance, resolution->time, resolution->state)) ||
+              (singular != 0 && laws != NULL && laws->explain_jam(resolution, resolution->switches->branch_count));
+  instance->singular = jams ? 0 : singular;
+  return jams;
+}
+
+/* Logs that accelerations are missing for the frictions. A singular mass matrix is reported as such. */
+static void blame_frictions(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->friction_count > 0 && resolution->instance->singular == 0)
+    switches->friction_laws->blame(resolution, "accelerations");
+}
+
+const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                    bool *changed) {
+  struct Resolution resolution = resolution_at(instance, time, state, occasion);
+  resolution.indicator = indicator;
+  const char *problem = begin_resolution(&resolution);
+  if (problem == NULL) problem = resolve_in_rounds(&resolution);
+  bool lacks = problem == no_accelerations || problem == no_first_accelerations;
+  bool is_explained = lacks && explain_jam(&resolution);
+  if (problem == no_accelerations && !is_explained) blame_frictions(&resolution);
+  if (problem == NULL) problem = branches_check(&resolution);
+  if (problem == NULL) problem = push(&resolution);
+  if (problem == NULL) problem = continuity_check(&resolution);
+  if (problem == NULL) problem = check_laws(&resolution);
+  if (problem == NULL) problem = keep_on_constraints(&resolution);
+  if (problem == NULL) problem = continuity_check_corner(&resolution);
+  if (resolution.changed && occasion != AT_START) instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+  *changed = resolution.changed;
+  return problem;
+}

@@ -1,0 +1,18 @@
+/* Event resolution: the modes and the state after an event (resolve.c). */
+#ifndef RESOLVE_H
+#define RESOLVE_H
+
+#include "instance/event_laws.h"
+
+/*
+ * Brings the modes into agreement with the state at a time. Impacts and events may change the state. indicator: the one
+ * whose sign changed, for AT_EVENT. Sets *changed if anything changed. Returns NULL, or the reason why the motion
+ * cannot go on, after logging the cause.
+ */
+const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                    bool *changed);
+
+/* Logs which contact friction jams at a state where the motion ends; false if it jams none. */
+bool resolve_explain(struct Instance *instance, double time, double *state);
+
+#endif

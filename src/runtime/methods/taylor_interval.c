@@ -1,0 +1,272 @@
+/*
+ * Step size of the Taylor method, in three parts.
+ *
+ * 1. Prediction (A. Jorba, M. Zou, 2005, section 3.2). With the norms |x_j| in units of the state's scales, the radius
+ * of convergence is about r = min over j = p - 1, p of |x_j|^(-1/j), and the step is r * 2^(-margin) (taylor_rule.h).
+ *
+ * 2. Bound. The last coefficients may vanish by symmetry, or because a function such as exp or tanh is flat at the
+ * origin. series_limit.h bounds the step so that no elementary function in the equations can hide a change.
+ *
+ * 3. Defect check. The defect d(s) = x'(s) - f(s, x(s)) of the polynomial is evaluated at the end of the step. The step
+ * is accepted if |d(s)| s in units of the scales is below the tolerance (allowed_defect()). If the coefficients do not
+ * limit the step, the defect is also measured inside it. A larger defect shortens the step by a factor from 0.1 to 0.8.
+ * So the loop ends: with an accepted step, or below the resolution of time, which is reported as a singularity. The
+ * evaluation at the end serves the next step, so a step costs one series and, usually, one evaluation.
+ */
+#include "methods/taylor_interval.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "evaluation/inputs.h"
+
+/*
+ * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change(), and its
+ * time derivative at s by Horner's rule alongside.
+ */
+static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
+  const double *x = taylor->x[i], square = s * s;
+  int64_t j = taylor->saved->order;
+  Pair sum = pair_at(x + j - 1), by_square = pair_multiple(sum, 0.0);
+  for (j -= 2; j > 1; j -= 2) {
+    by_square = pair_sum(pair_multiple(by_square, square), sum);
+    sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
+  }
+  double value = pair_second(sum) * s + pair_first(sum);
+  double slope = 2.0 * s * (pair_second(by_square) * s + pair_first(by_square)) + pair_second(sum);
+  if (j == 1) {
+    slope = slope * s + value;
+    value = value * s + x[1];
+  }
+  *rate = slope * s + value;
+  return value * s;
+}
+
+void taylor_measure_scales(struct Taylor *taylor) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->unit[i] = 1.0 / taylor_scale(taylor, i);
+}
+
+/* Finds the largest coefficients of this order and of the one before, in units of the scales. A NaN is kept. */
+static void norms(const struct Taylor *taylor, int64_t order, double *last, double *before) {
+  *last = *before = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double size = fabs(taylor->x[i][order]) * taylor->unit[i],
+           size_before = fabs(taylor->x[i][order - 1]) * taylor->unit[i];
+    if (size > *last || isnan(size)) *last = size; /* so that a NaN stays */
+    if (size_before > *before || isnan(size_before)) *before = size_before;
+  }
+}
+
+/*
+ * Returns log2(x) of a positive number to 0.01, and below 2^x to 1 %. A step length needs no more; these are faster
+ * than the library's functions, and give equal bits on all machines. Both use the exponent of an IEEE 754 double.
+ */
+static double rough_logarithm(double x) {
+  uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  double exponent = (double)((int)(bits >> 52) - 1023), mantissa;
+  bits = (bits & 0xfffffffffffffu) | (uint64_t)1023 << 52;
+  memcpy(&mantissa, &bits, sizeof mantissa); /* in [1, 2) */
+  return exponent + 1.0 + (0.5 * mantissa - 1.0) * (2.65 - 0.66 * mantissa);
+}
+
+static double rough_power_of_two(double x) {
+  if (x > 1000.0) return INFINITY;
+  if (x < -1000.0) return 0.0;
+  int exponent = (int)(x + 1023.0);
+  double rest = x + 1023.0 - exponent, power;
+  uint64_t bits = (uint64_t)exponent << 52;
+  memcpy(&power, &bits, sizeof power);
+  return power * (1.0 + rest * (0.66 + 0.34 * rest));
+}
+
+/*
+ * Returns the predicted step from the last two orders that are not both 0; INFINITY if the upper half of the orders
+ * vanishes, 0 if a coefficient is not finite.
+ */
+static double predicted_step(const struct Taylor *taylor) {
+  int64_t order = taylor->saved->order, lowest = order / 2;
+  double last, before;
+  for (norms(taylor, order, &last, &before); last + before == 0.0; norms(taylor, order, &last, &before))
+    if (--order <= lowest) return INFINITY;
+  if (!isfinite(last + before)) return 0.0;
+  double power = (double)order;
+  double of_last = last > 0.0 ? rough_logarithm(last) / power : -INFINITY;
+  double of_before = before > 0.0 ? rough_logarithm(before) / (power - 1.0) : -INFINITY;
+  return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - taylor->rule.margin);
+}
+
+int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative) {
+  struct Point point = instance_point(instance);
+  point.time = time;
+  point.state = instance->work;
+  if (instance->fmu_state->input_derivatives_set) {
+    double *input = instance->work + lagrangian.state_count;
+    evaluate_inputs(instance, time, input);
+    point.input = input;
+  }
+  return lagrangian.taylor.start(&point, derivative, taylor->work);
+}
+
+/*
+ * Evaluates d state / dt at s after the origin, at the state to which the changes taylor->term lead. Each number of the
+ * state is perturbed by the relative amount share, with alternating signs. False if d state / dt does not exist.
+ */
+static bool right_side(struct Instance *instance, const struct Taylor *taylor, double s, double share,
+                       double *derivative) {
+  double *state = instance->work;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    state[i] = taylor->x[i][0] + (taylor->term[i] + taylor->low[i]);
+    if (share != 0.0) state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
+  }
+  return taylor_start(instance, taylor, taylor->span->start + s, derivative) == 0;
+}
+
+/*
+ * Returns the largest defect * step that the tolerance allows, in units of the scales. If the coefficients limit the
+ * step, the defect grows with s^order, and its integral, the error, is smaller by order + 1.
+ */
+static double allowed_defect(const struct Taylor *taylor) {
+  double size = taylor->rule.tolerance;
+  return taylor->is_limited ? size : defect_margin * (double)(taylor->saved->order + 1) * size;
+}
+
+/*
+ * Returns the largest defect at s times s, in units of the scales and of allowed_defect(); INFINITY if it does not
+ * exist. The coordinates have none: their series are the integrals of those of the velocities. Leaves the changes and
+ * rates in term and derivative.
+ */
+static double defect(struct Instance *instance, struct Taylor *taylor, double s) {
+  size_t first = lagrangian.coordinate_count, states = lagrangian.state_count;
+  double largest = 0.0, *rate = instance->work + states + lagrangian.input_count;
+  for (size_t i = 0; i < first; i++) taylor->term[i] = taylor_change(taylor, i, s);
+  for (size_t i = first; i < states; i++) taylor->term[i] = change_and_rate(taylor, i, s, &rate[i]);
+  if (!right_side(instance, taylor, s, 0.0, taylor->derivative)) return INFINITY;
+  for (size_t i = first; i < states; i++) {
+    double exact = taylor->derivative[i];
+    double difference = fabs(exact - rate[i]) - rounding * DBL_EPSILON * fabs(exact);
+    double share = difference * s * taylor->unit[i];
+    if (!(share <= largest)) largest = isfinite(share) ? share : INFINITY;
+  }
+  return largest / allowed_defect(taylor);
+}
+
+/*
+ * Returns the change of the right side by rounding of the state at s, in the units of defect(), which must precede the
+ * call. It is large where forces are differences of large numbers, as in stiff springs.
+ */
+static double rounding_of_right_side(struct Instance *instance, struct Taylor *taylor, double s) {
+  size_t states = lagrangian.state_count;
+  double *other = instance->work + states + lagrangian.input_count, largest = 0.0;
+  if (!right_side(instance, taylor, s, 4.0 * DBL_EPSILON, other)) return 0.0;
+  if (!right_side(instance, taylor, s, 0.0, taylor->derivative)) return 0.0;
+  for (size_t i = lagrangian.coordinate_count; i < states; i++)
+    largest = fmax(largest, fabs(other[i] - taylor->derivative[i]) * s * taylor->unit[i]);
+  return largest / allowed_defect(taylor);
+}
+
+/* Returns the largest defect inside the step and at its end; stops at the first one that is too large. */
+static double defect_over(struct Instance *instance, struct Taylor *taylor, double s) {
+  double largest = 0.0;
+  for (int i = 0; i < DEFECT_PLACES && largest <= 1.0; i++)
+    largest = fmax(largest, defect(instance, taylor, slots_of_defects[i] * s));
+  return fmax(largest, defect(instance, taylor, s));
+}
+
+/* Returns the step after the bounds by the functions in the equations (series_limit.h). */
+static struct SeriesLimit limited(const struct Instance *instance, const struct Taylor *taylor, double step,
+                                  bool crosses) {
+  struct SeriesLimit limit = {.order = (int)taylor->saved->order - 1, .step = step, .crosses = crosses};
+  if (lagrangian.taylor.limit == NULL) return limit;
+  struct Point point = instance_point(instance);
+  point.time = taylor->span->start;
+  lagrangian.taylor.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x,
+                          (const Series *)taylor->work, &limit);
+  return limit;
+}
+
+/* Returns the length below which rounding of time hides a step. Motions that need such steps run into a singularity. */
+static double smallest_step(const struct Taylor *taylor) {
+  return 8.0 * DBL_EPSILON * fabs(taylor->span->start);
+}
+
+/* Rounds the step so that origin + step is exact, and the time does not drift. */
+static double exact_reach(const struct Taylor *taylor, double step) {
+  return taylor->span->start + step - taylor->span->start;
+}
+
+/* Leaves Euler's method of the series: a root has no series at 0, but leaves the accelerations finite. */
+static void cut_off(const struct Taylor *taylor) {
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
+}
+
+/*
+ * Returns a step across a point at which a root, a kink or a jump has no series; 0 if a step of the length that has a
+ * series will do.
+ *
+ * Such a point is approached by ever shorter steps, and crossed by one that moves the state by crossing_share of its
+ * scale. So two such points are not mistaken for one. The defect in this step must be allowed by the tolerance, or be
+ * explained by the rounding of time.
+ */
+static double crossing_step(struct Instance *instance, struct Taylor *taylor, double communication_step,
+                            double length) {
+  double step = crossing_share * communication_step, smallest = 2.0 * smallest_step(taylor);
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    step = fmin(step, crossing_share * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
+  step = fmax(step, smallest);
+  if (length >= step) return 0.0;
+  step = limited(instance, taylor, step, true).step;
+  for (int trial = 0; trial < 4 && step > length; trial++) {
+    step = exact_reach(taylor, step);
+    double size = defect_over(instance, taylor, step);
+    if (size <= 1.0) return step;
+    if (step <= 2.0 * smallest && isfinite(size)) {
+      cut_off(taylor); /* in a step this short, rounding of time hides all higher terms */
+      if (isfinite(defect(instance, taylor, step))) return step;
+    }
+    step = fmax(0.1 * step, fmin(step, smallest));
+  }
+  return 0.0;
+}
+
+/*
+ * Shortens the step until its defect is allowed, or explained by rounding, which no shorter step removes. Returns 0
+ * below the resolution of time.
+ */
+static double shortened(struct Instance *instance, struct Taylor *taylor, double step) {
+  double power = 1.0 / (double)(taylor->saved->order + 1);
+  for (;;) {
+    step = exact_reach(taylor, step);
+    if (step <= smallest_step(taylor)) return 0.0;
+    double size = taylor->is_limited ? defect_over(instance, taylor, step) : defect(instance, taylor, step);
+    if (size <= 1.0) return step;
+    if (isfinite(size) && size <= rounding_margin * rounding_of_right_side(instance, taylor, step)) return step;
+    taylor->is_limited = true;
+    step *= fmin(fmax(0.9 * pow(size, -power), 0.1), 0.8);
+  }
+}
+
+void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+  struct TaylorSaved *saved = taylor->saved;
+  const struct FmuState *fmu_state = instance->fmu_state;
+  double rest =
+      fmu_state->stop_time_defined ? fmu_state->stop_time - taylor->span->start : horizon * communication_step;
+  double predicted = predicted_step(taylor), step = predicted;
+  if (rest < communication_step) rest = communication_step;
+  rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* keeps the end of the step finite */
+  if (rest < step) step = rest;
+  if (lagrangian.steps.max_step < step) step = lagrangian.steps.max_step;
+  struct SeriesLimit limit = limited(instance, taylor, step, false);
+  instance->limited_by = limit.function;
+  taylor->is_limited = limit.step < predicted;
+  double crossing = 0.0;
+  if (predicted == 0.0) cut_off(taylor);
+  if (predicted == 0.0 || limit.function != NULL)
+    crossing = crossing_step(instance, taylor, communication_step, limit.step);
+  taylor->crosses = crossing > 0.0;
+  saved->reach = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
+  taylor->is_measured = saved->reach > 0.0;
+}

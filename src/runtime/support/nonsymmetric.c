@@ -1,0 +1,109 @@
+#include "nonsymmetric.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "saddle.h"
+
+/* Smallest pivot of 1 + E^T S C. Below it the forces have no solution, or many: friction that locks. */
+static const double smallest_locking_pivot = 1e-12;
+
+/* Offsets of the parts of m behind those of the symmetric matrix. */
+struct Nonsymmetric {
+  size_t count;     /* r */
+  const int *force; /* rows of the forces from which others follow */
+  size_t c;         /* C */
+  size_t response;  /* S C */
+  size_t factor;    /* 1 + E^T S C, later its factors L U, by rows */
+  size_t pivot;     /* pivot row of each column */
+  size_t side;      /* SADDLE_SIDE(n) */
+};
+
+static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const int *coordinate) {
+  struct Nonsymmetric nonsymmetric = {.count = (size_t)coordinate[n], .force = coordinate + n + 1};
+  size_t constraints = 0;
+  for (size_t i = 0; i < n; i++) constraints += coordinate[i] < 0 ? 1 : 0;
+  nonsymmetric.c = SADDLE_MASS(start[n], n, constraints);
+  nonsymmetric.response = nonsymmetric.c + n * nonsymmetric.count;
+  nonsymmetric.factor = nonsymmetric.response + n * nonsymmetric.count;
+  nonsymmetric.pivot = nonsymmetric.factor + nonsymmetric.count * nonsymmetric.count;
+  nonsymmetric.side = nonsymmetric.pivot + nonsymmetric.count;
+  return nonsymmetric;
+}
+
+static void swap_rows(double *a, size_t columns, size_t first, size_t second) {
+  for (size_t j = 0; j < columns && first != second; j++) {
+    double other = a[first * columns + j];
+    a[first * columns + j] = a[second * columns + j];
+    a[second * columns + j] = other;
+  }
+}
+
+/* Factors the r x r matrix a by rows, with partial pivoting. False if it is singular. */
+static bool eliminate_small(size_t r, double *a, double *pivot) {
+  for (size_t k = 0; k < r; k++) {
+    size_t best = k;
+    for (size_t i = k + 1; i < r; i++)
+      if (fabs(a[i * r + k]) > fabs(a[best * r + k])) best = i;
+    pivot[k] = (double)best;
+    if (!(fabs(a[best * r + k]) > smallest_locking_pivot)) return false;
+    swap_rows(a, r, best, k);
+    for (size_t i = k + 1; i < r; i++) {
+      double share = a[i * r + k] /= a[k * r + k];
+      for (size_t j = k + 1; j < r && share != 0.0; j++) a[i * r + j] -= share * a[k * r + j];
+    }
+  }
+  return true;
+}
+
+static void solve_small(size_t r, const double *a, const double *pivot, double *x) {
+  for (size_t k = 0; k < r; k++) swap_rows(x, 1, (size_t)pivot[k], k);
+  for (size_t i = 0; i < r; i++)
+    for (size_t j = 0; j < i; j++) x[i] -= a[i * r + j] * x[j];
+  for (size_t i = r; i-- > 0;) {
+    for (size_t j = i + 1; j < r; j++) x[i] -= a[i * r + j] * x[j];
+    x[i] /= a[i * r + i];
+  }
+}
+
+/* Solves with least-norm constraint forces, those of equally stiff contacts, for other forces to follow from. */
+static void solve_symmetric(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                            double *x) {
+  saddle_solve(n, start, column, m, x);
+  saddle_least_forces(n, start, column, coordinate, m, x);
+}
+
+/* True if a column of C is not 0: some force follows from it at present. */
+static bool has_part(size_t n, const double *column_of_c) {
+  bool has = false;
+  for (size_t i = 0; i < n; i++) has |= column_of_c[i] != 0.0;
+  return has;
+}
+
+size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
+  size_t singular = saddle_factor(n, start, column, coordinate, m);
+  if (singular != 0) return singular;
+  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
+  double *side = m + nonsymmetric.side, *factor = m + nonsymmetric.factor;
+  for (size_t k = 0; k < nonsymmetric.count; k++) {
+    memcpy(side, m + nonsymmetric.c + k * n, n * sizeof *side);
+    if (has_part(n, side)) solve_symmetric(n, start, column, coordinate, m, side);
+    memcpy(m + nonsymmetric.response + k * n, side, n * sizeof *side);
+    for (size_t i = 0; i < nonsymmetric.count; i++)
+      factor[i * nonsymmetric.count + k] = (i == k ? 1.0 : 0.0) + side[nonsymmetric.force[i]];
+  }
+  bool is_regular = eliminate_small(nonsymmetric.count, factor, m + nonsymmetric.pivot);
+  return is_regular ? 0 : 1;
+}
+
+void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
+                        double *x) {
+  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
+  double *push = x + n; /* free, as r < n */
+  solve_symmetric(n, start, column, coordinate, m, x);
+  for (size_t i = 0; i < nonsymmetric.count; i++) push[i] = x[nonsymmetric.force[i]];
+  solve_small(nonsymmetric.count, m + nonsymmetric.factor, m + nonsymmetric.pivot, push);
+  for (size_t k = 0; k < nonsymmetric.count; k++)
+    for (size_t i = 0; i < n; i++) x[i] -= push[k] * m[nonsymmetric.response + k * n + i];
+}

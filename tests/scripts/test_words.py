@@ -1,0 +1,33 @@
+"""scripts/words.py finds words and sentences that the style guide excludes, and nothing else."""
+
+import pytest
+import words
+
+
+@pytest.mark.parametrize("source, lines", [
+    ("int a; /* The side that is told. */\n", [1]),
+    ('puts("is told");\n// is told\n', [2]),
+    ("/* A reported value. */\n/* Reports it\n * without end. */\n", [2]),
+    ("/* without end (Zeno behaviour) */\n", []),
+])  # fmt: skip
+def test_comments_of_c(source, lines):
+    found = [number for number, comment in words.c_comments(source) if list(words.wrong_words(comment))]
+    assert found == lines
+
+
+def test_comments_of_python():
+    source = '"""Is told."""\nx = "is told"\n# to be had\n\n\ndef f():\n    """Whether what is."""\n    return "any more"\n'
+    assert [number for number, comment in words.python_comments(source) if list(words.wrong_words(comment))] == [1, 3, 7]
+
+
+@pytest.mark.parametrize("page, expected", [
+    ("It is short. It is fine.", []),
+    (" ".join(["It is a sentence."] * 7), ["a paragraph of 7 sentences"]),
+    ("\n\n".join(["It is a sentence."] * 7), []),
+    ("\n".join(["- It is an item of a list."] * 7), []),
+    ("```\n" + " ".join(["It is code."] * 7) + "\n```", []),
+    ("word " * 46 + "word.", ["a sentence of 47 words"]),
+    ("| it is told |", ["'is told'"]),
+])  # fmt: skip
+def test_pages(page, expected):
+    assert [what for _, what, _ in words.faults_of_page(page)] == expected
