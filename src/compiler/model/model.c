@@ -41,14 +41,14 @@ bool start_follows(const struct Model *model, const struct Variable *variable) {
 }
 
 double *start_values(const struct Model *model) {
-  const struct VariableList *const lists[] = {&model->parameters, &model->inputs, &model->coordinates,
-                                              &model->velocities, &model->states, &model->modes};
+  const struct VariableList *const lists[] = {
+      &model->parameters, &model->inputs, &model->coordinates, &model->velocities, &model->states, &model->modes, NULL};
   double *values = allocate(model->graph->symbol_count, sizeof *values);
   values[model->graph->vertices[model->time].left] =
       isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
-  for (size_t list = 0; list < sizeof lists / sizeof *lists; list++)
-    for (size_t i = 0; i < lists[list]->count; i++)
-      values[model->graph->vertices[lists[list]->items[i].node].left] = lists[list]->items[i].start;
+  for (const struct VariableList *const *list = lists; *list != NULL; list++)
+    for (size_t i = 0; i < (*list)->count; i++)
+      values[model->graph->vertices[(*list)->items[i].node].left] = (*list)->items[i].start;
   return values;
 }
 
