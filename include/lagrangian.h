@@ -398,7 +398,7 @@ struct ResultTable {
 struct ConstraintTable {
   size_t count, prescribed_input_count;
   const char *const *names;
-  const char *const *inputs; /* [count]: names of each one's prescribed inputs, or NULL; NULL without guides */
+  const char *const *inputs; /* [count]: names of each one's prescribed inputs, or NULL; NULL if there are none */
   const struct PrescribedInput *prescribed_inputs;
   const bool *coordinate_is_fixed;     /* [n]: fixed at the start; NULL if none is */
   const struct Projection *projection; /* projection.h */

@@ -224,9 +224,9 @@ def test_truncated_and_foreign_bytes_are_errors(open_fmu):
 # --- Forged states with the right checksum ---
 
 HEADER = 64  # bytes; the last eight are the checksum of the snapshot, which follows
-# The snapshot: eight integers, the statistics, the steps of an integrator, the statistics as reported, eight numbers, and then values.
+# The snapshot: eight integers, the statistics, the steps of an integrator, the statistics as reported, nine numbers, and then values.
 MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 120
-NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched"]
+NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched", "switched"]
 VALUES = TIME + 8 * len(NUMBERS)
 
 

@@ -112,10 +112,10 @@ def test_a_linearization_has_a_solver_of_its_own(tmp_path):
 def test_events_and_samples_are_left_out(tmp_path):
     """A and B describe the motion between events, with modes at their start values."""
     system = """<system name="S"><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><parameter name="k" start="4"/>
-<potential>k*x^2/2</potential><mode name="n" start="3"/><input name="u"/><force coordinate="x">n + 3*u</force>
+<potential>k*x^2/2</potential><mode name="n" start="3"/><input name="u"/><force coordinate="x">(n - 7)*x + 3*u</force>
 <event when="x - 1"><set mode="n">1</set></event><sample every="0.1"><set mode="n">2</set></sample></system>"""
     (tmp_path / "s.xml").write_text(system)
     result = lagc("--linearize", "s.xml", cwd=tmp_path)
-    assert result.returncode == 0 and result.stderr == "" and "[-4, 0]" in result.stdout and "[3]" in result.stdout, result
+    assert result.returncode == 0 and result.stderr == "" and "[-8, 0]" in result.stdout and "[3]" in result.stdout, result
     (tmp_path / "l.xml").write_text('<linearization of="s.xml" name="L"/>')
     assert lagc("l.xml", "-o", "out", cwd=tmp_path).returncode == 0

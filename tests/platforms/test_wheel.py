@@ -126,7 +126,7 @@ def test_a_page_to_write_in(tmp_path):
     succeed("new", "Mine", cwd=tmp_path)
     assert succeed("live", "Mine.xml", "--edit", cwd=tmp_path) == f"{tmp_path}/Mine-edit.html\n"
     page = (tmp_path / "Mine-edit.html").read_text()
-    assert '"laboratory":"' in page and '<system name=\\"Mine\\"' in page.replace("\\u003c", "<") and len(page) < 955_000
+    assert '"laboratory":"' in page and '<system name=\\"Mine\\"' in page.replace("\\u003c", "<") and len(page) < 960_000
     result = wheel.run("live", "Mine.fmu", "--edit", cwd=tmp_path)
     assert result.returncode != 0 and "Mine.fmu is an FMU; to edit it expected the system.xml that it was made of" in result.stderr
 

@@ -19,10 +19,10 @@ PUSHED = """<system name="PushedInSession"><parameter name="m" start="1" unit="k
   <experiment stopTime="1" stepSize="0.25"/></system>"""
 # The force n u if `on`, and noise drawn every 10 ms; the particle bounces off the wall.
 NOISY = """<system name="NoisyInSession"><parameter name="n" type="Integer" start="2"/><parameter name="on" type="Boolean" start="true"/>
-  <parameter name="seed" type="Integer" start="3"/><input name="u" unit="N"/>
+  <parameter name="seed" type="Integer" start="3"/><parameter name="strength" start="1" unit="N"/><input name="u" unit="N"/>
   <coordinate name="x" velocity="v" unit="m" start="0.1"/><particle mass="1" x="x"/>
   <mode name="k"/><mode name="noise"/><sample every="0.01"><set mode="k">k + 1</set><set mode="noise">gauss(seed, k)</set></sample>
-  <force coordinate="x">on*n*u + noise</force><contact name="wall" gap="x" unit="m" restitution="0.5"/>
+  <force coordinate="x">on*n*u + noise*strength</force><contact name="wall" gap="x" unit="m" restitution="0.5"/>
   <experiment stopTime="1" stepSize="0.01"/></system>"""
 # The force has a square root of a negative number beyond x = 1 m.
 ENDS = """<system name="EndsInSession"><parameter name="c" start="0" unit="N"/><parameter name="L" start="1" unit="m"/><coordinate name="x" velocity="v" unit="m" velocityStart="1"/>

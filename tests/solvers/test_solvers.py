@@ -147,7 +147,7 @@ def test_a_division_by_zero(open_fmu):
     instance.fmu.enterInitializationMode()
     with pytest.raises(FMICallException):
         instance.fmu.exitInitializationMode()
-    assert any("as when something is divided by 0, or exp" in text for _, _, text in instance.messages)
+    assert any("as when something is divided by 0" in text for _, _, text in instance.messages)
 
 
 def test_a_parameter_that_is_not_varied_contributes_nothing(open_fmu):

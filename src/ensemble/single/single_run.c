@@ -116,7 +116,7 @@ static void take(struct SingleRun *run, const struct LaneView *lane) {
   take_values(run, lane);
   take_numbers(run->instance.parameter_constants, lagrangian.parameter_constants_count, lane->parameter_constants,
                lane->stride);
-  run->instance.parameter_constants_is_stale = false;
+  run->instance.parameter_constants_are_stale = false;
   fmu_state_begin(run->instance.fmu_state, lane->origin);
   run->instance.fmu_state->last_step.end = lane->origin + lane->reach;
 }
@@ -174,7 +174,7 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
   instance->fmu_state->phase = PHASE_INITIALIZATION;
   take_values(run, lane);
   take_state(run, lane);
-  instance->parameter_constants_is_stale = true;
+  instance->parameter_constants_are_stale = true;
   if (start_find(instance) != STATUS_DONE) return false;
   instance->fmu_state->phase = PHASE_STEP_COMPLETE;
   if (evaluate_prepare(instance) != STATUS_DONE || !start_step(instance)) return false;

@@ -244,11 +244,11 @@ bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *h
   double *mode = &resolution->instance->parameter[metadata->mode], kept = *mode;
   size_t without = count_redundant(resolution);
   *mode = 0.0;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   size_t with = count_redundant(resolution), velocities = resolution_moves(resolution, metadata->constraint);
   if (is_in_plane(resolution->switches, friction)) velocities += resolution_moves(resolution, metadata[1].constraint);
   *mode = kept;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   *held = with >= without + velocities;
   /* Later steps, such as projections, need the values for the restored modes. */
   bool is_restored = evaluate_prepare(resolution->instance) == STATUS_DONE;
@@ -312,14 +312,16 @@ static void err_by_tolerance(const struct Resolution *resolution, bool otherwise
 }
 
 /*
- * True if errors of the tolerance in the state can make this value 0, such as mu |N| where N passes through 0 and its
- * branch has not switched yet.
+ * True if errors of the tolerance in the state, and in the time since the inputs were set, can make this value 0. An
+ * example is mu |N| where N passes through 0 and its branch has not switched yet; another the end of a ramp to 0.
  */
 static bool is_within_error(struct Resolution *resolution, size_t slot) {
+  const struct FmuState *fmu_state = resolution->instance->fmu_state;
   double most = 0.0, *value = resolution->other_error_bound;
+  double late = fmu_state->tolerance * (resolution->time - fmu_state->time);
   for (int otherwise = 0; otherwise < 2; otherwise++) {
     err_by_tolerance(resolution, otherwise != 0, resolution->rounded);
-    if (resolution_values(resolution, resolution->rounded, value))
+    if (resolution_values_near(resolution, resolution->time - late, resolution->rounded, value))
       most = fmax(most, fabs(value[slot] - resolution->value[slot]));
   }
   return fabs(resolution->value[slot]) <= least_certainty * most;
@@ -368,10 +370,10 @@ static bool is_freed_by_sticking(struct Resolution *resolution, size_t friction)
   double *mode = &resolution->instance->parameter[resolution->switches->frictions[friction].mode], kept = *mode;
   double sliding = largest_force(resolution);
   *mode = 0.0;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   double sticking = largest_force(resolution);
   *mode = kept;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   return isfinite(sticking) && sliding > jammed_force * sticking;
 }
 

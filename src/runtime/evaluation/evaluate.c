@@ -78,12 +78,12 @@ enum Status discard_for_singularity(struct Instance *instance) {
 enum Status evaluate_prepare(struct Instance *instance) {
   if (lagrangian.event_laws != NULL && is_before_start(instance) && !instance->modes_stay) {
     lagrangian.event_laws->guess(instance);
-    instance->parameter_constants_is_stale = true;
+    instance->parameter_constants_are_stale = true;
   }
-  if (!instance->parameter_constants_is_stale) return STATUS_DONE;
+  if (!instance->parameter_constants_are_stale) return STATUS_DONE;
   instance->singular = lagrangian.prepare(instance->parameter, instance->parameter_constants);
   if (instance->singular != 0) return discard_for_singularity(instance);
-  instance->parameter_constants_is_stale = false;
+  instance->parameter_constants_are_stale = false;
   return STATUS_DONE;
 }
 

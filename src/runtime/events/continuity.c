@@ -85,7 +85,7 @@ static bool values_of_piece(struct Resolution *resolution, size_t branch, double
   struct Instance *instance = resolution->instance;
   size_t n = lagrangian.coordinate_count;
   instance->parameter[resolution->switches->branches[branch].mode] = piece;
-  instance->parameter_constants_is_stale = true;
+  instance->parameter_constants_are_stale = true;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   memcpy(resolution->rounded, resolution->state, lagrangian.state_count * sizeof *resolution->rounded);
   for (size_t i = 0; i < n; i++) resolution->rounded[n + i] = 1.0 / (1.0 + (double)i);
@@ -103,7 +103,7 @@ static size_t find_corner(struct Resolution *resolution, size_t branch) {
   bool is_known = values_of_piece(resolution, branch, 1.0, resolution->value) &&
                   values_of_piece(resolution, branch, -1.0, resolution->other_error_bound);
   resolution->instance->parameter[mode] = kept;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   while (is_known && found < switches->contact_count &&
          one[contact_slot(switches, found, CONTACT_RATE)] == other[contact_slot(switches, found, CONTACT_RATE)])
     found++;

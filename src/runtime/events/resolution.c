@@ -80,15 +80,19 @@ const double *resolution_accelerations(const struct Resolution *resolution) {
                                                       : resolution->derivative + lagrangian.coordinate_count;
 }
 
-bool resolution_values(struct Resolution *resolution, const double *state, double *value) {
+bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value) {
   struct Instance *instance = resolution->instance;
-  struct Point point = solver_point(instance, resolution->time, state);
+  struct Point point = solver_point(instance, time, state);
   if (lagrangian.constraints.accelerations != NULL)
     instance->singular = lagrangian.constraints.accelerations(&point, resolution->acceleration);
   else instance->singular = lagrangian.derivatives(&point, resolution->derivative);
   if (instance->singular != 0) return false;
   resolution->switches->switching_values(&point, resolution_accelerations(resolution), value);
   return true;
+}
+
+bool resolution_values(struct Resolution *resolution, const double *state, double *value) {
+  return resolution_values_near(resolution, resolution->time, state, value);
 }
 
 void resolution_values_of_force(const struct Resolution *resolution, const struct Point *point, size_t constraint,
@@ -174,7 +178,7 @@ double resolution_error_bound(const struct Resolution *resolution, size_t slot, 
 
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
   resolution->instance->parameter[mode] = value;
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
   resolution->changed = true;
   resolution->last.friction = resolution->switches->friction_count;
 }
@@ -189,7 +193,7 @@ void resolution_keep_modes(struct Resolution *resolution) {
 
 void resolution_restore_modes(struct Resolution *resolution) {
   memcpy(modes_of(resolution), resolution->kept_modes, resolution->switches->mode_count * sizeof(double));
-  resolution->instance->parameter_constants_is_stale = true;
+  resolution->instance->parameter_constants_are_stale = true;
 }
 
 bool resolution_push(struct Resolution *resolution) {

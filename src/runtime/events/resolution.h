@@ -123,6 +123,9 @@ bool resolution_evaluate(struct Resolution *resolution);
 /* Evaluates the values at a state, without rounding error bounds. */
 bool resolution_values(struct Resolution *resolution, const double *state, double *value);
 
+/* The same at another time, with the inputs of that time. */
+bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value);
+
 /* Evaluates value[] at a point with accelerations of 0, and the force of one constraint; constraints.count for none. */
 void resolution_values_of_force(const struct Resolution *resolution, const struct Point *point, size_t constraint,
                                 double force, double *value);

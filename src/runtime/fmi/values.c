@@ -186,7 +186,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   instance->fmu_state->changed = CHANGED_VALUES;
   instance->lacks_update |= instance->fmu_state->phase == PHASE_EVENT;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE)
-    instance->parameter_constants_is_stale = true;
+    instance->parameter_constants_are_stale = true;
 }
 
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value) {

@@ -42,7 +42,7 @@ void instance_reset(struct Instance *instance) {
   }
   initial_state_follow(instance);
   instance->fmu_state->changed = CHANGED_VALUES;
-  instance->parameter_constants_is_stale = instance->solver_is_stale = true;
+  instance->parameter_constants_are_stale = instance->solver_is_stale = true;
   instance->reported_impossible_start = instance->reported_other_forces = instance->reported_other_impulses = false;
   instance->reported_singularity = 0;
 }
@@ -121,7 +121,7 @@ void instance_destroy(struct Instance *instance) {
 
 void instance_restore(struct Instance *instance, const void *fmu_state) {
   memcpy(instance->fmu_state, fmu_state, fmu_state_size());
-  instance->parameter_constants_is_stale = instance->solver_is_stale = true;
+  instance->parameter_constants_are_stale = instance->solver_is_stale = true;
   instance->reported_singularity = 0;
   instance->lacks_update = instance->fmu_state->phase == PHASE_EVENT;
 }

@@ -95,7 +95,7 @@ struct Instance {
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* in fmu_state->values */
   void *saved;                                                           /* the solver's part of fmu_state->values */
   double *parameter_constants;
-  bool parameter_constants_is_stale;
+  bool parameter_constants_are_stale;
   bool modes_stay;                /* keep modes also before the start: those of the start are computed or read */
   bool solver_is_stale;           /* the snapshot was replaced: solver_memory must follow it */
   bool reported_impossible_start; /* logged since the reset: there is no start */

@@ -1,5 +1,5 @@
 /*
- * Serialized state of an instance: a header, and then its snapshot (struct Situation), a block of bytes without
+ * Serialized state of an instance: a header, and then its snapshot (struct FmuState), a block of bytes without
  * pointers. The bytes are those of the machine; another process on a machine of the same kind may restore them.
  *
  * snapshot_fault() checks bytes before they are restored. The header must show the same FMU and version, and the
@@ -23,7 +23,7 @@ struct Header {
 };
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
-enum { VERSION = 7 };
+enum { VERSION = 8 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + fmu_state_size();

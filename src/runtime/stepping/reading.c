@@ -20,7 +20,7 @@ static void exchange_fmu_states(struct Instance *instance) {
   struct FmuState *other = instance->shown;
   instance->shown = instance->fmu_state;
   instance_use(instance, other);
-  instance->parameter_constants_is_stale = true;
+  instance->parameter_constants_are_stale = true;
 }
 
 /* Receives messages; keeps the first one. */
@@ -61,7 +61,7 @@ void reading_begin(struct Instance *instance) {
   exchange_fmu_states(instance);
   if (is_new) find_silently(instance);
   instance->modes_stay = instance->shown_is_found;
-  instance->parameter_constants_is_stale = true;
+  instance->parameter_constants_are_stale = true;
   instance->is_reading = true;
 }
 
@@ -192,7 +192,7 @@ static bool find_along(struct Instance *instance, const struct Seed *seed, doubl
   }
   instance->log = log;
   memcpy(instance->fmu_state, kept, fmu_state_size());
-  instance->parameter_constants_is_stale = instance->modes_stay = true;
+  instance->parameter_constants_are_stale = instance->modes_stay = true;
   return is_found;
 }
 

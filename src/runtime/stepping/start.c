@@ -7,7 +7,7 @@
 
 static bool is_parameter_constants(struct Instance *instance) {
   instance->singular = lagrangian.prepare(instance->parameter, instance->parameter_constants);
-  if (instance->singular == 0) instance->parameter_constants_is_stale = false;
+  if (instance->singular == 0) instance->parameter_constants_are_stale = false;
   return instance->singular == 0;
 }
 
