@@ -167,3 +167,21 @@ def test_drift_is_within_the_tolerance_of_the_steps():
     largest_speed = np.sqrt(2 * 9.81)
     scales = np.array([1.0, 1.0, largest_speed, largest_speed])
     assert np.max(np.abs(state - [-1.0, 0.0, 0.0, 0.0]) / scales) < steps * 1e-9
+
+
+def test_changed_states_are_reported_at_events(open_fmu):
+    """valuesOfContinuousStatesChanged is true at an impact, and false at a sample that sets modes alone (FMI 2.0.4, section 3.2.2)."""
+    ball = falling_ball(open_fmu)
+    ball.fmu.setTime(0.5)
+    ball.fmu.setContinuousStates(*array(-1e-12, -3.0))
+    ball.fmu.enterEventMode()
+    assert ball.fmu.newDiscreteStates()[3] and ball.get("v") > 0
+    servo = open_fmu("DigitalServo", kind=FMU2Model).initialize()
+    servo.fmu.newDiscreteStates()
+    for _ in range(5):
+        _, _, _, changed, defined, time = servo.fmu.newDiscreteStates()
+        assert defined and not changed
+        servo.fmu.enterContinuousTimeMode()
+        servo.fmu.setTime(time)
+        servo.fmu.enterEventMode()
+        assert not servo.fmu.newDiscreteStates()[3]

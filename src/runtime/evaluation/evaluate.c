@@ -69,7 +69,7 @@ void log_singularity(struct Instance *instance, enum Status status, double time)
 }
 
 enum Status discard_for_singularity(struct Instance *instance) {
-  uint64_t fmu_state = fmu_state_checksum(instance->fmu_state);
+  uint64_t fmu_state = instance_checksum(instance->fmu_state, fmu_state_size());
   if (fmu_state != instance->reported_singularity) log_singularity(instance, STATUS_DISCARD, instance->fmu_state->time);
   instance->reported_singularity = fmu_state;
   return STATUS_DISCARD;

@@ -124,12 +124,19 @@ enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
  * integrator starts at order 1 with short steps, so more events would cost time and accuracy. The drift grows with n^2,
  * since errors of velocities add up, so the first steps need no event. In long runs, d^2 < e keeps terms of second
  * order below the tolerance.
+ *
+ * Redundant constraints contradict each other by about d. Once the sine of the angle between one and the others, of
+ * the order of d, exceeds the 1e-6 of saddle_pivot(), it counts as independent, and its force becomes large.
  */
+static const double largest_redundant_drift = 1e-8;
+
 static bool has_drifted(struct Instance *instance) {
   const struct FmuState *fmu_state = instance->fmu_state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
   double drift = lagrangian.constraints.projection->drift(instance, fmu_state->time);
-  return drift > fmin((double)fmu_state->completed_steps * fmu_state->tolerance, sqrt(fmu_state->tolerance));
+  double largest = fmin((double)fmu_state->completed_steps * fmu_state->tolerance, sqrt(fmu_state->tolerance));
+  if (lagrangian.constraints.projection->found_redundant(instance)) largest = fmin(largest, largest_redundant_drift);
+  return drift > largest;
 }
 
 bool exchange_complete_step(struct Instance *instance) {
@@ -141,18 +148,19 @@ bool exchange_complete_step(struct Instance *instance) {
 }
 
 /* Brings the modes into agreement with the state. */
-static enum Status resolve_modes(struct Instance *instance, bool *changed) {
+static enum Status resolve_modes(struct Instance *instance) {
   const struct EventLaws *laws = lagrangian.event_laws;
+  bool changed = false;
   if (laws == NULL) return STATUS_DONE;
   const char *problem =
-      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, changed) : laws->resolve(instance, changed);
+      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, &changed) : laws->resolve(instance, &changed);
   return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->fmu_state->time, problem);
 }
 
-enum Status exchange_update(struct Instance *instance, bool *states_changed) {
-  *states_changed = false;
+/* Brings the modes into agreement with the state, and projects it. */
+static enum Status update_state(struct Instance *instance) {
   instance->lacks_update = false;
-  enum Status status = resolve_modes(instance, states_changed);
+  enum Status status = resolve_modes(instance);
   memcpy(instance->fmu_state->reported_statistics, instance->fmu_state->statistics,
          sizeof instance->fmu_state->statistics);
   if (status != STATUS_DONE || lagrangian.constraints.projection == NULL || instance->kind == KIND_CO_SIMULATION)
@@ -165,8 +173,15 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed) {
     log_unkept(instance, STATUS_ERROR, time, lagrangian.constraints.projection->unkept(instance, time));
     return log_error(instance, "time %g: the constraints cannot be fulfilled", time);
   }
-  *states_changed |= moved > 0.0;
   return STATUS_DONE;
+}
+
+enum Status exchange_update(struct Instance *instance, bool *states_changed) {
+  size_t size = lagrangian.state_count * sizeof *instance->state;
+  uint64_t before = instance_checksum(instance->state, size);
+  enum Status status = update_state(instance);
+  *states_changed = instance_checksum(instance->state, size) != before;
+  return status;
 }
 
 bool exchange_next_event(struct Instance *instance, double *time) {

@@ -21,10 +21,10 @@ size_t fmu_state_size(void) {
 }
 
 /* FNV-1a, 64 bits. */
-uint64_t fmu_state_checksum(const void *fmu_state) {
-  const unsigned char *bytes = fmu_state;
+uint64_t instance_checksum(const void *block, size_t size) {
+  const unsigned char *bytes = block;
   uint64_t hash = 0xcbf29ce484222325u;
-  for (size_t i = 0; i < fmu_state_size(); i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  for (size_t i = 0; i < size; i++) hash = (hash ^ bytes[i]) * 0x100000001b3u;
   return hash;
 }
 

@@ -154,7 +154,7 @@ const char *instance_phase_name(const struct Instance *instance);
 /* Returns the bytes of a snapshot of this system. */
 size_t fmu_state_size(void);
 
-/* Returns a checksum of fmu_state_size() bytes. */
-uint64_t fmu_state_checksum(const void *fmu_state);
+/* Returns a checksum of a block of bytes. */
+uint64_t instance_checksum(const void *block, size_t size);
 
 #endif

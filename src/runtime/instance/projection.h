@@ -13,6 +13,8 @@ struct Projection {
   double (*project)(struct Instance *instance, double time, double *state);
   /* Returns the change by project() at the instance's state, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
+  /* True if the last project() or drift() has found redundant constraints. */
+  bool (*found_redundant)(struct Instance *instance);
   /*
    * Projects the start values, from any distance; fixed coordinates and their velocities stay. Logs the moves. False
    * after logging an error.

@@ -33,7 +33,7 @@ static struct Header header_of(const void *fmu_state) {
   struct Header header = {.version = VERSION, .size = (uint32_t)fmu_state_size()};
   memcpy(header.magic, magic, sizeof magic);
   strncpy(header.guid, lagrangian.guid, sizeof header.guid - 1);
-  header.checksum = fmu_state_checksum(fmu_state);
+  header.checksum = instance_checksum(fmu_state, fmu_state_size());
   return header;
 }
 

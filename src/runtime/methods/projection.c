@@ -182,6 +182,11 @@ static double project(struct Instance *instance, double time, double *state) {
   return INFINITY;
 }
 
+static bool found_redundant(struct Instance *instance) {
+  struct Work work = work_of(instance);
+  return has_redundant(&work);
+}
+
 static double drift(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
@@ -451,6 +456,7 @@ static const char *weakest(struct Instance *instance, double time, const double 
 
 const struct Projection projection = {.project = project,
                                       .drift = drift,
+                                      .found_redundant = found_redundant,
                                       .make_consistent = make_consistent,
                                       .follow_change = follow_change,
                                       .unkept = unkept,
