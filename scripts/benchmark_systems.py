@@ -87,7 +87,7 @@ class Lanes:
 class Fmu:
     def __init__(self, name, system):
         self.instance, self.names = Instance(archive(name).read_bytes(), RUNNER.read_bytes()), list(system.varied)
-        self.settings = {"tolerance": TOLERANCE, "stop": system.end, "steps": 1}
+        self.settings = {"tolerance": TOLERANCE, "stop": system.end, "times": [system.end], "records": []}
 
     def run(self, rows):
         return timed(lambda: run_by_fmi(self.instance, rows, self.names, self.settings).ends)
