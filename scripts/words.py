@@ -23,14 +23,13 @@ INSTEAD = {
     r"without end(?! \((Zeno|chatter))": "endlessly, or Zeno behaviour",
     r"whether what": "a noun in place of the clause",
     r"behind which": "followed by",
-    r"what is told": "the reported values",
 }
-WRONG = re.compile("|".join(f"(?P<w{i}>\\b{words}\\b)" for i, words in enumerate(INSTEAD)), re.IGNORECASE)
 
 
 def wrong_words(text):
-    for match in WRONG.finditer(text):
-        yield f"'{match[0]}'", list(INSTEAD.values())[int(match.lastgroup[1:])]
+    for words, instead in INSTEAD.items():
+        for match in re.finditer(rf"\b({words})\b", text, re.IGNORECASE):
+            yield f"'{match[0]}'", instead
 
 
 def c_comments(source):

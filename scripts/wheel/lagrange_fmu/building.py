@@ -112,7 +112,7 @@ def runtime_key():
     return caching.key_of(version("ziglang"), *(file.read_bytes() for file in files))
 
 
-def tell(text):
+def report(text):
     """Print a line about the progress to stderr."""
     print(f"lagrange-fmu: {text}", file=sys.stderr, flush=True)
 
@@ -141,7 +141,7 @@ def compile_libraries(folder, name, platforms, fmi, content):
         key = caching.key_of(runtime_key(), system.read_bytes(), name, platform_name, fmi)
 
         def compile_library():
-            with caching.first_build(platform_name, tell):
+            with caching.first_build(platform_name, report):
                 compile_fmu(platform_name, system, libraries, name, fmi, sundials=HERE / "sundials")
 
         take_or_compile(key, libraries, f"{name} cannot be compiled for {platform_name}", compile_library)

@@ -67,11 +67,11 @@ def _locked(file):
 
 
 @contextmanager
-def first_build(platform, tell):
+def first_build(platform, report):
     """
     Serialize the first builds for a platform, of which one compiles the platform's C library, for up to a minute.
 
-    Waiting builds report it by tell(text). Later builds run concurrently.
+    Waiting builds report it by report(text). Later builds run concurrently.
     """
     ready = folder() / f"ready-{platform}"
     if ready.exists():
@@ -79,11 +79,11 @@ def first_build(platform, tell):
         return
     with open(folder() / f"lock-{platform}", "w") as lock:
         if not _locked(lock):
-            tell(f"another build compiles the C library of {platform}; waiting for it to end ...")
+            report(f"another build compiles the C library of {platform}; waiting for it to end ...")
             while not _locked(lock):
                 time.sleep(0.2)
         if not ready.exists():
-            tell(f"compiling for {platform}; the first time, with the platform's C library, this takes up to a minute ...")
+            report(f"compiling for {platform}; the first time, with the platform's C library, this takes up to a minute ...")
         yield
         ready.touch()
 

@@ -20,7 +20,7 @@ void cone_release(struct Cone *cone);
 /* Collects the targets and all nodes below them. */
 void cone_collect(struct Cone *cone, const struct Graph *graph, const Node *targets, size_t count);
 
-/* How a collection goes on from a member: to its operands, not below it, or not at all. */
+/* Continuation of a collection after a member: to its operands, not below it, or not at all. */
 enum Visit { VISIT_OPERANDS, VISIT_NOTHING_BELOW, VISIT_NO_MORE };
 
 /* Collects as visit() decides, which sees each member once. False, with no members, if visit() ended the collection. */

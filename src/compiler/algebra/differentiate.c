@@ -213,3 +213,11 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
   for (size_t i = 0; i < count; i++) results[i] = mapped[cone_slot(cone, targets[i])];
   release(mapped);
 }
+
+Node substitute_symbol(struct Graph *graph, Node node, Node symbol, Node by) {
+  Node *replacements = own_symbols(graph), result = ZERO;
+  replacements[graph->vertices[symbol].left] = by;
+  substitute(graph, &node, 1, replacements, &result);
+  release(replacements);
+  return result;
+}

@@ -61,3 +61,6 @@ Node replacement_of(const struct Graph *graph, const Node *replacements, Node sy
 
 /* Replaces each symbol s in the targets by replacements[s]; one element for each symbol of the graph. */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);
+
+/* Returns a node with one symbol replaced. */
+Node substitute_symbol(struct Graph *graph, Node node, Node symbol, Node by);

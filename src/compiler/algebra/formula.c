@@ -159,7 +159,7 @@ static bool choice_of(const struct Graph *graph, Node node, struct Choice *choic
   return opposite_of(graph, second->left) == first->left;
 }
 
-/* What opens by a sign is a comparison of what has the sign. */
+/* Prints if(a > 0, ...) for a guard by sign(a). */
 static void print_choice(struct Printer *printer, const struct Choice *choice) {
   const struct Graph *graph = printer->graph;
   Node base = choice->guard_condition;
@@ -194,7 +194,7 @@ static void print_term(struct Printer *printer, Node node, bool first) {
   else print_product(printer, fabs(coefficient), base);
 }
 
-/* What authors write as formulas; false for other functions. */
+/* Prints a bounded function as the formula that authors write. False for other functions. */
 static bool print_bounded(struct Printer *printer, const struct Vertex *vertex) {
   Node base;
   double coefficient = coefficient_of(printer->graph, vertex->left, &base);

@@ -22,7 +22,7 @@ static const struct Vertex *vertex_of(const struct Graph *graph, Node node) {
   return &graph->vertices[node];
 }
 
-/* The natural logarithm of the number whose power the node is; 0 for none. */
+/* Returns log(c) for a node c^u with a number c > 0; 0 for other nodes. */
 static double logarithm_of_base(const struct Graph *graph, const struct Vertex *vertex) {
   bool is_power = vertex->operation == POWER && graph_is_constant(graph, vertex->left) &&
                   !graph_is_constant(graph, vertex->right) && graph_value(graph, vertex->left) > 0.0;
@@ -33,7 +33,7 @@ static bool is_whole_from_1(double value) {
   return value == floor(value) && value >= 1.0 && value < 100.0;
 }
 
-/* True if a node is seen not to be negative: a sum or a product of even powers and of what never is. */
+/* True if a node is surely nonnegative: a sum or a product of even powers and of nonnegative functions. */
 static bool is_never_negative(const struct Graph *graph, Node node) {
   Node base, terms[TERM_LIMIT];
   bool is_sum = vertex_of(graph, node)->operation == ADD;
@@ -53,7 +53,7 @@ static bool is_never_negative(const struct Graph *graph, Node node) {
   return count >= 0;
 }
 
-/* True of exp, cosh and sinh to whole powers, and of exp where its argument may be positive. */
+/* True for cosh and sinh to whole powers, and for exp if its argument may be positive. Sets growth. */
 static bool grows(const struct Graph *graph, struct Factor factor, struct Growth *growth) {
   const struct Vertex *vertex = vertex_of(graph, factor.base);
   double logarithm = logarithm_of_base(graph, vertex);
@@ -66,7 +66,7 @@ static bool grows(const struct Graph *graph, struct Factor factor, struct Growth
   return is_hyperbolic || growth->coefficient > 0.0 || !is_never_negative(graph, growth->base);
 }
 
-/* How fast the terms of a sum grow: like exp(rate base), upwards and downwards. */
+/* Growth rates of the terms of a sum, which grow like exp(rate base) in both directions of base. */
 struct Rates {
   Node base;
   double unit; /* the smallest rate, or the coefficient of what is hyperbolic; 0 for no growth */
@@ -74,7 +74,9 @@ struct Rates {
   bool up, down, is_hyperbolic;
 };
 
-/* Takes a factor of a term into account, of which the others grow by *rate; false where they have no common decay. */
+/*
+ * Adds a growing factor of a term to the rates; *rate is the sum over the term's factors. False without a common decay.
+ */
 static bool take_factor(struct Rates *rates, const struct Growth *growth, double *rate) {
   bool is_hyperbolic = growth->operation != EXPONENTIAL;
   if (rates->unit != 0.0 && growth->base != rates->base) return false;
@@ -101,7 +103,7 @@ static bool take_term(const struct Graph *graph, Node term, struct Rates *rates)
   return true;
 }
 
-/* How fast the terms of a node grow; false where they have no common decay. */
+/* Finds the growth rates of a node's terms. False if they have no common decay. */
 static bool rates_of(const struct Graph *graph, Node node, struct Rates *rates) {
   Node terms[TERM_LIMIT];
   *rates = (struct Rates){.base = ZERO};
@@ -111,7 +113,7 @@ static bool rates_of(const struct Graph *graph, Node node, struct Rates *rates) 
   return true;
 }
 
-/* The decay that bounds the growth of a sum, or of one factor; false for none. */
+/* Finds the decay that bounds a sum or one factor. False if there is none. */
 static bool decay_of(struct Graph *graph, Node node, struct Decay *decay) {
   struct Rates rates;
   if (!rates_of(graph, node, &rates) || rates.unit == 0.0) return false;
@@ -127,7 +129,7 @@ static bool is_bounded(const struct Graph *graph, Node sum) {
   return rates_of(graph, sum, &rates) && rates.unit == 0.0;
 }
 
-/* The sum of the terms, each times a node. */
+/* Returns the sum of the terms, each multiplied by a node. */
 static Node distribute(struct Graph *graph, Node sum, Node node) {
   Node terms[TERM_LIMIT], result = ZERO;
   int count = terms_of(graph, sum, terms, TERM_LIMIT);
@@ -136,8 +138,8 @@ static Node distribute(struct Graph *graph, Node sum, Node node) {
 }
 
 /*
- * Splits base = inner / (s1^p1 s2^p2 ...), where inner is bounded: for each factor that grows, a decay, of exp(u)
- * its inverse exp(-u). Returns the number of decays, 0 where nothing grows or what does has none.
+ * Splits base = inner / (s1^p1 s2^p2 ...), where inner is bounded: for each factor that grows, a decay; for exp(u)
+ * it is exp(-u). Returns the number of decays; 0 if nothing grows, or if a growing factor has no decay.
  */
 static int split(struct Graph *graph, Node base, struct Decay decays[FACTOR_LIMIT], Node *inner) {
   Node bare;
@@ -181,7 +183,7 @@ bool bounded_power(struct Graph *graph, Node base, double n, Node *result) {
   return true;
 }
 
-/* -log(decay) */
+/* Returns -log(decay). */
 static Node logarithm_of_growth(struct Graph *graph, Node decay) {
   const struct Vertex vertex = *vertex_of(graph, decay);
   if (vertex.operation == EXPONENTIAL) return negate(graph, vertex.left);
@@ -200,13 +202,13 @@ bool bounded_logarithm(struct Graph *graph, Node node, Node *result) {
   return true;
 }
 
-/* What a factor that grows and one that decays are together. */
+/* The bounded product of powers of a growing and of a decaying factor. */
 struct Joined {
   Node product;
-  double left, right; /* so much of the exponents is in it */
+  double left, right; /* the exponents in it */
 };
 
-/* exp(u)^m times a decay, where u grows by a multiple of what the decay can take. */
+/* Joins exp(u)^m with a decay along the same base. */
 static bool join_exponential(struct Graph *graph, const struct Growth *growth, struct Factor left, struct Factor right,
                              struct Joined *joined) {
   Node base;
@@ -228,7 +230,7 @@ static bool join_exponential(struct Graph *graph, const struct Growth *growth, s
   return true;
 }
 
-/* sinh(u) or cosh(u) times 1/cosh(u). */
+/* Joins sinh(u) or cosh(u) with 1/cosh(u): to tanh(u), or 1. */
 static bool join_hyperbolic(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
   const struct Vertex *growing = vertex_of(graph, left.base), *decaying = vertex_of(graph, right.base);
   if (decaying->operation != SECH || growing->left != decaying->left) return false;
@@ -238,7 +240,7 @@ static bool join_hyperbolic(struct Graph *graph, struct Factor left, struct Fact
   return true;
 }
 
-/* exp(u) exp(-v) for multiples of one expression. */
+/* Joins exp(u) exp(-v), where u and v are multiples of one expression. */
 static bool join_opposite(struct Graph *graph, const struct Growth *growth, struct Factor left, struct Factor right,
                           struct Joined *joined) {
   struct Growth other;
@@ -270,7 +272,7 @@ static bool join(struct Graph *graph, struct Factor left, struct Factor right, s
   return join_hyperbolic(graph, left, right, joined);
 }
 
-/* The product of the factors, of one of which the exponent is smaller. */
+/* Returns the product of the factors, with the exponent of one of them reduced. */
 static Node remaining(struct Graph *graph, const struct Factor *factors, int count, int place, double less) {
   struct Factor rest[FACTOR_LIMIT];
   int rest_count = 0;

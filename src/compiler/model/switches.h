@@ -1,4 +1,4 @@
-/* What switches a system: modes, which are constant between events, and the elements that change them. */
+/* Switching elements of a system, and their modes, which are constant between events. */
 #pragma once
 
 #include <stdbool.h>
@@ -41,11 +41,11 @@ struct PlaneSide {
 
 /*
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, and 0 while it sticks: then a
- * constraint keeps the velocity at 0 with a force of at most stiction. `told` is the reported mode. It is also 0 while
- * other constraints keep the velocity at 0, when the friction may act with its sliding force at rest. Against a
- * negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A friction with a
- * prescribed velocity never sticks and has no force at rest: its mode is that of a branch on the velocity's sign, or in
- * a plane its own.
+ * constraint keeps the velocity at 0 with a force of at most stiction. `reported` is the mode that outputs show. It is
+ * also 0 while other constraints keep the velocity at 0, when the friction may act with its sliding force at rest.
+ * Against a negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A friction
+ * with a prescribed velocity never sticks and has no force at rest: its mode is that of a branch on the velocity's
+ * sign, or in a plane its own.
  */
 struct Friction {
   size_t constraint; /* index among the model's constraints */

@@ -46,7 +46,7 @@ static bool is_alone(const struct Model *model, const struct Event *event) {
   return is_alone;
 }
 
-/* The values at the start, and 1 s and 2 s later; false where they are not on a line that rises or falls. */
+/* Evaluates the values at the start, and 1 s and 2 s later. False unless they are on a line that rises or falls. */
 static bool evaluate(const struct Model *model, Node expression, double *value) {
   double *symbols = start_values(model);
   for (int i = 0; i < TIMES; i++) {
@@ -76,7 +76,7 @@ static void warn_of_event(const struct Reader *reader, const struct Event *event
                    rises ? "rising" : "falling");
 }
 
-/* The branches that a condition, which the cone holds, looks at, and the times behind the start at which they turn. */
+/* The branches of a condition, and the times after the start at which they switch. */
 struct Turns {
   const struct Branch **branches;
   double *times;
@@ -88,7 +88,7 @@ static int compare_times(const void *first, const void *second) {
   return (a > b) - (a < b);
 }
 
-/* False where a branch rests on others, or on more than time at a constant rate. */
+/* Finds the branches and their times. False if a branch depends on others, or is not affine in time. */
 static bool find_turns(const struct Model *model, const struct Event *event, struct Turns *turns) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
@@ -112,7 +112,7 @@ static bool find_turns(const struct Model *model, const struct Event *event, str
   return true;
 }
 
-/* Whether the condition holds a while behind the start. */
+/* True if the condition holds at a duration after the start. */
 static bool holds_at(const struct Model *model, const struct Event *event, const struct Turns *turns, double duration) {
   double *symbols = start_values(model);
   symbols[model->graph->vertices[model->time].left] += duration;

@@ -3,7 +3,7 @@
 #include "algebra/differentiate.h"
 #include "base/memory.h"
 
-/* What needs a derivative of a state. */
+/* An element that needs a derivative of a state. */
 struct Need {
   const struct Reader *reader;
   long line;
@@ -15,7 +15,7 @@ static const struct Variable *state_of(const struct Model *model, Node symbol) {
   return &model->states.items[graph_symbol_of(model->graph, symbol)->index];
 }
 
-/* The first symbol of these kinds in a node; NULL for none. */
+/* Returns the first symbol of these kinds in a node; NULL for none. */
 static const struct Symbol *first_of(const struct Model *model, Node node, unsigned kinds) {
   const struct Gradient gradient = gradient_by_kinds(model->graph, node, kinds);
   return gradient.count > 0 ? graph_symbol_of(model->graph, gradient.symbols[0]) : NULL;
@@ -30,7 +30,7 @@ static void report_missing(const struct Need *need, const struct Variable *state
                need->is_second ? "second" : "time", state->name, way, symbol->name, remedy);
 }
 
-/* Accelerations and forces are what the equations of motion give, from this very derivative. */
+/* A rate with accelerations or forces would make the equations of motion depend on their own results. */
 static bool follows_first(const struct Need *need, const struct Variable *state, const struct Variable *of) {
   const struct Symbol *symbol = first_of(need->reader->model, of->rate, KIND(ACCELERATION) | KIND(REACTION));
   if (symbol != NULL)
@@ -38,7 +38,7 @@ static bool follows_first(const struct Need *need, const struct Variable *state,
   return symbol == NULL;
 }
 
-/* The rate of a rate holds what changes velocities and inputs. */
+/* The time derivative of a rate contains accelerations and derivatives of inputs. */
 static bool follows_second(const struct Need *need, const struct Variable *state) {
   const struct Model *model = need->reader->model;
   const struct Symbol *velocity = first_of(model, state->rate, KIND(VELOCITY));
@@ -60,7 +60,7 @@ static bool follows_second(const struct Need *need, const struct Variable *state
   return true;
 }
 
-/* What moves masses by way of a state does work that no force here tells. */
+/* A state that moves masses does work that <work/> does not include. */
 static void require_no_work(const struct Need *need, Node node) {
   const struct Model *model = need->reader->model;
   const struct Variable *work = work_of(model);
@@ -81,7 +81,7 @@ static void require_derivatives(const struct Need *need, Node node) {
   }
 }
 
-/* The velocity of what a state moves is no function of coordinates, along which it would have a part in the energy. */
+/* In a <kinetic>, the rate of a state must not depend on coordinates, whose momentum it would change. */
 static void require_free_rates(const struct Need *need, Node node) {
   const struct Model *model = need->reader->model;
   const struct Gradient states = gradient_by_kinds(model->graph, node, KIND(STATE));

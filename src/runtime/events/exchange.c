@@ -174,7 +174,7 @@ static bool go_to_zero(struct Resolution *resolution, size_t branch) {
 }
 
 /* Handles the event at the first zero that was crossed, *passes if there was one. Returns NULL, or a reason to stop. */
-static const char *pass_late(struct Instance *instance, bool *passes, bool *changed) {
+static const char *pass_late(struct Instance *instance, bool *passes) {
   double time = instance->fmu_state->time, *state = instance->event_state, *before = state + lagrangian.state_count;
   size_t size = lagrangian.state_count * sizeof *state;
   *passes = false;
@@ -187,7 +187,6 @@ static const char *pass_late(struct Instance *instance, bool *passes, bool *chan
   double zero = resolution.time;
   memcpy(before, state, size);
   const char *problem = resolve(instance, zero, state, AT_EVENT, branch, passes);
-  *changed |= *passes;
   if (problem != NULL || memcmp(before, state, size) == 0) return problem;
   resolution = resolution_at(instance, zero, state, IN_EXCHANGE);
   if (evaluate_prepare(instance) != STATUS_DONE || !resolution_values(&resolution, state, resolution.value))
@@ -212,26 +211,21 @@ static const double largest_deviation = 1e-3;
  * Projects the state for the present modes before these are judged. The residual of an integrator is no motion: a
  * closed contact would take a rate of -1e-6 m/s for an impact. The state follows small changes of parameters likewise.
  */
-static void return_to_constraints(struct Instance *instance, bool *changed) {
+static void return_to_constraints(struct Instance *instance) {
   double *state = instance->event_state;
   size_t size = lagrangian.state_count * sizeof *state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return;
   memcpy(state, instance->state, size);
   double moved = lagrangian.constraints.projection->project(instance, instance->fmu_state->time, state);
-  if (!(moved > 0.0 && moved <= largest_deviation)) return;
-  memcpy(instance->state, state, size);
-  *changed = true;
+  if (moved > 0.0 && moved <= largest_deviation) memcpy(instance->state, state, size);
 }
 
-const char *exchange_resolve(struct Instance *instance, bool *changed) {
+const char *exchange_resolve(struct Instance *instance) {
   const char *problem = NULL;
-  bool passes = may_turn_back(instance), others;
-  *changed = false;
-  return_to_constraints(instance, changed);
-  for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes, changed);
+  bool passes = may_turn_back(instance), changed;
+  return_to_constraints(instance);
+  for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes);
   if (problem != NULL) return problem;
   release_frictions(instance);
-  problem = resolve(instance, instance->fmu_state->time, instance->state, IN_EXCHANGE, 0, &others);
-  *changed |= others;
-  return problem;
+  return resolve(instance, instance->fmu_state->time, instance->state, IN_EXCHANGE, 0, &changed);
 }

@@ -11,6 +11,6 @@
 bool exchange_come_back(struct Instance *instance, struct Point *point);
 bool exchange_indicators(struct Instance *instance, double *value);
 bool exchange_is_due(struct Instance *instance);
-const char *exchange_resolve(struct Instance *instance, bool *changed);
+const char *exchange_resolve(struct Instance *instance);
 
 #endif

@@ -84,9 +84,9 @@ bool events_resolve_change(struct Instance *instance, double time) {
   return problem == NULL;
 }
 
-const char *events_update(struct Instance *instance, bool *changed) {
+const char *events_update(struct Instance *instance) {
   struct FmuState *fmu_state = instance->fmu_state;
-  *changed = false;
+  bool changed;
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
   const struct TimeLaws *times = lagrangian.switches->time_laws;
   bool is_due = fmu_state->waiting_event == 0 && times != NULL && times->is_due(instance);
@@ -94,8 +94,8 @@ const char *events_update(struct Instance *instance, bool *changed) {
   if (fmu_state->waiting_event == 0 && fmu_state->changed != CHANGED_VALUES && !is_due) return NULL;
   enum Occasion occasion = fmu_state->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)fmu_state->waiting_event - 1 : 0;
-  const char *problem = resolve(instance, fmu_state->time, instance->state, occasion, indicator, changed);
-  bool is_new = occasion == AT_EVENT || *changed;
+  const char *problem = resolve(instance, fmu_state->time, instance->state, occasion, indicator, &changed);
+  bool is_new = occasion == AT_EVENT || changed;
   if (is_new && fmu_state->changed == CHANGED_NOTHING) fmu_state->changed = CHANGED_BY_EVENT;
   fmu_state->waiting_event = 0;
   return problem;

@@ -12,7 +12,7 @@ const char *events_check(struct Instance *instance, double time);
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,
                     const struct EventProgress *progress);
 bool events_explain_stop(struct Instance *instance, double time);
-const char *events_update(struct Instance *instance, bool *changed);
+const char *events_update(struct Instance *instance);
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress);

@@ -12,8 +12,8 @@
 #include "stepping/reading.h"
 
 /*
- * Sets the time, which may go back within the last step of the importer alone: not beyond the second last completed step
- * or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
+ * Sets the time, which may go back within the last step of the importer alone: not beyond the second last completed
+ * step or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
  */
 enum Status exchange_set_time(struct Instance *instance, double time) {
   double start = instance->fmu_state->start_time, earliest = instance->fmu_state->last_step.start;
@@ -150,10 +150,8 @@ bool exchange_complete_step(struct Instance *instance) {
 /* Brings the modes into agreement with the state. */
 static enum Status resolve_modes(struct Instance *instance) {
   const struct EventLaws *laws = lagrangian.event_laws;
-  bool changed = false;
   if (laws == NULL) return STATUS_DONE;
-  const char *problem =
-      instance->kind == KIND_CO_SIMULATION ? laws->update(instance, &changed) : laws->resolve(instance, &changed);
+  const char *problem = instance->kind == KIND_CO_SIMULATION ? laws->update(instance) : laws->resolve(instance);
   return problem == NULL ? STATUS_DONE : log_error(instance, "time %g: %s", instance->fmu_state->time, problem);
 }
 

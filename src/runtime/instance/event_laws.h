@@ -35,10 +35,9 @@ struct EventLaws {
   size_t (*work_count)(void);
   /*
    * Brings the modes into agreement with the state to which an importer has integrated. Impacts and events may change
-   * the state. Sets *changed if modes or state changed. Returns NULL, or the reason why the motion cannot go on, after
-   * logging the cause.
+   * the state. Returns NULL, or the reason why the motion cannot go on, after logging the cause.
    */
-  const char *(*resolve)(struct Instance *instance, bool *changed);
+  const char *(*resolve)(struct Instance *instance);
   /* Sets the modes from start values, while these may be set: all contacts are open, all frictions slide. */
   void (*guess)(struct Instance *instance);
   /* Finds the modes at the start, after impacts and events there. False after logging an error. */
@@ -51,10 +50,10 @@ struct EventLaws {
   /* Finds the modes after a parameter, input or state was set. False after logging why the step is discarded. */
   bool (*resolve_change)(struct Instance *instance, double time);
   /*
-   * Finds modes and state after the event that ended a step, or after a parameter, input or state was set. Sets
-   * *changed if any changed. Returns NULL, or the reason why the motion cannot go on.
+   * Finds modes and state after the event that ended a step, or after a parameter, input or state was set. Returns
+   * NULL, or the reason why the motion cannot go on.
    */
-  const char *(*update)(struct Instance *instance, bool *changed);
+  const char *(*update)(struct Instance *instance);
   /* Handles the next event in the solver's last step. Returns NULL, or the reason why the motion ends there. */
   const char *(*pass)(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
   /* Checks the laws at the end of a communication step. Returns NULL, or the violated one, after logging the cause. */

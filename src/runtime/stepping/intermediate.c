@@ -35,12 +35,16 @@ void intermediate_observe(struct Instance *instance, struct CommunicationStep *s
 }
 
 /*
- * The nodes of Lobatto's quadrature of order 6. Both ends are among them, so that inputs are continuous from step to step. A
- * smooth input and its cubic differ by O(h^4), and so do outputs that depend on it directly; the motion errs by O(h^6).
+ * The nodes of Lobatto's quadrature of order 6. Both ends are among them, so that inputs are continuous from step to
+ * step. A smooth input and its cubic differ by O(h^4), and so do outputs that depend on it directly; the motion errs by
+ * O(h^6).
  */
 static const double node[INPUT_NODES] = {0.0, 0.276393202250021030, 0.723606797749978970, 1.0};
 
-/* Writes the derivatives of orders 1 to 3, at the step's start, of the cubic through values at the nodes. Overwrites the values. */
+/*
+ * Writes the derivatives of orders 1 to 3, at the step's start, of the cubic through values at the nodes. Overwrites
+ * the values.
+ */
 static void differentiate_cubic(double *value, double length, double *derivative, size_t stride) {
   for (size_t order = 1; order < INPUT_NODES; order++) /* Newton's divided differences */
     for (size_t i = INPUT_NODES - 1; i >= order; i--)

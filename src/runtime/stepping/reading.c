@@ -76,8 +76,8 @@ void reading_end(struct Instance *instance) {
 }
 
 /*
- * Displacements of the difference quotients, in units of the scales. The relative truncation error of the first is about
- * 1e-12. The others serve where the displaced starts are not smooth.
+ * Displacements of the difference quotients, in units of the scales. The relative truncation error of the first is
+ * about 1e-12. The others serve where the displaced starts are not smooth.
  */
 static const double displacement[] = {1e-3, 1e-5, 1e-7};
 
@@ -175,8 +175,8 @@ static bool is_smooth(const struct Slope *slope, const double *state, double siz
 }
 
 /*
- * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of fmu_state_size() bytes. False if the
- * start has none; slope->other then names the cause, if it is known.
+ * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of
+ * fmu_state_size() bytes. False if the start has none; slope->other then names the cause, if it is known.
  */
 static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct FmuState *kept,
                        struct Slope *slope) {

@@ -17,7 +17,7 @@ struct Quantity {
   Node node;
   struct Dimension dimension;
   struct NumberFactor factor;
-  bool literal; /* made of numbers alone: takes the unit of the quantity that it is added to or compared with */
-  /* Of a definition with pieces, for <set>: with floor and the like as values, and with all pieces as values; else ZERO. */
-  Node at_instant, whole;
+  bool literal;    /* made of numbers alone: takes the unit of the quantity that it is added to or compared with */
+  Node at_instant; /* for <set>: a definition with floor, ceil, round and mod as plain values; ZERO without pieces */
+  Node whole;      /* the same with all pieces as plain values */
 };

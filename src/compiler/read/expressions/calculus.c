@@ -92,7 +92,7 @@ static struct Quantity derivative_by_local(struct Parser *parser, const struct L
   struct Quantity value = parse_with_dummy(parser, local->name, dimension, at, at);
   Node symbol = scope->dummies[--scope->dummy_count].symbol;
   if (parser->failed) return nothing;
-  Node derivative = replaced(parser->graph, derivative_by(parser->graph, value.node, symbol), symbol, at);
+  Node derivative = substitute_symbol(parser->graph, derivative_by(parser->graph, value.node, symbol), symbol, at);
   return (struct Quantity){.node = with_pieces(scope, derivative, current_line(parser)),
                            .dimension = dimension_multiply(value.dimension, dimension, -1.0)};
 }
@@ -134,12 +134,12 @@ static Node derivative_with_arguments_held(struct Parser *parser, Node variable,
   Node derivative = parser->failed ? ZERO : derivative_by(graph, value.node, variable);
   while (scope->dummy_count > first) {
     const struct Dummy *dummy = &scope->dummies[--scope->dummy_count];
-    derivative = replaced(graph, derivative, dummy->symbol, dummy->low);
+    derivative = substitute_symbol(graph, derivative, dummy->symbol, dummy->low);
   }
   return has_held ? with_pieces(scope, derivative, current_line(parser)) : derivative;
 }
 
-/* What a name stands for by which no derivative can be taken. */
+/* Returns the words for a name that no derivative can be taken by. */
 static const char *words_for(const struct Graph *graph, Node node) {
   bool is_symbol = graph->vertices[node].operation == SYMBOL;
   if (graph_is_constant(graph, node)) return "a constant";

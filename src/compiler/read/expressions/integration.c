@@ -1,8 +1,8 @@
 /*
  * The number of nodes is the smallest for which the integral and its derivatives by what moves agree, to 1e-13 of the
- * integral of their magnitude, with a rule of many nodes: at the start values, and at random states around them. Then it is
- * found how far each variable may go from its start value. Beyond this range the sum has no finite value, so that the FMU
- * stops in place of a wrong result.
+ * integral of their magnitude, with a rule of many nodes: at the start values, and at random states around them. Then
+ * it is found how far each variable may go from its start value. Beyond this range the sum has no finite value, so that
+ * the FMU stops in place of a wrong result.
  */
 #include "read/expressions/integration.h"
 
@@ -16,49 +16,47 @@
 #include "read/expressions/integration_error.h"
 #include "read/names/pieces_of_functions.h"
 
-/* Nodes that lagc chooses of itself; of integrals whose limits move, as where one is time. */
+/* Largest number of nodes that lagc chooses, the same for limits that move, and the number of sample states. */
 enum { CHOICE_LIMIT = 32, MOVING_CHOICE_LIMIT = 128, SAMPLES = 6 };
 
-/* Spreads from the start value: where nodes are chosen, if they are enough there, and where the range of a variable has no limit. */
+/*
+ * Distances from the start value, in spreads: of the states that choose nodes, of a range without limit, and of the
+ * first trial.
+ */
 static const double wide = 4.0, endless = 1e6, nearest = 1e-3;
 
-/* Relative to the integral of the magnitude: of what lagc calls exact, and where the FMU does not stop yet. */
+/* Errors relative to the integral of the magnitude: of an exact sum, and the largest one in the range of a variable. */
 static const double exactness = 1e-13, still_right = 1e-11;
 
-/* What a motion changes by itself. */
+/* Kinds of symbols that the motion determines. */
 static const unsigned moving =
     1u << COORDINATE | 1u << VELOCITY | 1u << STATE | 1u << DISPLACEMENT | 1u << ACCELERATION | 1u << REACTION;
 
-/* Between which values of a symbol the sum is right. */
+/* The interval of a symbol in which the sum is exact. */
 struct Range {
   size_t symbol;
   double low, high;
 };
 
-/* How an integral is summed. */
+/* A quadrature rule for an integral, and the ranges in which it holds. */
 struct Choice {
   size_t nodes;
   double worst; /* error, relative to the integral of the magnitude */
-  bool is_near; /* nodes are enough in the ranges alone, which may be small */
+  bool is_near; /* the nodes suffice near the start values alone */
   struct Range *ranges;
   size_t range_count;
   bool has_value;
 };
-
-Node replaced(struct Graph *graph, Node node, Node symbol, Node by) {
-  Node *replacements = own_symbols(graph), result = ZERO;
-  replacements[graph->vertices[symbol].left] = by;
-  substitute(graph, &node, 1, replacements, &result);
-  release(replacements);
-  return result;
-}
 
 static double error_by(struct Sampling *sampling, const double *rounding_bounds, size_t nodes) {
   const struct Rule rule = rule_of(nodes);
   return sampling_error(sampling, &rule, rounding_bounds);
 }
 
-/* As many as this state needs, from a number that others need; its error where the limit is not enough. */
+/*
+ * Returns the number of nodes, at least nodes, for the present sample state. Sets the error, which is larger at the
+ * limit.
+ */
 static size_t nodes_at(struct Sampling *sampling, size_t nodes, size_t limit, double *error) {
   double *rounding_bounds = NULL;
   size_t first = nodes;
@@ -74,7 +72,7 @@ static size_t nodes_at(struct Sampling *sampling, size_t nodes, size_t limit, do
   return nodes;
 }
 
-/* At the start values, and at random ones around them. */
+/* Chooses nodes for the start values and for random states within a number of spreads around them. */
 static struct Choice choose_within(struct Sampling *sampling, double spreads, size_t limit) {
   struct Choice choice = {.nodes = 1};
   for (int sample = 0; sample < SAMPLES; sample++) {
@@ -87,15 +85,16 @@ static struct Choice choose_within(struct Sampling *sampling, double spreads, si
   return choice;
 }
 
-/* Whether the rule is right where a symbol is so many spreads from its start value, and the others near theirs. */
+/* True if the rule holds with one symbol at a number of spreads from its start value, and the others near theirs. */
 static bool is_right_at(struct Sampling *sampling, const struct Rule *rule, size_t symbol, double spreads) {
   if (!sampling_at(sampling, symbol, spreads)) return false;
   return sampling_error(sampling, rule, NULL) <= still_right;
 }
 
 /*
- * How many spreads a symbol may go in one direction; INFINITY for no end. What decays may look right where it is 0, so that
- * all sizes are tried on the way.
+ * Returns the largest number of spreads of a symbol in one direction at which the rule holds, or INFINITY. Distances
+ * grow by factors of 4, since an integrand that decays to 0 far away makes any rule look exact there; bisection then
+ * refines.
  */
 static double reach_of(struct Sampling *sampling, const struct Rule *rule, size_t symbol, double direction) {
   double right = nearest, wrong = nearest;
@@ -112,7 +111,7 @@ static double reach_of(struct Sampling *sampling, const struct Rule *rule, size_
   return right;
 }
 
-/* The value of a symbol at the end of its reach. */
+/* Returns the value of a symbol at the end of its range. */
 static double end_of(const struct Sampling *sampling, size_t symbol, double spreads, double direction) {
   double start = sampling->start[symbol];
   bool goes_down = sampling->scope->graph->symbols[symbol].kind == PARAMETER && start < 0.0;
@@ -127,7 +126,10 @@ static bool is_polynomial(const struct Graph *graph, const struct Vertex *vertex
   return exponent >= 0.0 && exponent == floor(exponent);
 }
 
-/* Marks the nodes of which the integrand is no polynomial: a rule that is right for that of a few values is right for all. */
+/*
+ * Marks the nodes in which the integrand is not a polynomial. For polynomials a rule that holds at a few values holds
+ * at all.
+ */
 static bool *mark_curved(const struct Graph *graph, Node integrand) {
   bool *is_curved = allocate(graph->count, sizeof *is_curved);
   struct Cone *cone = graph->cone;
@@ -157,7 +159,10 @@ static void find_ranges(struct Sampling *sampling, const struct Rule *rule, stru
   release(is_curved);
 }
 
-/* Where no number of nodes is enough near the start values, the limits may still move a little way from there. */
+/*
+ * Chooses nodes and ranges. If no number of nodes suffices for random states, limits that move get a range about the
+ * start.
+ */
 static struct Choice choose(struct Sampling *sampling, bool limits_move) {
   size_t limit = limits_move ? MOVING_CHOICE_LIMIT : CHOICE_LIMIT;
   struct Choice choice = choose_within(sampling, wide, limit);
@@ -226,12 +231,12 @@ static struct Choice choose_nodes(struct Parser *parser, const struct Integral *
   return choice;
 }
 
-/* 1 where a node is positive, else 0. */
+/* Returns a node that is 1 where another one is positive, else 0. */
 static Node one_above_zero(struct Graph *graph, Node node) {
   return function(graph, GUARD, function(graph, SIGN, node, ZERO), ONE);
 }
 
-/* The sum within the ranges; beyond them it is divided by 0. */
+/* Returns the sum, divided by 0 beyond the ranges. */
 static Node within_ranges(struct Graph *graph, const struct Choice *choice, Node sum) {
   Node inside = ONE;
   for (size_t i = 0; i < choice->range_count; i++) {
@@ -244,14 +249,14 @@ static Node within_ranges(struct Graph *graph, const struct Choice *choice, Node
   return divide(graph, sum, inside);
 }
 
-/* The sum over the nodes of an expression of the dummy. */
+/* Returns the quadrature sum of an expression of the dummy. */
 static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value) {
   struct Graph *graph = parser->graph;
   const struct Dummy dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
   Node length = subtract(graph, dummy.high, dummy.low), sum = ZERO;
   for (size_t k = 0; k < rule->count && graph_limit(graph) == NULL; k++) {
     Node point = add(graph, dummy.low, scale(graph, rule->nodes[k], length));
-    Node term = with_pieces(parser->scope, replaced(graph, value, dummy.symbol, point), current_line(parser));
+    Node term = with_pieces(parser->scope, substitute_symbol(graph, value, dummy.symbol, point), current_line(parser));
     sum = add(graph, sum, scale(graph, rule->weights[k], term));
   }
   return multiply(graph, length, sum);
@@ -277,8 +282,8 @@ static Node at_rest(struct Graph *graph, Node node) {
 }
 
 /*
- * Of energies that are quadratic in what moves, the coefficients alone are integrated: they are constants, as masses and
- * stiffnesses by hand are.
+ * Returns the sum for an integrand that is quadratic in the moving symbols. Only its coefficients are integrated: they
+ * are constants, such as masses and stiffnesses.
  */
 static Node sum_of_quadratic(struct Parser *parser, const struct Rule *rule, Node value, const struct Gradient *slopes,
                              const struct Gradient *curvatures) {

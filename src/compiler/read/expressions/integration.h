@@ -16,6 +16,3 @@ struct Integral {
  * not suffice. Reports an integrand without a finite value.
  */
 Node integrate(struct Parser *parser, const struct Integral *integral);
-
-/* Returns the node with another one substituted for a symbol. */
-Node replaced(struct Graph *graph, Node node, Node symbol, Node by);

@@ -15,9 +15,9 @@
 /* Nodes of each of two parts. */
 enum { REFERENCE_NODES = 128 };
 
-static const double golden_section = 0.3819660112501051; /* a share of 1 */
+static const double golden_section = 0.3819660112501051; /* (3 - sqrt(5))/2 */
 
-/* What changes by itself, or from outside, while the system runs. */
+/* Kinds of symbols that change during a simulation. */
 static const unsigned moving = 1u << COORDINATE | 1u << VELOCITY | 1u << STATE | 1u << DISPLACEMENT |
                                1u << ACCELERATION | 1u << REACTION | 1u << TIME | 1u << INPUT;
 
@@ -31,7 +31,7 @@ bool sampling_varies(const struct Symbol *symbol) {
   return (1u << symbol->kind & (moving | 1u << PARAMETER)) != 0;
 }
 
-/* From -1 to 1. */
+/* Returns a random number from -1 to 1. */
 static double random_number(struct Sampling *sampling) {
   return 2.0 * next_random(&sampling->random) - 2.0;
 }
@@ -47,13 +47,13 @@ static double duration_of(const struct Model *model) {
   return isnan(model->experiment.stop_time) ? 1.0 : model->experiment.stop_time - start;
 }
 
-/* How far a symbol may be from its start value. */
+/* Returns the spread of a symbol: a typical distance from its start value. */
 static double spread_of(const struct Model *model, const struct Symbol *symbol, double start) {
   size_t index = (size_t)symbol->index;
   switch (symbol->kind) {
   case PARAMETER:
     if (index < model->parameters.count && model->parameters.items[index].type != TYPE_REAL) return 0.0;
-    return start == 0.0 ? 1.0 : 0.2 * start; /* one that is 0 may leave nothing to see of what it stands before */
+    return start == 0.0 ? 1.0 : 0.2 * start; /* a parameter of 0 may hide its term */
   case COORDINATE: return scale_of(&model->coordinates, index);
   case VELOCITY: return scale_of(&model->velocities, index);
   case STATE: return scale_of(&model->states, index);
@@ -65,12 +65,13 @@ static double spread_of(const struct Model *model, const struct Symbol *symbol, 
   }
 }
 
-/* Of a parameter; other values are as they are. */
+/* Returns the value of a parameter within its limits; other values stay. */
 static double within_limits(const struct Model *model, const struct Symbol *symbol, double value) {
   size_t index = (size_t)symbol->index;
   if (symbol->kind != PARAMETER || index >= model->parameters.count) return value;
   const struct Variable *parameter = &model->parameters.items[index];
-  return fmin(fmax(value, parameter->minimum), parameter->maximum); /* of which NaN sets none */
+  return fmin(fmax(value, parameter->minimum),
+              parameter->maximum); /* fmin and fmax ignore NaN, which stands for no limit */
 }
 
 double sampling_value(const struct Sampling *sampling, size_t symbol, double spreads) {
@@ -89,7 +90,7 @@ static double value_of(struct Sampling *sampling, Node node) {
   return sampling->values[node];
 }
 
-/* The variables of integrals further out, from the outermost: the last of each is at its end, or at random. */
+/* Sets the variables of the enclosing integrals, from the outermost one: to the upper limit, or at random. */
 static void place_dummies(struct Sampling *sampling, bool at_end, double share) {
   const struct Scope *scope = sampling->scope;
   for (size_t i = 0; i + 1 < scope->dummy_count; i++) {
@@ -109,7 +110,9 @@ static void place_symbols(struct Sampling *sampling, double share) {
   }
 }
 
-/* Adds the sums over a part of the interval, as of shares of it from 0 to 1, and those of magnitudes. */
+/*
+ * Adds the quadrature over a part of the interval, given by shares from 0 to 1, to the sums and to those of magnitudes.
+ */
 static void add_part(struct Sampling *sampling, const struct Rule *rule, double from, double to) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
@@ -132,7 +135,10 @@ static void clear_sums(struct Sampling *sampling) {
   memset(sampling->sizes, 0, sampling->count * sizeof *sampling->sizes);
 }
 
-/* By two parts whose ratio is no simple number, so that nothing cancels by symmetry. False where a value is not finite. */
+/*
+ * Computes the reference by two parts in the ratio of the golden section, so that no symmetry cancels errors. False if
+ * a value is not finite.
+ */
 static bool find_reference(struct Sampling *sampling) {
   const struct Rule rule = rule_of(REFERENCE_NODES);
   bool is_finite = true;
@@ -177,7 +183,7 @@ double sampling_error(struct Sampling *sampling, const struct Rule *rule, const 
   return worst;
 }
 
-/* By the integrals of their bounds. */
+/* The bound of a sum is the integral of the bounds of its terms. */
 double *sampling_rounding_bounds(const struct Sampling *sampling) {
   struct Graph *graph = sampling->scope->graph;
   size_t count = sampling->count;
@@ -195,16 +201,13 @@ double *sampling_rounding_bounds(const struct Sampling *sampling) {
   return bounded.reference;
 }
 
-/* The integrand over a share of the interval, whose symbol is the dummy's own, and its derivatives by what moves. */
+/* The dummy's symbol stands for the share of the interval. */
 struct Sampling sampling_create(struct Scope *scope, Node value) {
   struct Graph *graph = scope->graph;
   const struct Dummy *dummy = &scope->dummies[scope->dummy_count - 1];
   Node length = subtract(graph, dummy->high, dummy->low);
-  Node *replacements = own_symbols(graph), share;
-  replacements[graph->vertices[dummy->symbol].left] = add(graph, dummy->low, multiply(graph, length, dummy->symbol));
-  substitute(graph, &value, 1, replacements, &share);
-  release(replacements);
-  share = multiply(graph, length, share);
+  Node position = add(graph, dummy->low, multiply(graph, length, dummy->symbol));
+  Node share = multiply(graph, length, substitute_symbol(graph, value, dummy->symbol, position));
   struct Gradient slopes = gradient_by_kinds(graph, share, moving);
   size_t count = slopes.count + 1;
   Node *targets = allocate(count, sizeof *targets);

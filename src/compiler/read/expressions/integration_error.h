@@ -1,4 +1,4 @@
-/* How far a rule is from an integral, at states near the start values and further away. */
+/* Errors of quadrature rules for an integral, at states near the start values and further away. */
 #pragma once
 
 #include <stdint.h>
@@ -14,8 +14,8 @@ struct Rule {
 struct Rule rule_of(size_t count);
 
 /*
- * The integrand over the last dummy of the scope as a function of a share from 0 to 1 of its interval, and the derivatives by
- * what moves; beside them the last state, and integrals by many nodes.
+ * The integrand over the last dummy of the scope as a function of a share from 0 to 1 of its interval, and its
+ * derivatives by the moving symbols, with the present sample state and reference integrals by many nodes.
  */
 struct Sampling {
   struct Scope *scope;
@@ -29,20 +29,28 @@ struct Sampling {
 
 struct Sampling sampling_create(struct Scope *scope, Node value);
 
-/* Whether a symbol is one that a motion, or whoever runs the system, may change. */
+/* True if the motion or the user may change the symbol. */
 bool sampling_varies(const struct Symbol *symbol);
 
-/* The symbols at random, as far from their start values as a share of their spread says; false where the integral has no value. */
+/*
+ * Draws a random state within a share of the spreads about the start values. False if the integral has no value there.
+ */
 bool sampling_near(struct Sampling *sampling, double share);
 
-/* The same with one symbol at a number of spreads from its start value. */
+/* Does the same, with one symbol at a number of spreads from its start value. */
 bool sampling_at(struct Sampling *sampling, size_t symbol, double spreads);
 
-/* A value at so many spreads; of parameters these are factors, of time shares of the experiment. */
+/* Returns the value of a symbol at a number of spreads: for parameters a factor, for time a share of the experiment. */
 double sampling_value(const struct Sampling *sampling, size_t symbol, double spreads);
 
-/* What rounding may make of each target at the last state, in units of DBL_EPSILON; the caller releases it. */
+/*
+ * Returns the rounding error bound of each target at the present state, in units of DBL_EPSILON. The caller releases
+ * it.
+ */
 double *sampling_rounding_bounds(const struct Sampling *sampling);
 
-/* The largest error of a rule at the last state, relative to the integral of the magnitude, beyond these roundings; NULL for none. */
+/*
+ * Returns the largest error of a rule at the present state, relative to the integral of the magnitude, beyond the
+ * rounding error bounds; NULL for none.
+ */
 double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *rounding_bounds);
