@@ -157,4 +157,5 @@ def test_pendulum_at_the_limit_of_doubles(open_fmu, theta0):
 def test_fmus_with_series_link_nothing():
     for name in SYSTEMS:
         data = fmu.library(name).read_bytes()
-        assert b"SUNDIALS" not in data and archive(name).stat().st_size < 178_000
+        # Two thirds of an archive are its sources, whose comments count; with tables it holds the interpreter as well.
+        assert b"SUNDIALS" not in data and archive(name).stat().st_size < 190_000
