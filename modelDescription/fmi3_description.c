@@ -84,12 +84,12 @@ static const char *type_name(const struct ScalarVariable *entry) {
   return entry->kind == VARIABLE_STATISTIC ? "Int64" : names[entry->type];
 }
 
-static void write_variable(xmlTextWriterPtr writer, const struct Interface *interface, size_t place) {
-  const struct InterfaceVariable *variable = &interface->variables[place];
+static void write_variable(xmlTextWriterPtr writer, const struct Interface *interface, size_t index) {
+  const struct InterfaceVariable *variable = &interface->variables[index];
   char *name = array_name(variable), *description = array_description(variable);
   xmlTextWriterStartElement(writer, BAD_CAST type_name(&variable->entry));
   write_attribute(writer, "name", name);
-  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", place + FIRST_REFERENCE);
+  xmlTextWriterWriteFormatAttribute(writer, BAD_CAST "valueReference", "%zu", index + FIRST_REFERENCE);
   if (description != NULL) write_attribute(writer, "description", description);
   write_classification(writer, variable);
   if (is_intermediate(&variable->entry)) write_attribute(writer, "intermediateUpdate", "true");

@@ -83,13 +83,13 @@ static struct Members members_of(const struct Program *program, const int *force
 
 /* The right edge of the icon, with the terminals side by side. */
 struct Edge {
-  size_t count, place;
+  size_t count, number;
 };
 
 /* Writes the position of a flange, half of which is outside the icon. */
-static void write_place(xmlTextWriterPtr writer, const struct Edge *edge) {
+static void write_position(xmlTextWriterPtr writer, const struct Edge *edge) {
   double half = fmin(10.0, 80.0 / (double)edge->count);
-  double height = 100.0 - 200.0 * ((double)edge->place + 0.5) / (double)edge->count;
+  double height = 100.0 - 200.0 * ((double)edge->number + 0.5) / (double)edge->count;
   xmlTextWriterStartElement(writer, BAD_CAST "TerminalGraphicalRepresentation");
   write_attribute(writer, "defaultConnectionColor", "26 95 180");
   write_number(writer, "x1", 100.0 - half);
@@ -118,7 +118,7 @@ static void write_terminal(xmlTextWriterPtr writer, const struct Program *progra
   write_member(writer, members.position, flange->position, "signal");
   write_member(writer, members.velocity, flange->velocity, "signal");
   write_member(writer, members.force, flange->force, "inflow");
-  write_place(writer, edge);
+  write_position(writer, edge);
   xmlTextWriterEndElement(writer);
 }
 
@@ -159,7 +159,7 @@ bool fmi3_terminals_write(xmlBufferPtr buffer, const struct Program *program) {
   for (size_t i = 0; i < program->model->coordinates.count; i++) {
     if (!has_terminal(program, force, i)) continue;
     write_terminal(writer, program, force, i, &edge);
-    edge.place++;
+    edge.number++;
   }
   if (edge.count > 0) xmlTextWriterEndElement(writer);
   return close_document(writer);

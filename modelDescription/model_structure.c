@@ -32,9 +32,9 @@ struct Structure {
   const struct Interface *interface;
   const struct Graph *graph;
   struct Dependencies *dependencies;
-  size_t *place_of;          /* for each symbol: 1 + the index of its variable; 0 if it is not a known */
-  size_t *places;            /* workspace: indices of the knowns that one unknown depends on */
-  enum Dependency *of_place; /* workspace, for each variable: the kind of dependency */
+  size_t *variable_of;       /* for each symbol: 1 + the index of its variable; 0 if it is not a known */
+  size_t *indices;           /* workspace: indices of the knowns that one unknown depends on */
+  enum Dependency *of_index; /* workspace, for each variable: the kind of dependency */
 };
 
 /* True if unknowns may depend on the variable. Initial unknowns also depend on parameters. */
@@ -52,37 +52,37 @@ static const char *kind_name(enum Dependency dependency, enum VariableType type,
 }
 
 /* Returns the index of the array that the variable is an element of, or of the variable itself. */
-static size_t place_of_whole(const struct Structure *structure, size_t place) {
-  while (structure->form->has_arrays && structure->interface->variables[place].is_further_element) place--;
-  return place;
+static size_t index_of_whole(const struct Structure *structure, size_t index) {
+  while (structure->form->has_arrays && structure->interface->variables[index].is_further_element) index--;
+  return index;
 }
 
 /* Adds the dependencies of one scalar. Returns the number of indices in places. */
-static size_t add_places(const struct Structure *structure, size_t count, Node node, bool initial) {
+static size_t add_indices(const struct Structure *structure, size_t count, Node node, bool initial) {
   const struct Dependencies *dependencies = structure->dependencies;
   dependencies_find(structure->dependencies, node, initial);
   for (size_t i = 0; i < dependencies->count; i++) {
-    size_t symbol = dependencies->symbols[i], place = structure->place_of[symbol];
-    if (place == 0 || !is_known(&structure->interface->variables[place - 1].entry, initial)) continue;
-    size_t whole = place_of_whole(structure, place - 1);
-    enum Dependency *dependency = &structure->of_place[whole];
-    if (*dependency == INDEPENDENT) structure->places[count++] = whole;
+    size_t symbol = dependencies->symbols[i], index = structure->variable_of[symbol];
+    if (index == 0 || !is_known(&structure->interface->variables[index - 1].entry, initial)) continue;
+    size_t whole = index_of_whole(structure, index - 1);
+    enum Dependency *dependency = &structure->of_index[whole];
+    if (*dependency == INDEPENDENT) structure->indices[count++] = whole;
     if (dependencies->of[symbol] > *dependency) *dependency = dependencies->of[symbol];
   }
   return count;
 }
 
 /* Adds all knowns of initialization as dependencies, ascending. Returns their number. */
-static size_t find_all_places(const struct Structure *structure) {
+static size_t find_all_indices(const struct Structure *structure) {
   const struct Interface *interface = structure->interface;
   size_t count = 0, variable_count = structure->form->has_arrays ? interface->count : interface->count_in_fmi2;
   for (size_t i = 0; i < variable_count; i++) {
     const struct Vertex *vertex = &structure->graph->vertices[interface->variables[i].node];
-    bool is_known_here = vertex->operation == SYMBOL && structure->place_of[vertex->left] == i + 1 &&
+    bool is_known_here = vertex->operation == SYMBOL && structure->variable_of[vertex->left] == i + 1 &&
                          is_known(&interface->variables[i].entry, true);
-    if (!is_known_here || place_of_whole(structure, i) != i) continue;
-    structure->of_place[i] = DEPENDENT;
-    structure->places[count++] = i;
+    if (!is_known_here || index_of_whole(structure, i) != i) continue;
+    structure->of_index[i] = DEPENDENT;
+    structure->indices[count++] = i;
   }
   return count;
 }
@@ -91,25 +91,25 @@ static size_t find_all_places(const struct Structure *structure) {
  * Finds the knowns that the unknown, with all its elements, depends on, ascending. Returns their number. With
  * constraints, which move start values, initial unknowns depend on all knowns.
  */
-static size_t find_places(const struct Structure *structure, size_t unknown, bool initial) {
-  if (initial && structure->dependencies->equations->constraints->count > 0) return find_all_places(structure);
+static size_t find_indices(const struct Structure *structure, size_t unknown, bool initial) {
+  if (initial && structure->dependencies->equations->constraints->count > 0) return find_all_indices(structure);
   const struct InterfaceVariable *variable = &structure->interface->variables[unknown];
   size_t elements = structure->form->has_arrays && variable->array_count > 0 ? variable->array_count : 1, count = 0;
-  for (size_t i = 0; i < elements; i++) count = add_places(structure, count, variable[i].node, initial);
-  sort_sizes(structure->places, count);
+  for (size_t i = 0; i < elements; i++) count = add_indices(structure, count, variable[i].node, initial);
+  sort_sizes(structure->indices, count);
   return count;
 }
 
 static void write_dependencies(const struct Structure *structure, size_t count, bool initial) {
-  struct TextStream places, kinds;
-  FILE *places_file = open_text(&places), *kinds_file = open_text(&kinds);
+  struct TextStream indices, kinds;
+  FILE *indices_file = open_text(&indices), *kinds_file = open_text(&kinds);
   for (size_t i = 0; i < count; i++) {
-    size_t place = structure->places[i];
-    enum VariableType type = structure->interface->variables[place].entry.type;
-    fprintf(places_file, "%s%zu", i > 0 ? " " : "", place + structure->form->first_key);
-    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->of_place[place], type, initial));
+    size_t index = structure->indices[i];
+    enum VariableType type = structure->interface->variables[index].entry.type;
+    fprintf(indices_file, "%s%zu", i > 0 ? " " : "", index + structure->form->first_key);
+    fprintf(kinds_file, "%s%s", i > 0 ? " " : "", kind_name(structure->of_index[index], type, initial));
   }
-  write_attribute(structure->writer, "dependencies", close_text(&places));
+  write_attribute(structure->writer, "dependencies", close_text(&indices));
   write_attribute(structure->writer, "dependenciesKind", close_text(&kinds));
 }
 
@@ -122,13 +122,13 @@ enum { DEPENDENCY_LIMIT = 1000 };
 
 /* Writes the element of one unknown. */
 static void write_unknown(const struct Structure *structure, const char *element, size_t unknown, bool initial) {
-  size_t count = find_places(structure, unknown, initial);
+  size_t count = find_indices(structure, unknown, initial);
   xmlTextWriterStartElement(structure->writer, BAD_CAST element);
   xmlTextWriterWriteFormatAttribute(structure->writer, BAD_CAST structure->form->key, "%zu",
                                     unknown + structure->form->first_key);
   if (count <= DEPENDENCY_LIMIT || structure->interface->variables[unknown].entry.is_output)
     write_dependencies(structure, count, initial);
-  for (size_t i = 0; i < count; i++) structure->of_place[structure->places[i]] = INDEPENDENT;
+  for (size_t i = 0; i < count; i++) structure->of_index[structure->indices[i]] = INDEPENDENT;
   xmlTextWriterEndElement(structure->writer);
 }
 
@@ -155,7 +155,7 @@ static void write_unknowns(const struct Structure *structure, int kind,
   if (structure->form->elements[kind] == NULL) return;
   bool open = group == NULL;
   for (size_t i = 0; i < structure->interface->count; i++) {
-    if (!belongs(&structure->interface->variables[i]) || place_of_whole(structure, i) != i) continue;
+    if (!belongs(&structure->interface->variables[i]) || index_of_whole(structure, i) != i) continue;
     if (!open) xmlTextWriterStartElement(structure->writer, BAD_CAST group);
     open = true;
     write_unknown(structure, structure->form->elements[kind], i, initial);
@@ -168,14 +168,14 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Program *progra
   const struct Graph *graph = program->model->graph;
   struct Structure structure = {.form = form, .writer = writer, .interface = interface, .graph = graph};
   structure.dependencies = dependencies_create(program->model, program->equations);
-  structure.place_of = allocate(graph->symbol_count, sizeof *structure.place_of);
-  structure.places = allocate(interface->count, sizeof *structure.places);
-  structure.of_place = allocate(interface->count, sizeof *structure.of_place);
+  structure.variable_of = allocate(graph->symbol_count, sizeof *structure.variable_of);
+  structure.indices = allocate(interface->count, sizeof *structure.indices);
+  structure.of_index = allocate(interface->count, sizeof *structure.of_index);
   for (size_t i = 0; i < interface->count; i++) {
     const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (vertex->operation == SYMBOL && (is_known(entry, false) || is_known(entry, true)))
-      structure.place_of[vertex->left] = i + 1;
+      structure.variable_of[vertex->left] = i + 1;
   }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");
   write_unknowns(&structure, 0, is_output, false);

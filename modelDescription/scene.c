@@ -145,20 +145,20 @@ static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, co
 }
 
 /* Writes a coordinate by its formula, or as a number if that is NULL. */
-static void write_place(xmlTextWriterPtr writer, const char *name, double place, const char *formula) {
+static void write_coordinate(xmlTextWriterPtr writer, const char *name, double coordinate, const char *formula) {
   if (formula != NULL) write_attribute(writer, name, formula);
-  else write_rounded(writer, name, place);
+  else write_rounded(writer, name, coordinate);
 }
 
 static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneJoint *joint,
                         char **formulas) {
   xmlTextWriterStartElement(writer, BAD_CAST "joint");
   write_thing(writer, "of", samples, joint->of);
-  write_place(writer, "x", joint->place[0], formulas[0]);
-  write_place(writer, "y", joint->place[1], formulas[1]);
+  write_coordinate(writer, "x", joint->coordinates[0], formulas[0]);
+  write_coordinate(writer, "y", joint->coordinates[1], formulas[1]);
   write_thing(writer, "with", samples, joint->with);
-  write_place(writer, "withX", joint->place[2], formulas[2]);
-  write_place(writer, "withY", joint->place[3], formulas[3]);
+  write_coordinate(writer, "withX", joint->coordinates[2], formulas[2]);
+  write_coordinate(writer, "withY", joint->coordinates[3], formulas[3]);
   for (size_t i = 0; i < joint->force_count; i++) {
     write_attribute(writer, format_text("force%zu", i + 1), force_name(samples, joint->constraints[i]));
     write_rounded(writer, format_text("x%zu", i + 1), joint->along[i][0]);
@@ -185,7 +185,8 @@ static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model)
   char **formulas = joint_formulas(model, &links);
   struct Surfaces surfaces = find_surfaces(&samples);
   for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);
-  for (size_t i = 0; i < links.joint_count; i++) write_joint(writer, &samples, &links.joints[i], formulas + PLACES * i);
+  for (size_t i = 0; i < links.joint_count; i++)
+    write_joint(writer, &samples, &links.joints[i], formulas + JOINT_COORDINATES * i);
   for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
   release_samples(&samples);
 }

@@ -53,8 +53,8 @@ static void paint(unsigned char *pixel, const unsigned char *colour, double shar
   for (int i = 0; i < 3; i++) pixel[i] = (unsigned char)lround(pixel[i] + share * (colour[i] - pixel[i]));
 }
 
-static double clip(double place) {
-  return fmin(fmax(place, 0.0), SIDE);
+static double clip(double coordinate) {
+  return fmin(fmax(coordinate, 0.0), SIDE);
 }
 
 /* Paints a shape, within its bounding box. */

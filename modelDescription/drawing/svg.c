@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "xml_output.h"
 
-static void write_place(xmlTextWriterPtr writer, const char *name, double pixels) {
+static void write_position(xmlTextWriterPtr writer, const char *name, double pixels) {
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST name, "%.1f", pixels);
 }
 
@@ -23,9 +23,9 @@ static void write_shape(xmlTextWriterPtr writer, const struct Shape *shape) {
   xmlTextWriterStartElement(writer, BAD_CAST(is_dot ? "circle" : shape->is_filled ? "polygon" : "polyline"));
   write_attribute(writer, "class", style->name);
   if (is_dot) {
-    write_place(writer, "cx", shape->points[0].right);
-    write_place(writer, "cy", shape->points[0].up);
-    write_place(writer, "r", style->width / 2.0);
+    write_position(writer, "cx", shape->points[0].right);
+    write_position(writer, "cy", shape->points[0].up);
+    write_position(writer, "r", style->width / 2.0);
   } else {
     write_points(writer, shape);
     write_number(writer, shape->is_filled ? "fill-opacity" : "stroke-width",

@@ -77,15 +77,15 @@ static void append_surface(struct Drawing *drawing, const struct SceneSurface *s
   for (size_t i = 0; i < drawing->count && !surface->is_stop; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
       struct Spot foot = foot_of(surface, drawing->shapes[i].points[j]);
-      double place = (foot.right - surface->point[0]) * along[0] + (foot.up - surface->point[1]) * along[1];
-      low = fmin(low, place - 0.12 * size);
-      high = fmax(high, place + 0.12 * size);
+      double offset = (foot.right - surface->point[0]) * along[0] + (foot.up - surface->point[1]) * along[1];
+      low = fmin(low, offset - 0.12 * size);
+      high = fmax(high, offset + 0.12 * size);
     }
   double depth = 0.05 * size;
   int hatches = surface->is_stop ? HATCHES / 3 : HATCHES;
   for (int i = 0; i <= hatches; i++) {
-    double place = low + (high - low) * i / hatches;
-    struct Spot at = {surface->point[0] + place * along[0], surface->point[1] + place * along[1]};
+    double offset = low + (high - low) * i / hatches;
+    struct Spot at = {surface->point[0] + offset * along[0], surface->point[1] + offset * along[1]};
     struct Spot behind = {at.right - depth * (surface->normal[0] + along[0]),
                           at.up - depth * (surface->normal[1] + along[1])};
     append_line(drawing, GROUND, at, behind);
@@ -153,7 +153,7 @@ static void append_bodies(struct Drawing *drawing, const struct Sight *sight, co
     append_line(drawing, LINK, spot_of(sight, links->rods[i].from), spot_of(sight, links->rods[i].to));
   for (size_t i = 0; i < links->joint_count; i++)
     append_line(drawing, LINK, spot_of(sight, links->joints[i].of),
-                spot_on(sight, links->joints[i].of, links->joints[i].place[0], links->joints[i].place[1]));
+                spot_on(sight, links->joints[i].of, links->joints[i].coordinates[0], links->joints[i].coordinates[1]));
   for (size_t i = 0; i < samples->thing_count; i++)
     if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
 }
@@ -174,7 +174,7 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
   }
   for (size_t i = 0; i < sight->links.joint_count; i++) {
     const struct SceneJoint *joint = &sight->links.joints[i];
-    append_pivot(drawing, spot_on(sight, joint->of, joint->place[0], joint->place[1]));
+    append_pivot(drawing, spot_on(sight, joint->of, joint->coordinates[0], joint->coordinates[1]));
   }
   append_pivot(drawing, spot_of(sight, 0));
 }

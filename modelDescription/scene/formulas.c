@@ -23,16 +23,17 @@ static double change_of(const struct Model *model, size_t parameter) {
 }
 
 /* Returns the coordinates of all joints with changed parameters; NULL if a joint does not exist then. */
-static double *places_with(const struct Model *model, const struct Links *links, const double *changes) {
+static double *coordinates_with(const struct Model *model, const struct Links *links, const double *changes) {
   struct Samples samples = take_samples(model, false, changes);
-  double *places = allocate(PLACES * links->joint_count, sizeof *places);
-  for (size_t i = 0; i < links->joint_count && places != NULL; i++) {
+  double *coordinates = allocate(JOINT_COORDINATES * links->joint_count, sizeof *coordinates);
+  for (size_t i = 0; i < links->joint_count && coordinates != NULL; i++) {
     struct SceneJoint joint = {.of = links->joints[i].of, .with = links->joints[i].with};
-    if (!find_joint(&samples, &joint)) places = NULL;
-    for (int k = 0; k < PLACES && places != NULL; k++) places[PLACES * i + (size_t)k] = joint.place[k];
+    if (!find_joint(&samples, &joint)) coordinates = NULL;
+    for (int k = 0; k < JOINT_COORDINATES && coordinates != NULL; k++)
+      coordinates[JOINT_COORDINATES * i + (size_t)k] = joint.coordinates[k];
   }
   release_samples(&samples);
-  return places;
+  return coordinates;
 }
 
 /* Finds the coefficient of each parameter in each coordinate, a row each. Returns false if a joint vanishes. */
@@ -42,19 +43,20 @@ static bool find_multiples(const struct Model *model, const struct Links *links,
     double *changes = allocate(count, sizeof *changes);
     changes[p] = change_of(model, p);
     if (changes[p] == 0.0) continue;
-    double *places = places_with(model, links, changes);
-    if (places == NULL) return false;
-    for (size_t i = 0; i < PLACES * links->joint_count; i++)
-      multiples[i * count + p] = (places[i] - links->joints[i / PLACES].place[i % PLACES]) / changes[p];
+    double *coordinates = coordinates_with(model, links, changes);
+    if (coordinates == NULL) return false;
+    for (size_t i = 0; i < JOINT_COORDINATES * links->joint_count; i++)
+      multiples[i * count + p] =
+          (coordinates[i] - links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]) / changes[p];
   }
   return true;
 }
 
 /* True if the coefficients predict the coordinate, to 1e-7, when all parameters change. */
-static bool is_sum(const double *multiples, const double *changes, size_t count, double start, double place) {
-  double expected = start, size = fabs(start) + fabs(place);
+static bool is_sum(const double *multiples, const double *changes, size_t count, double start, double coordinates) {
+  double expected = start, size = fabs(start) + fabs(coordinates);
   for (size_t p = 0; p < count; p++) expected += multiples[p] * changes[p];
-  return fabs(place - expected) <= 1e-7 * size;
+  return fabs(coordinates - expected) <= 1e-7 * size;
 }
 
 static char *sum_as_text(const struct Model *model, const double *multiples, double start) {
@@ -76,22 +78,25 @@ static char *sum_as_text(const struct Model *model, const double *multiples, dou
 }
 
 char **joint_formulas(const struct Model *model, const struct Links *links) {
-  size_t count = model->parameters.count, place_count = PLACES * links->joint_count;
-  char **formulas = allocate(place_count + 1, sizeof *formulas);
-  double *multiples = allocate(place_count * count + 1, sizeof *multiples);
+  size_t count = model->parameters.count, coordinate_count = JOINT_COORDINATES * links->joint_count;
+  char **formulas = allocate(coordinate_count + 1, sizeof *formulas);
+  double *multiples = allocate(coordinate_count * count + 1, sizeof *multiples);
   if (links->joint_count == 0 || count > MOST_PARAMETERS || !find_multiples(model, links, multiples)) return formulas;
-  bool *holds = allocate(place_count, sizeof *holds);
-  for (size_t i = 0; i < place_count; i++) holds[i] = true;
+  bool *holds = allocate(coordinate_count, sizeof *holds);
+  for (size_t i = 0; i < coordinate_count; i++) holds[i] = true;
   for (int trial = 0; trial < TRIALS; trial++) {
     double *changes = allocate(count, sizeof *changes);
     for (size_t p = 0; p < count; p++)
       changes[p] = change_of(model, p) * sin(1.0 + 1.7 * (double)(p + 1) * (trial + 1));
-    double *places = places_with(model, links, changes);
-    for (size_t i = 0; i < place_count; i++)
-      holds[i] &= places != NULL &&
-                  is_sum(multiples + i * count, changes, count, links->joints[i / PLACES].place[i % PLACES], places[i]);
+    double *coordinates = coordinates_with(model, links, changes);
+    for (size_t i = 0; i < coordinate_count; i++)
+      holds[i] &= coordinates != NULL &&
+                  is_sum(multiples + i * count, changes, count,
+                         links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES], coordinates[i]);
   }
-  for (size_t i = 0; i < place_count; i++)
-    if (holds[i]) formulas[i] = sum_as_text(model, multiples + i * count, links->joints[i / PLACES].place[i % PLACES]);
+  for (size_t i = 0; i < coordinate_count; i++)
+    if (holds[i])
+      formulas[i] = sum_as_text(model, multiples + i * count,
+                                links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]);
   return formulas;
 }

@@ -167,11 +167,11 @@ bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
   struct LeastSquares system = least_squares_create(2 * samples->count, columns);
   double *solution = allocate(columns, sizeof *solution);
   fill_joint(samples, joint, &system);
-  if (!least_squares_solve(&system, PLACES, solution)) return false;
-  for (int i = 0; i < PLACES; i++) joint->place[i] = solution[i];
+  if (!least_squares_solve(&system, JOINT_COORDINATES, solution)) return false;
+  for (int i = 0; i < JOINT_COORDINATES; i++) joint->coordinates[i] = solution[i];
   bool is_loose = joint->with != 0 && !samples->things[joint->with].is_planar && hypot(solution[2], solution[3]) > 1e-9;
   if (is_loose) return false; /* a particle has no other points */
-  set_forces(samples, solution + PLACES, joint);
+  set_forces(samples, solution + JOINT_COORDINATES, joint);
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include "samples.h"
 
 /* Constraint forces in a planar joint, and coordinates of its point on both objects. */
-enum { FORCES = 2, PLACES = 4 };
+enum { FORCES = 2, JOINT_COORDINATES = 4 };
 
 /* Two objects at constant distance. Its compressive force, in N, is factor times the force of the constraint. */
 struct Rod {
@@ -19,7 +19,7 @@ struct Rod {
 struct SceneJoint {
   size_t of, with;
   /* m: x, y along the body's axes; then x, y along those of the other planar body, or from another object */
-  double place[PLACES];
+  double coordinates[JOINT_COORDINATES];
   size_t force_count;
   size_t constraints[FORCES]; /* indices in the model */
   double along[FORCES][2];    /* N along x and y for a constraint force of 1 */

@@ -15,8 +15,9 @@ enum { BASE = 0, FEWEST = 8, MOST_CONSTRAINTS = 16 };
 /* Returns the node of NAME.x, NAME.y or NAME.z; ZERO for none. */
 static Node component(const struct Model *model, const char *name, const char *axis) {
   char *full = format_text("%s.%s", name, axis);
-  for (size_t i = 0; i < model->mechanism.places.count; i++)
-    if (strcmp(model->mechanism.places.items[i].name, full) == 0) return model->mechanism.places.items[i].node;
+  for (size_t i = 0; i < model->mechanism.element_variables.count; i++)
+    if (strcmp(model->mechanism.element_variables.items[i].name, full) == 0)
+      return model->mechanism.element_variables.items[i].node;
   return ZERO;
 }
 

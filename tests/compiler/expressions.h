@@ -36,8 +36,8 @@ static inline struct Expressions expressions_create(void) {
 /* Parses an expression; errors are counted in e->diagnostics. */
 static inline Node parse(struct Expressions *e, const char *text) {
   e->scope->diagnostics = &e->diagnostics;
-  struct Place place = {.line = 1, .what = "the test", .kinds = 1u << COORDINATE};
-  return parse_expression(e->scope, text, place).node;
+  struct Location location = {.line = 1, .what = "the test", .kinds = 1u << COORDINATE};
+  return parse_expression(e->scope, text, location).node;
 }
 
 static inline double value_at(const struct Expressions *e, Node node, double x, double y, double z) {

@@ -12,12 +12,12 @@ static const char *const functions[] = {
 
 /* Returns a difference quotient of fourth order. */
 static double quotient(const struct Expressions *e, Node node, const double *at, int which) {
-  static const double weights[] = {1.0, -8.0, 8.0, -1.0}, places[] = {-2, -1, 1, 2};
+  static const double weights[] = {1.0, -8.0, 8.0, -1.0}, points[] = {-2, -1, 1, 2};
   const double h = 1e-3;
   double sum = 0.0;
   for (int i = 0; i < 4; i++) {
     double point[3] = {at[0], at[1], at[2]};
-    point[which] += places[i] * h;
+    point[which] += points[i] * h;
     sum += weights[i] * value_at(e, node, point[0], point[1], point[2]);
   }
   return sum / (12 * h);

@@ -158,8 +158,8 @@ static void test_linearization(void **state) {
   } cases[] = {{linear->kinetic, kinetic_of_cart, 2},
                {linear->potential, potential_of_cart, 2},
                {linear->outputs[0], output_of_cart, 1},
-               {linear->places[1] /* cart.angle */, angle_of_cart, 1},
-               {linear->places[2] /* bob.x */, bob_of_cart, 1}};
+               {linear->element_variables[1] /* cart.angle */, angle_of_cart, 1},
+               {linear->element_variables[2] /* bob.x */, bob_of_cart, 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
     assert_value(&cart, cases[i].node, at, 5, polynomial(cases[i].of, &point, &deviation, cases[i].order), 1e-8);
 }

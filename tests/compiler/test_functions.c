@@ -98,8 +98,8 @@ static const struct Reference {
     {"gauss", "random_gauss", NULL, gauss_of, NULL, NULL},
 };
 
-static const double places[] = {-2.7, -1.9, -1.3, -0.95, -0.6, -0.2, 0.25, 0.55, 0.9, 1.4, 2.1, 2.8};
-enum { PLACES = sizeof places / sizeof *places };
+static const double points[] = {-2.7, -1.9, -1.3, -0.95, -0.6, -0.2, 0.25, 0.55, 0.9, 1.4, 2.1, 2.8};
+enum { POINTS = sizeof points / sizeof *points };
 
 static bool is_leaf(enum Operation operation) {
   return operation == CONSTANT || operation == SYMBOL;
@@ -134,21 +134,21 @@ static void assert_near(double found, double expected, const char *what, enum Op
 }
 
 /* Calls test for each operation, at pairs of values in its domain. */
-static void at_places(void (*test)(struct Expressions *e, Node node, double x, double y)) {
+static void at_points(void (*test)(struct Expressions *e, Node node, double x, double y)) {
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
     if (is_leaf(operation)) continue;
     const struct Reference *reference = reference_of(operation);
     struct Expressions e = expressions_create();
     Node node = graph_node(e.graph, operation, e.x, reference->of_two != NULL ? e.y : ZERO);
     int tested = 0;
-    for (int i = 0; i < PLACES; i++) {
-      for (int j = 0; j < PLACES; j++) {
-        if (i == j || isnan(value(reference, places[i], places[j]))) continue;
-        test(&e, node, places[i], places[j]);
+    for (int i = 0; i < POINTS; i++) {
+      for (int j = 0; j < POINTS; j++) {
+        if (i == j || isnan(value(reference, points[i], points[j]))) continue;
+        test(&e, node, points[i], points[j]);
         tested++;
       }
     }
-    assert_true(tested > PLACES);
+    assert_true(tested > POINTS);
   }
 }
 
@@ -232,7 +232,7 @@ static void check_value(struct Expressions *e, Node node, double x, double y) {
 
 static void test_values(void **state) {
   (void)state;
-  at_places(check_value);
+  at_points(check_value);
 }
 
 static void check_derivative(struct Expressions *e, Node node, double x, double y) {
@@ -248,7 +248,7 @@ static void check_derivative(struct Expressions *e, Node node, double x, double 
 
 static void test_derivatives(void **state) {
   (void)state;
-  at_places(check_derivative);
+  at_points(check_derivative);
 }
 
 /* Checks the equation of enum Recurrence. */
@@ -284,7 +284,7 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
 
 static void test_recurrences(void **state) {
   (void)state;
-  at_places(check_recurrence);
+  at_points(check_recurrence);
 }
 
 static void test_auxiliaries_of_powers(void **state) {
@@ -311,9 +311,9 @@ static void test_parity_and_sign(void **state) {
     if (is_leaf(operation) || functions[operation].recurrence == ARITHMETIC) continue;
     const struct Reference *reference = reference_of(operation);
     bool is_odd = reference->of_one != NULL, is_even = is_odd, is_never_negative = true;
-    for (int i = 0; i < PLACES; i++) {
-      for (int j = 0; j < PLACES; j++) {
-        long double here = value(reference, places[i], places[j]), there = value(reference, -places[i], places[j]);
+    for (int i = 0; i < POINTS; i++) {
+      for (int j = 0; j < POINTS; j++) {
+        long double here = value(reference, points[i], points[j]), there = value(reference, -points[i], points[j]);
         is_never_negative = is_never_negative && !(here < 0);
         if (isnan(here) && isnan(there)) continue;
         is_odd = is_odd && fabsl(here + there) < 1e-15L;
@@ -334,10 +334,10 @@ static void test_units(void **state) {
     if (is_leaf(operation) || functions[operation].recurrence == ARITHMETIC) continue;
     const struct Reference *reference = reference_of(operation);
     bool is_kept = true, is_lost = true;
-    for (int i = 0; i < PLACES; i++) {
-      for (int j = 0; j < PLACES; j++) {
-        long double here = value(reference, places[i], places[j]);
-        long double halved = value(reference, places[i] / 2, places[j] / 2);
+    for (int i = 0; i < POINTS; i++) {
+      for (int j = 0; j < POINTS; j++) {
+        long double here = value(reference, points[i], points[j]);
+        long double halved = value(reference, points[i] / 2, points[j] / 2);
         if (isnan(here) && isnan(halved)) continue;
         is_kept = is_kept && fabsl(halved - here / 2) < 1e-15L;
         is_lost = is_lost && fabsl(halved - here) < 1e-15L;
@@ -384,8 +384,8 @@ static void test_pieces(void **state) {
     const struct Reference *reference = reference_of(operation);
     const long double h = 1e-6L;
     bool has_pieces = false;
-    for (int j = 0; j < PLACES; j++) {
-      long double y = places[j], x = reference->of_one != NULL ? 0 : y; /* a pole at 0 is neither */
+    for (int j = 0; j < POINTS; j++) {
+      long double y = points[j], x = reference->of_one != NULL ? 0 : y; /* a pole at 0 is neither */
       long double below = value(reference, x - h, y), at = value(reference, x, y), above = value(reference, x + h, y);
       has_pieces = has_pieces || fabsl(above - 2 * at + below) > h / 10 || fabsl(above - below) > 0.5L;
     }

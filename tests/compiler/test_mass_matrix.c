@@ -92,22 +92,22 @@ static size_t check_sparse(size_t n, const struct Position *positions, size_t co
   double full[SPARSE][SPARSE] = {{0}}, m[POSITIONS] = {0}, x[SPARSE], expected[SPARSE];
   struct Graph *graph = graph_create();
   struct Elimination elimination = eliminate(graph, n, n, positions, count);
-  size_t place[SPARSE], *start = elimination.start, *column = elimination.column;
-  for (size_t i = 0; i < n; i++) place[elimination.order[i]] = i;
+  size_t index[SPARSE], *start = elimination.start, *column = elimination.column;
+  for (size_t i = 0; i < n; i++) index[elimination.order[i]] = i;
   for (size_t k = 0; k < count; k++) {
     size_t i = positions[k].row, j = positions[k].column;
     double value = i == j ? 2.0 * SPARSE : (double)next(&seed) / 32768.0 - 1.0;
     full[i][j] = full[j][i] = value;
-    size_t row = place[i] > place[j] ? place[i] : place[j], found = start[row];
-    while (found < start[row + 1] && column[found] != (place[i] < place[j] ? place[i] : place[j])) found++;
+    size_t row = index[i] > index[j] ? index[i] : index[j], found = start[row];
+    while (found < start[row + 1] && column[found] != (index[i] < index[j] ? index[i] : index[j])) found++;
     assert_true(found < start[row + 1]);
     m[found] = value;
   }
-  for (size_t i = 0; i < n; i++) x[place[i]] = expected[i] = (double)i - 7.5;
+  for (size_t i = 0; i < n; i++) x[index[i]] = expected[i] = (double)i - 7.5;
   solve_by_gauss(n, full, expected);
   assert_int_equal(ldlt_factor(n, start, column, m), 0);
   ldlt_solve(n, start, column, m, x);
-  for (size_t i = 0; i < n; i++) assert_true(fabs(x[place[i]] - expected[i]) < 1e-13);
+  for (size_t i = 0; i < n; i++) assert_true(fabs(x[index[i]] - expected[i]) < 1e-13);
   size_t elements = start[n];
   return elements;
 }

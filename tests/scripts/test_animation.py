@@ -52,7 +52,7 @@ def at(page, sample):
     return page.evaluate("place => live.history.time(place)", sample)
 
 
-def place_of(page, name):
+def position_of(page, name):
     return np.array(page.evaluate(MATRIX, name))[12:15]
 
 
@@ -84,7 +84,7 @@ def test_a_pendulum(browser, tmp_path):
         for sample in (0, 33, 425, 1000):
             time = at(page, sample)
             theta = pendulum_angle(2.0, math.sqrt(9.81 / 0.5), time)
-            bob = place_of(page, "bob")
+            bob = position_of(page, "bob")
             assert bob == pytest.approx([0.5 * math.sin(theta), -0.5 * math.cos(theta), 0.0], abs=1e-6), time
             assert page.evaluate("live.scene.rods[0].mesh.scale.y") == pytest.approx(0.5, rel=1e-6)
             assert page.evaluate("live.scene.rods[0].mesh.position.toArray()") == pytest.approx(list(bob / 2), abs=1e-6)
@@ -109,7 +109,7 @@ def test_frames(browser, arm, tmp_path, version):
         assert page.evaluate("live.scene.plane") is None and page.evaluate("live.scene.up") == [0, 1, 0]
         for sample in (0, 100, 250):
             at(page, sample)
-            tip, slide, load, block = (place_of(page, name) for name in ("tip", "slide", "load", "block"))
+            tip, slide, load, block = (position_of(page, name) for name in ("tip", "slide", "load", "block"))
             assert np.linalg.norm(tip) == pytest.approx(0.7, abs=1e-6) and np.cross(tip, slide) == pytest.approx(np.zeros(3), abs=1e-6)
             assert load - slide == pytest.approx([0, -0.1, 0], abs=1e-6) and block == pytest.approx(slide, abs=1e-6)
             along, _, down = axes_of(page, "slide")

@@ -9,27 +9,27 @@ struct Cone *cone_create(void) {
 
 void cone_release(struct Cone *cone) {
   release(cone->nodes);
-  release(cone->place);
+  release(cone->index);
   release(cone);
 }
 
 bool cone_has(const struct Cone *cone, Node node) {
   if (node >= cone->capacity) return false;
-  size_t place = cone->place[node];
-  return place < cone->count && cone->nodes[place] == node;
+  size_t index = cone->index[node];
+  return index < cone->count && cone->nodes[index] == node;
 }
 
 size_t cone_slot(const struct Cone *cone, Node node) {
-  return cone->place[node];
+  return cone->index[node];
 }
 
 /*
- * Adds a node. The set is a sparse set, which needs no clearing: place[] of other nodes may hold any number (P. Briggs,
+ * Adds a node. The set is a sparse set, which needs no clearing: index[] of other nodes may hold any number (P. Briggs,
  * L. Torczon: An efficient representation for sparse sets, ACM Letters on Programming Languages and Systems 2, 1993).
  */
 static void add(struct Cone *cone, Node node) {
   if (cone_has(cone, node)) return;
-  cone->place[node] = cone->count;
+  cone->index[node] = cone->count;
   cone->nodes[cone->count++] = node;
 }
 
@@ -37,8 +37,8 @@ static void grow(struct Cone *cone, size_t capacity) {
   if (capacity <= cone->capacity) return;
   capacity += capacity / 2;
   cone->nodes = reallocate(cone->nodes, capacity, sizeof *cone->nodes);
-  cone->place = reallocate(cone->place, capacity, sizeof *cone->place);
-  for (size_t i = cone->capacity; i < capacity; i++) cone->place[i] = 0;
+  cone->index = reallocate(cone->index, capacity, sizeof *cone->index);
+  for (size_t i = cone->capacity; i < capacity; i++) cone->index[i] = 0;
   cone->capacity = capacity;
 }
 
@@ -55,19 +55,19 @@ static void sort(struct Cone *cone) {
   }
   if (cone->count == 0 || (last - first) / SPARSENESS > cone->count) {
     sort_nodes(cone->nodes, cone->count);
-    for (size_t i = 0; i < cone->count; i++) cone->place[cone->nodes[i]] = i;
+    for (size_t i = 0; i < cone->count; i++) cone->index[cone->nodes[i]] = i;
     return;
   }
   size_t count = 0;
   for (Node node = first; count < cone->count; node++) {
     /* Members below node are sorted, in nodes[0] to nodes[count - 1]; the others exchange places with them. */
     if (!cone_has(cone, node)) continue;
-    size_t place = cone->place[node];
+    size_t index = cone->index[node];
     Node other = cone->nodes[count];
-    cone->nodes[place] = other;
-    cone->place[other] = place;
+    cone->nodes[index] = other;
+    cone->index[other] = index;
     cone->nodes[count] = node;
-    cone->place[node] = count++;
+    cone->index[node] = count++;
   }
 }
 

@@ -55,12 +55,12 @@ void derivative_along(struct Graph *graph, const Node *targets, size_t count, co
   if (graph_limit(graph) != NULL) count = 0; /* results then have no meaning */
   cone_collect(cone, graph, targets, count);
   Node *along = allocate(cone->count, sizeof *along);
-  for (size_t place = 0; place < cone->count; place++) {
-    const struct Vertex vertex = graph->vertices[cone->nodes[place]];
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[index]];
     int arity = operation_arity(vertex.operation);
-    if (vertex.operation == SYMBOL) along[place] = seeds[vertex.left];
+    if (vertex.operation == SYMBOL) along[index] = seeds[vertex.left];
     if (arity == 0) continue;
-    along[place] = along_operands(graph, cone->nodes[place], along[cone_slot(cone, vertex.left)],
+    along[index] = along_operands(graph, cone->nodes[index], along[cone_slot(cone, vertex.left)],
                                   arity == 2 ? along[cone_slot(cone, vertex.right)] : ZERO);
   }
   for (size_t i = 0; i < count; i++) derivatives[i] = along[cone_slot(cone, targets[i])];
@@ -87,8 +87,8 @@ void derivatives_find(struct Graph *graph, const Node *targets, size_t count, co
   if (graph_limit(graph) != NULL) return;
   make_room_for(known, graph->count);
   cone_collect_part(cone, graph, targets, count, visit_unknown, known);
-  for (size_t place = 0; place < cone->count; place++) {
-    Node node = cone->nodes[place];
+  for (size_t index = 0; index < cone->count; index++) {
+    Node node = cone->nodes[index];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
     if (known->is_known[node]) continue;
@@ -121,13 +121,13 @@ static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node
 static struct Gradient take_symbols(const struct Graph *graph, unsigned kinds, const Node *adjoint) {
   const struct Cone *cone = graph->cone;
   struct Gradient gradient = {NULL, NULL, 0};
-  for (size_t place = 0; place < cone->count; place++) {
-    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
-    if (vertex->operation != SYMBOL || (vertex->kinds & kinds) == 0 || adjoint[place] == ZERO) continue;
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[index]];
+    if (vertex->operation != SYMBOL || (vertex->kinds & kinds) == 0 || adjoint[index] == ZERO) continue;
     gradient.symbols = make_room(gradient.symbols, gradient.count, sizeof(Node));
     gradient.values = make_room(gradient.values, gradient.count, sizeof(Node));
-    gradient.symbols[gradient.count] = cone->nodes[place];
-    gradient.values[gradient.count++] = adjoint[place];
+    gradient.symbols[gradient.count] = cone->nodes[index];
+    gradient.values[gradient.count++] = adjoint[index];
   }
   return gradient;
 }
@@ -144,19 +144,19 @@ struct Gradient weighted_gradient(struct Graph *graph, const Node *targets, cons
   cone_collect_part(cone, graph, targets, count, visit_kinds, &kinds);
   Node *adjoint = allocate(cone->count, sizeof *adjoint);
   for (size_t k = 0; k < count; k++) add_adjoint(graph, kinds, adjoint, targets[k], weights[k], ONE);
-  for (size_t place = cone->count; place-- > 0;) {
-    Node node = cone->nodes[place];
+  for (size_t index = cone->count; index-- > 0;) {
+    Node node = cone->nodes[index];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
-    if (adjoint[place] == ZERO || arity == 0) continue;
+    if (adjoint[index] == ZERO || arity == 0) continue;
     if (vertex.operation == GUARD) {
-      add_adjoint(graph, kinds, adjoint, vertex.right, function(graph, GUARD, vertex.left, adjoint[place]), ONE);
+      add_adjoint(graph, kinds, adjoint, vertex.right, function(graph, GUARD, vertex.left, adjoint[index]), ONE);
       continue;
     }
     Node by_left, by_right;
     partial_derivatives(graph, node, &by_left, &by_right);
-    add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[place], by_left);
-    if (arity == 2) add_adjoint(graph, kinds, adjoint, vertex.right, adjoint[place], by_right);
+    add_adjoint(graph, kinds, adjoint, vertex.left, adjoint[index], by_left);
+    if (arity == 2) add_adjoint(graph, kinds, adjoint, vertex.right, adjoint[index], by_right);
   }
   struct Gradient gradient = take_symbols(graph, kinds, adjoint);
   release(adjoint);
@@ -195,19 +195,19 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, targets, count);
   Node *mapped = allocate(cone->count, sizeof *mapped);
-  for (size_t place = 0; place < cone->count; place++) {
-    Node node = cone->nodes[place];
+  for (size_t index = 0; index < cone->count; index++) {
+    Node node = cone->nodes[index];
     const struct Vertex vertex = graph->vertices[node];
     int arity = operation_arity(vertex.operation);
     Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
     Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO;
     switch (vertex.operation) {
-    case CONSTANT: mapped[place] = node; break;
-    case SYMBOL: mapped[place] = replacements[vertex.left]; break;
-    case ADD: mapped[place] = add(graph, left, right); break;
-    case MULTIPLY: mapped[place] = multiply(graph, left, right); break;
-    case POWER: mapped[place] = power(graph, left, right); break;
-    default: mapped[place] = function(graph, vertex.operation, left, right); break;
+    case CONSTANT: mapped[index] = node; break;
+    case SYMBOL: mapped[index] = replacements[vertex.left]; break;
+    case ADD: mapped[index] = add(graph, left, right); break;
+    case MULTIPLY: mapped[index] = multiply(graph, left, right); break;
+    case POWER: mapped[index] = power(graph, left, right); break;
+    default: mapped[index] = function(graph, vertex.operation, left, right); break;
     }
   }
   for (size_t i = 0; i < count; i++) results[i] = mapped[cone_slot(cone, targets[i])];

@@ -53,9 +53,9 @@ static bool same(const struct Vertex *a, const struct Vertex *b) {
 }
 
 static void insert(struct Graph *graph, Node node) {
-  size_t place = hash(&graph->vertices[node]) & (graph->bucket_count - 1);
-  while (graph->buckets[place] != 0) place = (place + 1) & (graph->bucket_count - 1);
-  graph->buckets[place] = node + 1;
+  size_t bucket = hash(&graph->vertices[node]) & (graph->bucket_count - 1);
+  while (graph->buckets[bucket] != 0) bucket = (bucket + 1) & (graph->bucket_count - 1);
+  graph->buckets[bucket] = node + 1;
 }
 
 static void grow(struct Graph *graph) {
@@ -79,9 +79,9 @@ const char *graph_limit(const struct Graph *graph) {
 
 static Node intern(struct Graph *graph, struct Vertex vertex) {
   graph_work(graph, 2); /* the cost of the algebra around it */
-  size_t place = hash(&vertex) & (graph->bucket_count - 1);
-  for (; graph->buckets[place] != 0; place = (place + 1) & (graph->bucket_count - 1)) {
-    Node node = graph->buckets[place] - 1;
+  size_t bucket = hash(&vertex) & (graph->bucket_count - 1);
+  for (; graph->buckets[bucket] != 0; bucket = (bucket + 1) & (graph->bucket_count - 1)) {
+    Node node = graph->buckets[bucket] - 1;
     if (same(&graph->vertices[node], &vertex)) return node;
   }
   graph->overflow = graph->overflow || graph->count >= NODE_LIMIT;

@@ -273,12 +273,12 @@ static bool join(struct Graph *graph, struct Factor left, struct Factor right, s
 }
 
 /* Returns the product of the factors, with the exponent of one of them reduced. */
-static Node remaining(struct Graph *graph, const struct Factor *factors, int count, int place, double less) {
+static Node remaining(struct Graph *graph, const struct Factor *factors, int count, int index, double less) {
   struct Factor rest[FACTOR_LIMIT];
   int rest_count = 0;
   for (int i = 0; i < count; i++) {
     struct Factor factor = factors[i];
-    if (i == place) factor.exponent -= less;
+    if (i == index) factor.exponent -= less;
     if (factor.exponent != 0.0) rest[rest_count++] = factor;
   }
   return product_of(graph, rest, rest_count);

@@ -27,13 +27,13 @@ void rounding_bounds_of(struct Graph *graph, const Node *targets, size_t count, 
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, targets, count);
   Node *rounding = allocate(cone->count, sizeof *rounding);
-  for (size_t place = 0; place < cone->count; place++) {
-    const struct Vertex vertex = graph->vertices[cone->nodes[place]];
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[index]];
     int arity = operation_arity(vertex.operation);
     if (arity == 0 || graph_limit(graph) != NULL) continue;
     Node left = rounding[cone_slot(cone, vertex.left)];
     Node right = arity == 2 ? rounding[cone_slot(cone, vertex.right)] : ZERO;
-    rounding[place] = rounding_of(graph, cone->nodes[place], left, right);
+    rounding[index] = rounding_of(graph, cone->nodes[index], left, right);
   }
   for (size_t i = 0; i < count; i++) rounding_bounds[i] = rounding[cone_slot(cone, targets[i])];
 }

@@ -40,15 +40,15 @@ Node scale(struct Graph *graph, double factor, Node node) {
 }
 
 static int insert_factor(struct Factor factors[FACTOR_LIMIT], int count, Node base, double exponent) {
-  int place = 0;
-  while (place < count && factors[place].base < base) place++;
-  if (place < count && factors[place].base == base) {
-    factors[place].exponent += exponent;
+  int index = 0;
+  while (index < count && factors[index].base < base) index++;
+  if (index < count && factors[index].base == base) {
+    factors[index].exponent += exponent;
     return count;
   }
   if (count == FACTOR_LIMIT) return -1;
-  for (int i = count; i > place; i--) factors[i] = factors[i - 1];
-  factors[place] = (struct Factor){base, exponent};
+  for (int i = count; i > index; i--) factors[i] = factors[i - 1];
+  factors[index] = (struct Factor){base, exponent};
   return count + 1;
 }
 

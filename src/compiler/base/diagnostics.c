@@ -48,12 +48,12 @@ static struct FileLine file_line(const struct Diagnostics *diagnostics, long lin
   return (struct FileLine){diagnostics->file, diagnostics->origin, line};
 }
 
-static void print_message(const struct FileLine *place, const char *kind, const char *text) {
-  fprintf(stderr, "%s:", place->file);
-  if (place->line > 0) fprintf(stderr, "%ld:", place->line);
+static void print_message(const struct FileLine *location, const char *kind, const char *text) {
+  fprintf(stderr, "%s:", location->file);
+  if (location->line > 0) fprintf(stderr, "%ld:", location->line);
   fprintf(stderr, " %s", kind);
   print_text(text);
-  fprintf(stderr, "%s\n", place->origin != NULL ? place->origin : "");
+  fprintf(stderr, "%s\n", location->origin != NULL ? location->origin : "");
 }
 
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...) {
@@ -75,17 +75,18 @@ static bool note_reported(struct Diagnostics *diagnostics, char *error) {
 
 /* One text may be read in several contexts, such as the stiffness of a spring; its error is reported once. */
 void report_error_of(struct Diagnostics *diagnostics, long line, const char *format, va_list arguments) {
-  struct FileLine place = file_line(diagnostics, line);
-  char *text = format_arguments(format, arguments), *error = format_text("%s:%ld:%s", place.file, place.line, text);
-  if (note_reported(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&place, "", text);
+  struct FileLine location = file_line(diagnostics, line);
+  char *text = format_arguments(format, arguments),
+       *error = format_text("%s:%ld:%s", location.file, location.line, text);
+  if (note_reported(diagnostics, error) && diagnostics->errors < ERROR_LIMIT) print_message(&location, "", text);
   if (++diagnostics->errors == ERROR_LIMIT + 1)
     fprintf(stderr, "%s: more errors follow; correct these first\n", diagnostics->file);
 }
 
 static void report_kind(const struct Diagnostics *diagnostics, long line, const char *kind, const char *format,
                         va_list arguments) {
-  struct FileLine place = file_line(diagnostics, line);
-  print_message(&place, kind, format_arguments(format, arguments));
+  struct FileLine location = file_line(diagnostics, line);
+  print_message(&location, kind, format_arguments(format, arguments));
 }
 
 void report_note(const struct Diagnostics *diagnostics, long line, const char *format, ...) {

@@ -7,9 +7,9 @@
 
 /* Returns the text without any "[index]". */
 static char *without_index(const char *text, size_t index) {
-  char *subscript = format_text("[%zu]", index), *copy = copy_text(text), *place = copy;
+  char *subscript = format_text("[%zu]", index), *copy = copy_text(text), *found = copy;
   size_t length = strlen(subscript);
-  while ((place = strstr(place, subscript)) != NULL) memmove(place, place + length, strlen(place + length) + 1);
+  while ((found = strstr(found, subscript)) != NULL) memmove(found, found + length, strlen(found + length) + 1);
   return copy;
 }
 
@@ -62,12 +62,12 @@ static bool has_element(const struct Interface *interface, const char *first, si
  * Returns the number of elements of the array that begins with the variable; 0 for none. Event indicators stay scalars,
  * as importers expect.
  */
-static size_t count_elements(const struct Interface *interface, size_t place) {
-  const struct InterfaceVariable *first = &interface->variables[place];
+static size_t count_elements(const struct Interface *interface, size_t found) {
+  const struct InterfaceVariable *first = &interface->variables[found];
   const char *name = first->entry.name;
   size_t count = 0;
   if (first->entry.kind == VARIABLE_INDICATOR || !is_element(name, 1)) return 0;
-  for (; place + count < interface->count; count++) {
+  for (; found + count < interface->count; count++) {
     const char *next = first[count].entry.name;
     if (!is_element(next, count + 1) || !are_same_text(name, 1, next, count + 1)) break;
     if (!are_alike(first, &first[count], count + 1)) return 0;

@@ -51,14 +51,14 @@ static void descend(struct Dependencies *dependencies, Node target, enum Depende
   cone_collect(graph->cone, graph, &target, 1);
   enum Dependency *on = allocate(cone->count, sizeof *on);
   on[cone_slot(cone, target)] = kind;
-  for (size_t place = cone->count; place-- > 0;) {
-    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+  for (size_t index = cone->count; index-- > 0;) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[index]];
     int arity = operation_arity(vertex->operation);
-    if (vertex->operation == SYMBOL) note(dependencies, vertex->left, on[place]);
+    if (vertex->operation == SYMBOL) note(dependencies, vertex->left, on[index]);
     for (int i = 0; i < arity; i++) {
       Node operand = i == 0 ? vertex->left : vertex->right, other = i == 0 ? vertex->right : vertex->left;
       enum Dependency *below = &on[cone_slot(cone, operand)];
-      *below = (enum Dependency)larger(*below, larger(on[place], step_of(graph, vertex->operation, other)));
+      *below = (enum Dependency)larger(*below, larger(on[index], step_of(graph, vertex->operation, other)));
     }
   }
 }
@@ -73,8 +73,8 @@ static const struct SymbolList *symbols_of(struct Dependencies *dependencies, si
   for (size_t i = 0; i < block->count; i++) residuals[i] = dependencies->equations->residual[block->coordinates[i]];
   cone_collect(graph->cone, graph, residuals, block->count);
   list->numbers = allocate(graph->symbol_count, sizeof *list->numbers);
-  for (size_t place = 0; place < graph->cone->count; place++) {
-    const struct Vertex *vertex = &graph->vertices[graph->cone->nodes[place]];
+  for (size_t index = 0; index < graph->cone->count; index++) {
+    const struct Vertex *vertex = &graph->vertices[graph->cone->nodes[index]];
     if (vertex->operation == SYMBOL && (vertex->kinds & 1u << ACCELERATION) == 0)
       list->numbers[list->count++] = vertex->left;
   }

@@ -91,11 +91,12 @@ static bool belong_together(const struct Graph *graph, const struct InterfaceVar
          graph_depends_on(graph, a->node, ACCELERATION) == graph_depends_on(graph, b->node, ACCELERATION);
 }
 
-static void append_places(struct Interface *interface, const struct Model *model, const struct Equations *equations) {
-  for (size_t i = 0; i < model->mechanism.places.count; i++) {
-    const struct Variable *source = &model->mechanism.places.items[i];
+static void append_element_variables(struct Interface *interface, const struct Model *model,
+                                     const struct Equations *equations) {
+  for (size_t i = 0; i < model->mechanism.element_variables.count; i++) {
+    const struct Variable *source = &model->mechanism.element_variables.items[i];
     struct InterfaceVariable *variable =
-        append_result(interface, source->name, source->unit, equations->places[i], source->description);
+        append_result(interface, source->name, source->unit, equations->element_variables[i], source->description);
     variable->is_continued = i > 0 && belong_together(model->graph, variable - 1, variable);
   }
 }
@@ -198,8 +199,8 @@ static bool uses_time(const struct Model *model, const struct Equations *equatio
   for (size_t i = 0; i < row_count(equations); i++) uses |= graph_depends_on(graph, equations->residual[i], TIME);
   for (size_t i = 0; i < model->reactions.count; i++) uses |= graph_depends_on(graph, equations->reactions[i], TIME);
   for (size_t i = 0; i < model->outputs.count; i++) uses |= graph_depends_on(graph, equations->outputs[i], TIME);
-  for (size_t i = 0; i < model->mechanism.places.count; i++)
-    uses |= graph_depends_on(graph, equations->places[i], TIME);
+  for (size_t i = 0; i < model->mechanism.element_variables.count; i++)
+    uses |= graph_depends_on(graph, equations->element_variables[i], TIME);
   return uses;
 }
 
@@ -308,7 +309,7 @@ static void append_time(struct Interface *interface, const struct Model *model) 
 /* Appends the variables of systems with coordinates. */
 static void append_mechanics(struct Interface *interface, const struct Model *model,
                              const struct Equations *equations) {
-  append_places(interface, model, equations);
+  append_element_variables(interface, model, equations);
   append_reactions(interface, model, equations);
   append_constraint_forces(interface, model, equations);
   append_result(interface, "kineticEnergy", "J", equations->kinetic, "kinetic energy");

@@ -10,12 +10,12 @@
 enum { LENGTH_LIMIT = 1000, WORD_BITS = 64 };
 
 static void add_symbol(struct SymbolNames *names, size_t symbol) {
-  size_t place = names->count;
-  while (place > 0 && names->symbols[place - 1] > symbol) place--;
-  if (place > 0 && names->symbols[place - 1] == symbol) return;
+  size_t index = names->count;
+  while (index > 0 && names->symbols[index - 1] > symbol) index--;
+  if (index > 0 && names->symbols[index - 1] == symbol) return;
   names->symbols = make_room(names->symbols, names->count, sizeof *names->symbols);
-  memmove(names->symbols + place + 1, names->symbols + place, (names->count - place) * sizeof *names->symbols);
-  names->symbols[place] = symbol;
+  memmove(names->symbols + index + 1, names->symbols + index, (names->count - index) * sizeof *names->symbols);
+  names->symbols[index] = symbol;
   names->count++;
 }
 
@@ -33,13 +33,13 @@ void symbol_names_add(struct SymbolNames *names, const struct Graph *graph, cons
 static size_t find_symbols_below(const struct Graph *graph, size_t first, uint64_t *below) {
   const struct Cone *cone = graph->cone;
   size_t symbols = 0;
-  for (size_t place = 0; place < cone->count; place++) {
-    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[index]];
     int arity = operation_arity(vertex->operation);
-    below[place] = arity > 0 ? below[cone_slot(cone, vertex->left)] : 0;
-    if (arity == 2) below[place] |= below[cone_slot(cone, vertex->right)];
+    below[index] = arity > 0 ? below[cone_slot(cone, vertex->left)] : 0;
+    if (arity == 2) below[index] |= below[cone_slot(cone, vertex->right)];
     if (vertex->operation != SYMBOL) continue;
-    if (symbols >= first && symbols < first + WORD_BITS) below[place] = (uint64_t)1 << (symbols - first);
+    if (symbols >= first && symbols < first + WORD_BITS) below[index] = (uint64_t)1 << (symbols - first);
     symbols++;
   }
   return symbols;

@@ -60,7 +60,7 @@ static struct Degrees degrees_of(const struct Model *model, Node target) {
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, &target, 1);
   struct Degrees *of = allocate(cone->count, sizeof *of);
-  for (size_t place = 0; place < cone->count; place++) of[place] = degrees_of_vertex(model, cone->nodes[place], of);
+  for (size_t index = 0; index < cone->count; index++) of[index] = degrees_of_vertex(model, cone->nodes[index], of);
   return of[cone_slot(cone, target)];
 }
 

@@ -8,14 +8,15 @@
 struct Equations *equations_create(const struct Model *model) {
   size_t n = model->coordinates.count, rows = n + model->constraints.count;
   struct Equations *equations = allocate(1, sizeof *equations);
-  *equations = (struct Equations){.count = n,
-                                  .constraints = constraints_derive(model),
-                                  .right_side = allocate(rows, sizeof(Node)),
-                                  .residual = allocate(rows, sizeof(Node)),
-                                  .acceleration = allocate(rows, sizeof(Node)),
-                                  .reactions = allocate(model->reactions.count, sizeof(Node)),
-                                  .outputs = allocate(model->outputs.count, sizeof(Node)),
-                                  .places = allocate(model->mechanism.places.count, sizeof(Node))};
+  *equations =
+      (struct Equations){.count = n,
+                         .constraints = constraints_derive(model),
+                         .right_side = allocate(rows, sizeof(Node)),
+                         .residual = allocate(rows, sizeof(Node)),
+                         .acceleration = allocate(rows, sizeof(Node)),
+                         .reactions = allocate(model->reactions.count, sizeof(Node)),
+                         .outputs = allocate(model->outputs.count, sizeof(Node)),
+                         .element_variables = allocate(model->mechanism.element_variables.count, sizeof(Node))};
   return equations;
 }
 

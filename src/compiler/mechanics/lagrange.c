@@ -206,8 +206,8 @@ static Node output_of(const struct Model *model, const Node *reactions, Node nod
 static void copy_outputs(const struct Model *model, struct Equations *equations) {
   for (size_t i = 0; i < model->outputs.count; i++)
     equations->outputs[i] = output_of(model, equations->reactions, model->outputs.items[i].node);
-  for (size_t i = 0; i < model->mechanism.places.count; i++)
-    equations->places[i] = without_branches(model, model->mechanism.places.items[i].node);
+  for (size_t i = 0; i < model->mechanism.element_variables.count; i++)
+    equations->element_variables[i] = without_branches(model, model->mechanism.element_variables.items[i].node);
 }
 
 struct Equations *equations_derive(const struct Model *model, struct Diagnostics *diagnostics) {

@@ -247,8 +247,9 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
     linear->reactions[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->reactions[i]));
   for (size_t i = 0; i < model->outputs.count; i++)
     linear->outputs[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->outputs[i]));
-  for (size_t i = 0; i < model->mechanism.places.count; i++)
-    linear->places[i] = without_unknowns(model, linear, linear->count, expand(expansion, equations->places[i]));
+  for (size_t i = 0; i < model->mechanism.element_variables.count; i++)
+    linear->element_variables[i] =
+        without_unknowns(model, linear, linear->count, expand(expansion, equations->element_variables[i]));
   for (size_t i = 0; i < equations->rates.count; i++)
     append_node(&linear->rates, without_unknowns(model, linear, 0, expand(expansion, equations->rates.nodes[i])));
   linear->power = linear->stated_power = equations->power;

@@ -57,19 +57,19 @@ static struct Components couplings(const struct Matrices *matrices) {
 }
 
 /* Returns the index of each coordinate in its component; counts the coordinates of each component. */
-static size_t *places_in(const struct Components *components, size_t count, size_t *sizes) {
-  size_t *places = allocate(count, sizeof *places);
-  for (size_t i = 0; i < count; i++) places[i] = sizes[components->of[i]]++;
-  return places;
+static size_t *indices_in(const struct Components *components, size_t count, size_t *sizes) {
+  size_t *indices = allocate(count, sizeof *indices);
+  for (size_t i = 0; i < count; i++) indices[i] = sizes[components->of[i]]++;
+  return indices;
 }
 
 /* Adds M, and j^T j for the row j of each regularized constraint, to the dense matrices of the components. */
-static void fill(const struct Matrices *matrices, const struct Components *components, const size_t *places,
+static void fill(const struct Matrices *matrices, const struct Components *components, const size_t *indices,
                  const size_t *sizes, double **dense) {
   const struct Elements *mass = &matrices->mass, *jacobian = &matrices->constraints->jacobian;
   for (size_t k = 0; k < mass->count; k++) {
     size_t i = mass->positions[k].row, component = components->of[i];
-    dense[component][places[i] * sizes[component] + places[mass->positions[k].column]] +=
+    dense[component][indices[i] * sizes[component] + indices[mass->positions[k].column]] +=
         matrices->values[mass->nodes[k]];
   }
   for (size_t k = 0; k < jacobian->count; k++) {
@@ -77,8 +77,8 @@ static void fill(const struct Matrices *matrices, const struct Components *compo
     for (size_t l = k; matrices->is_held[row] && l < jacobian->count && jacobian->positions[l].row == row; l++) {
       size_t j = jacobian->positions[l].column, size = sizes[component];
       double product = matrices->values[jacobian->nodes[k]] * matrices->values[jacobian->nodes[l]];
-      dense[component][places[i] * size + places[j]] += product;
-      if (k != l) dense[component][places[j] * size + places[i]] += product;
+      dense[component][indices[i] * size + indices[j]] += product;
+      if (k != l) dense[component][indices[j] * size + indices[i]] += product;
     }
   }
 }
@@ -130,15 +130,15 @@ static bool hold_motion(struct Matrices *matrices, const double *z) {
 static bool hold_motions(struct Matrices *matrices) {
   size_t n = matrices->count;
   struct Components components = couplings(matrices);
-  size_t *sizes = allocate(components.count, sizeof *sizes), *places = places_in(&components, n, sizes);
+  size_t *sizes = allocate(components.count, sizeof *sizes), *indices = indices_in(&components, n, sizes);
   double **dense = allocate(components.count, sizeof *dense), *z = allocate(n, sizeof *z),
          *all = allocate(n, sizeof *all);
   bool has_changed = false;
   for (size_t c = 0; c < components.count; c++) dense[c] = allocate(sizes[c] * sizes[c], sizeof **dense);
-  fill(matrices, &components, places, sizes, dense);
+  fill(matrices, &components, indices, sizes, dense);
   for (size_t c = 0; c < components.count; c++) {
     if (find_null_vector(sizes[c], dense[c], z)) {
-      for (size_t i = 0; i < n; i++) all[i] = components.of[i] == c ? z[places[i]] : 0.0;
+      for (size_t i = 0; i < n; i++) all[i] = components.of[i] == c ? z[indices[i]] : 0.0;
       has_changed |= hold_motion(matrices, all);
       for (size_t i = 0; i < sizes[c]; i++) z[i] = 0.0;
     }

@@ -145,8 +145,8 @@ struct Mechanism {
   size_t frame_count;
   struct ContactShape *shapes;
   size_t shape_count;
-  struct VariableList places; /* positions and velocities of bodies, frames and points, as nodes */
-  struct Vector gravity;      /* m/s2: the acceleration of <gravity>, along the base's axes */
+  struct VariableList element_variables; /* positions, velocities, lengths and forces of elements, as nodes */
+  struct Vector gravity;                 /* m/s2: the acceleration of <gravity>, along the base's axes */
   struct Regularization *stillnesses;
   size_t regularization_count;
 };

@@ -57,7 +57,7 @@ static Slot side_of(const struct Program *program, size_t coordinate) {
   const struct Inertia *inertia = program->equations->inertia;
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block == inertia_block_of(inertia, coordinate))
-      return slot_in(SPACE_SIDE, program->blocks.items[b].first_side + inertia->place_of[coordinate]);
+      return slot_in(SPACE_SIDE, program->blocks.items[b].first_side + inertia->index_in_block[coordinate]);
   return 0;
 }
 

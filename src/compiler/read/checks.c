@@ -188,7 +188,7 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
 static void warn_of_functions(const struct Reader *reader) {
   const struct Names *functions = reader->scope->functions;
   for (size_t i = 0; i < functions->capacity; i++) {
-    const struct NamedFunction *function = functions->places[i].meaning;
+    const struct NamedFunction *function = functions->slots[i].meaning;
     if (function != NULL && !function->is_used && *function->prefix == '\0')
       report_warning(reader->diagnostics, function->line,
                      "nothing calls the function '%s', so that its expression is not checked", function->name);

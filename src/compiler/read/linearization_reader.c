@@ -51,8 +51,8 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   if (model->point.given[symbol])
     report_error(diagnostics, line, "the point names '%s' twice; expected one value", name);
   struct Dimension dimension = quantity->dimension;
-  struct Place place = {.line = line, .what = name, .kinds = 1u << PARAMETER};
-  struct Quantity parsed = parse_expression(scope, value, place);
+  struct Location location = {.line = line, .what = name, .kinds = 1u << PARAMETER};
+  struct Quantity parsed = parse_expression(scope, value, location);
   const char *problem = format_text("unit mismatch: the value for '%s' has another unit than the variable", name);
   if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension) &&
       !number_may_have_unit(scope, line, parsed, dimension, problem))

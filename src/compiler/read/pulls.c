@@ -9,9 +9,9 @@
 enum { MOST_PULLED = 30 };
 
 struct Pointer {
-  struct Vector place; /* m, position of the pointer */
-  struct Vector held;  /* m, grabbed point relative to the body's position, along the body's axes */
-  Node time;           /* s, ratio of damping to stiffness */
+  struct Vector position; /* m, position of the pointer */
+  struct Vector held;     /* m, grabbed point relative to the body's position, along the body's axes */
+  Node time;              /* s, ratio of damping to stiffness */
 };
 
 static Node append_pull(struct Reader *reader, const char *name, const char *unit) {
@@ -64,16 +64,16 @@ static void pull_body(struct Reader *reader, const struct Body *body, const stru
   for (int axis = 0; axis < 3; axis++) {
     Node point = without_displacements(reader, body->line, body->name, held.along[axis]);
     Node behind = multiply(graph, pointer->time, total_time_derivative(reader->scope, point));
-    Node away = subtract(graph, subtract(graph, pointer->place.along[axis], point), behind);
+    Node away = subtract(graph, subtract(graph, pointer->position.along[axis], point), behind);
     add_force_along(reader, body->line, body->name, held.along[axis], multiply(graph, stiffness, away));
   }
 }
 
 void add_pulls(struct Reader *reader) {
-  static const char *const place[] = {"x", "y", "z"}, *const held[] = {"u", "v", "w"};
+  static const char *const position[] = {"x", "y", "z"}, *const held[] = {"u", "v", "w"};
   struct Model *model = reader->model;
   size_t count = model->mechanism.body_count, every = count / MOST_PULLED + 1;
-  struct Pointer pointer = {.place = append_vector(reader, place), .held = append_vector(reader, held)};
+  struct Pointer pointer = {.position = append_vector(reader, position), .held = append_vector(reader, held)};
   pointer.time = append_pull(reader, "time", "s");
   model->forces.any = true;
   /* Includes the last body: the end of a chain is the natural part to pull. */

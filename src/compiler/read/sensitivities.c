@@ -45,15 +45,15 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   struct Graph *graph = model->graph;
   struct Variable position = derivative_of(model, &model->coordinates.items[of], by);
   struct Variable velocity = derivative_of(model, &model->velocities.items[of], by);
-  size_t place = model->coordinates.count;
-  position.node = graph_symbol(graph, COORDINATE, (int)place, position.name);
-  velocity.node = graph_symbol(graph, VELOCITY, (int)place, velocity.name);
+  size_t index = model->coordinates.count;
+  position.node = graph_symbol(graph, COORDINATE, (int)index, position.name);
+  velocity.node = graph_symbol(graph, VELOCITY, (int)index, velocity.name);
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
   model->sensitivity_count++;
-  model->unknowns.accelerations[place] =
-      graph_symbol(graph, ACCELERATION, (int)place, format_text("der(%s)", velocity.name));
-  model->given.prescribed_motions[place] = (struct PrescribedMotion){.given = true, .reaction = reaction};
+  model->unknowns.accelerations[index] =
+      graph_symbol(graph, ACCELERATION, (int)index, format_text("der(%s)", velocity.name));
+  model->given.prescribed_motions[index] = (struct PrescribedMotion){.given = true, .reaction = reaction};
 }
 
 /* Appends the sensitivity of a state. Its rate is set later. */

@@ -46,7 +46,7 @@ bool value_read(const char *text, const char *unit, struct Diagnostics *diagnost
   if (behind == NULL) {
     struct Scope *scope = scope_create(graph_create(), diagnostics);
     define_language(scope);
-    return parse_number(scope, text, (struct Place){.what = "the value"}, value);
+    return parse_number(scope, text, (struct Location){.what = "the value"}, value);
   }
   if (strcmp(behind, unit) == 0) {
     *value = number;

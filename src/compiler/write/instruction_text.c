@@ -20,7 +20,7 @@ static void write_state(FILE *file, const struct Program *program, const char *d
   else fprintf(file, "%sv[%zu]", direction, index - n);
 }
 
-void write_place(FILE *file, const struct Program *program, Slot slot, enum Role role, const char *target) {
+void write_slot(FILE *file, const struct Program *program, Slot slot, enum Role role, const char *target) {
   static const char *const elements[] = {
       [VALUE] = "[0]",    [COEFFICIENT] = "[k]",          [ROW] = "",
       [ROW_OF_PAST] = "", [NEXT_COEFFICIENT] = "[k + 1]", [PAST_COEFFICIENT] = "[k - 1]"};
@@ -65,8 +65,8 @@ static void write_text(FILE *file, const struct Program *program, const struct I
     if (*text == 'f') fputs(function_in_c(instruction->function), file);
     else if (*text == '(') fputs(opening, file);
     else if (*text == '0' && metadata->result == NUMBER) fprintf(file, "%u", instruction->result);
-    else if (*text == '0') write_place(file, program, instruction->result, metadata->result, target);
-    else write_place(file, program, instruction->operands[*text - '1'], metadata->operands[*text - '1'], target);
+    else if (*text == '0') write_slot(file, program, instruction->result, metadata->result, target);
+    else write_slot(file, program, instruction->operands[*text - '1'], metadata->operands[*text - '1'], target);
   }
 }
 
@@ -131,7 +131,7 @@ static void write_statement(FILE *file, const struct Program *program, const str
     fputs("return ", file);
   else if (metadata->result != NUMBER) {
     if (space_of(instruction->result) == SPACE_LOCAL) fputs("const Real ", file);
-    write_place(file, program, instruction->result, metadata->result == ROW ? COEFFICIENT : metadata->result, target);
+    write_slot(file, program, instruction->result, metadata->result == ROW ? COEFFICIENT : metadata->result, target);
     fputs(" = ", file);
   }
   write_expression(file, program, instruction, target, opening);

@@ -6,7 +6,7 @@
 #include "program/program.h"
 
 /* Writes an operand or result in its role; target is the name of the array SPACE_TARGET. */
-void write_place(FILE *file, const struct Program *program, Slot slot, enum Role role, const char *target);
+void write_slot(FILE *file, const struct Program *program, Slot slot, enum Role role, const char *target);
 
 /* Writes the statements of a routine; without a target, a value for it is returned. */
 void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target);

@@ -39,19 +39,19 @@ static void write_check(FILE *file, const struct Program *program, const struct 
   fputs("  ", file);
   if (check->is_gated) {
     fputs("LIMIT_WHERE(", file);
-    write_place(file, program, check->guard_condition, VALUE, NULL);
+    write_slot(file, program, check->guard_condition, VALUE, NULL);
     fputs(" > 0.0, ", file);
   }
   fprintf(file, "series_limit_%s(limit, ", metadata->name);
-  write_place(file, program, check->row, ROW, NULL);
+  write_slot(file, program, check->row, ROW, NULL);
   if (metadata->has_two_rows) {
     fputs(", ", file);
-    write_place(file, program, check->other_row, ROW, NULL);
+    write_slot(file, program, check->other_row, ROW, NULL);
   }
   if (metadata->has_function) fprintf(file, ", \"%s\"", check->function);
   if (metadata->has_exponent) {
     fputs(", ", file);
-    write_place(file, program, check->exponent, VALUE, NULL);
+    write_slot(file, program, check->exponent, VALUE, NULL);
   }
   if (metadata->has_share) {
     fputs(", ", file);

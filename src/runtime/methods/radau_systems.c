@@ -16,7 +16,7 @@ size_t radau_systems_size(void) {
 }
 
 /* Finds the offsets of J's elements in a matrix. Those by a velocity share the offset of those by its coordinate. */
-static void find_places(struct RadauSystems *systems) {
+static void find_slots(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < lu_rows(); i++) systems->diagonal[i] = lagrangian.implicit.lu->slot(i, i);
@@ -39,7 +39,7 @@ void radau_systems_slot(struct RadauSystems *systems, double *memory) {
   systems->right_side = (struct Complex *)memory;
   systems->solution = systems->right_side + states;
   systems->work = (double *)(systems->solution + states);
-  find_places(systems);
+  find_slots(systems);
 }
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {

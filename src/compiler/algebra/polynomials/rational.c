@@ -203,10 +203,10 @@ static enum Visit visit_while_small(void *atoms, const struct Graph *graph, Node
 }
 
 /* Returns the steps of graph_work() for a node: products and quotients combine all pairs of terms. */
-static size_t work_of(const struct Graph *graph, const struct Fraction *known, size_t place) {
+static size_t work_of(const struct Graph *graph, const struct Fraction *known, size_t index) {
   const struct Cone *cone = graph->cone;
-  const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
-  const struct Fraction *result = &known[place];
+  const struct Vertex *vertex = &graph->vertices[cone->nodes[index]];
+  const struct Fraction *result = &known[index];
   size_t terms = result->above.count + result->below.count;
   if (result->below.count > 1 || vertex->operation == POWER) return terms * terms;
   if (vertex->operation != MULTIPLY) return terms;
@@ -220,17 +220,17 @@ static bool convert_all(struct Converter *converter, const Node *nodes, size_t c
   int atoms = 0;
   if (!cone_collect_part(cone, converter->graph, nodes, count, visit_while_small, &atoms)) return false;
   struct Fraction *known = allocate(cone->count, sizeof *known);
-  for (size_t place = 0; place < cone->count && !converter->overflow; place++) {
-    known[place] = convert(converter, cone->nodes[place], known);
-    graph_work(converter->graph, work_of(converter->graph, known, place));
-    if (!is_usable(&known[place])) {
-      note_large(converter->graph, cone->nodes[place]);
+  for (size_t index = 0; index < cone->count && !converter->overflow; index++) {
+    known[index] = convert(converter, cone->nodes[index], known);
+    graph_work(converter->graph, work_of(converter->graph, known, index));
+    if (!is_usable(&known[index])) {
+      note_large(converter->graph, cone->nodes[index]);
       converter->overflow = true;
     }
   }
   for (size_t i = 0; i < count && !converter->overflow; i++)
     fractions[i] = fraction_copy(&known[cone_slot(cone, nodes[i])]);
-  for (size_t place = 0; place < cone->count; place++) fraction_free(&known[place]);
+  for (size_t index = 0; index < cone->count; index++) fraction_free(&known[index]);
   release(known);
   return !converter->overflow;
 }

@@ -17,9 +17,9 @@ static struct Length length_of(const struct Graph *graph, const Node *nodes, siz
   struct Length length = {0};
   if (graph_limit(graph) != NULL) return length;
   cone_collect(graph->cone, graph, nodes, count);
-  for (size_t place = 0; place < cone->count; place++) {
-    if (operation_arity(graph->vertices[cone->nodes[place]].operation) == 0) continue;
-    if (graph_is_constant_in_time(graph, cone->nodes[place])) length.once++;
+  for (size_t index = 0; index < cone->count; index++) {
+    if (operation_arity(graph->vertices[cone->nodes[index]].operation) == 0) continue;
+    if (graph_is_constant_in_time(graph, cone->nodes[index])) length.once++;
     else length.in_motion++;
   }
   return length;

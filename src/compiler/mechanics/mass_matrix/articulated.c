@@ -148,15 +148,15 @@ static void eliminate_all(struct Graph *graph, struct ArticulatedTree *tree) {
 static struct ArticulatedTree *collect_links(const struct Links *links, size_t tree, const size_t *coordinates,
                                              size_t row_count) {
   struct ArticulatedTree *result = allocate(1, sizeof *result);
-  size_t *place = allocate(links->count, sizeof *place);
+  size_t *index = allocate(links->count, sizeof *index);
   *result = (struct ArticulatedTree){.items = allocate(links->count, sizeof *result->items), .row_count = row_count};
   for (size_t i = 0; i < links->count; i++) {
     const struct Link *link = &links->items[i];
     if (link->tree != tree) continue;
     bool is_inside = link->parent != NO_LINK && links->items[link->parent].tree == tree;
-    place[i] = result->count;
+    index[i] = result->count;
     struct ArticulatedLink *item = &result->items[result->count++];
-    *item = (struct ArticulatedLink){.link = link, .parent = is_inside ? place[link->parent] : NO_LINK};
+    *item = (struct ArticulatedLink){.link = link, .parent = is_inside ? index[link->parent] : NO_LINK};
     item->rows = allocate(link->count, sizeof *item->rows);
     for (size_t k = 0; k < link->count; k++)
       while (coordinates[item->rows[k]] != link->coordinates[k]) item->rows[k]++;

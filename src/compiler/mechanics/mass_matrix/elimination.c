@@ -36,22 +36,22 @@ static bool precedes(struct Waiting a, struct Waiting b) {
 
 static void push(struct Queue *queue, struct Waiting entry) {
   queue->items = make_room(queue->items, queue->count, sizeof *queue->items);
-  size_t place = queue->count++;
-  for (; place > 0 && precedes(entry, queue->items[(place - 1) / 2]); place = (place - 1) / 2)
-    queue->items[place] = queue->items[(place - 1) / 2];
-  queue->items[place] = entry;
+  size_t index = queue->count++;
+  for (; index > 0 && precedes(entry, queue->items[(index - 1) / 2]); index = (index - 1) / 2)
+    queue->items[index] = queue->items[(index - 1) / 2];
+  queue->items[index] = entry;
 }
 
 static struct Waiting pop(struct Queue *queue) {
   struct Waiting top = queue->items[0], last = queue->items[--queue->count];
-  size_t place = 0;
-  for (size_t child = 1; child < queue->count; child = 2 * place + 1) {
+  size_t index = 0;
+  for (size_t child = 1; child < queue->count; child = 2 * index + 1) {
     if (child + 1 < queue->count && precedes(queue->items[child + 1], queue->items[child])) child++;
     if (!precedes(queue->items[child], last)) break;
-    queue->items[place] = queue->items[child];
-    place = child;
+    queue->items[index] = queue->items[child];
+    index = child;
   }
-  queue->items[place] = last;
+  queue->items[index] = last;
   return top;
 }
 
@@ -89,7 +89,7 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
 
 /* Eliminates all rows. Afterwards the sets are the columns of L below the diagonal. */
 static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct Set *sets, size_t *order,
-                           size_t *place) {
+                           size_t *index) {
   struct Queue queue = {0};
   bool *is_eliminated = allocate(count, sizeof *is_eliminated);
   for (size_t row = 0; row < count; row++) push(&queue, (struct Waiting){sets[row].count, row});
@@ -100,7 +100,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
     if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* pushed again when they are gone */
     is_eliminated[waiting.row] = true;
-    place[waiting.row] = next;
+    index[waiting.row] = next;
     order[next++] = waiting.row;
     for (size_t i = 0; i < set->count; i++) {
       size_t row = set->items[i];
@@ -111,7 +111,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
   }
   for (size_t row = 0; row < count; row++) {
     if (is_eliminated[row]) continue;
-    place[row] = next;
+    index[row] = next;
     order[next++] = row;
   }
 }
@@ -132,10 +132,10 @@ struct Elimination eliminate(const struct Graph *graph, size_t count, size_t lat
   if (position_count == count * (count + 1) / 2) return full_elimination(count);
   struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
   struct Set *sets = neighbours_of(count, positions, position_count);
-  size_t *place = allocate(count, sizeof *place), *end = allocate(count, sizeof *end);
-  eliminate_rows(graph, count, late, sets, result.order, place);
+  size_t *index = allocate(count, sizeof *index), *end = allocate(count, sizeof *end);
+  eliminate_rows(graph, count, late, sets, result.order, index);
   for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < sets[i].count; k++) result.start[place[sets[i].items[k]] + 1]++;
+    for (size_t k = 0; k < sets[i].count; k++) result.start[index[sets[i].items[k]] + 1]++;
   for (size_t i = 0; i < count; i++) {
     end[i] = result.start[i];
     result.start[i + 1] += result.start[i] + 1;
@@ -143,7 +143,7 @@ struct Elimination eliminate(const struct Graph *graph, size_t count, size_t lat
   result.column = allocate(result.start[count], sizeof(size_t));
   for (size_t column = 0; column < count; column++) {
     const struct Set *set = &sets[result.order[column]];
-    for (size_t k = 0; k < set->count; k++) result.column[end[place[set->items[k]]]++] = column;
+    for (size_t k = 0; k < set->count; k++) result.column[end[index[set->items[k]]]++] = column;
     result.column[end[column]++] = column;
   }
   return result;

@@ -21,7 +21,7 @@ static size_t find(const struct InertiaBlock *block, size_t row, size_t column) 
 }
 
 size_t inertia_find(const struct Inertia *inertia, size_t i, size_t j) {
-  size_t a = inertia->place_of[i], b = inertia->place_of[j];
+  size_t a = inertia->index_in_block[i], b = inertia->index_in_block[j];
   return find(inertia_block_of(inertia, i), a > b ? a : b, a > b ? b : a);
 }
 

@@ -43,8 +43,8 @@ struct Inertia {
   size_t coordinate_count; /* number of coordinates */
   struct InertiaBlock *blocks;
   size_t block_count;
-  size_t *block_of, *place_of; /* of each row: its block, and its position in the block */
-  struct Pivot *pivots;        /* of unrolled blocks */
+  size_t *block_of, *index_in_block; /* of each row: its block, and its position in the block */
+  struct Pivot *pivots;              /* of unrolled blocks */
   size_t pivot_count;
 };
 

@@ -65,16 +65,16 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
   struct InertiaBlock *block = &inertia->blocks[number];
   struct Position *local = allocate(to - from, sizeof *local);
   for (size_t k = from; k < to; k++)
-    local[k - from] = (struct Position){inertia->place_of[elements->positions[k].row],
-                                        inertia->place_of[elements->positions[k].column]};
+    local[k - from] = (struct Position){inertia->index_in_block[elements->positions[k].row],
+                                        inertia->index_in_block[elements->positions[k].column]};
   size_t late = block->count - block->constraint_count;
   struct Elimination elimination = eliminate(graph, block->count, late, local, to - from);
   block->start = elimination.start;
   block->column = elimination.column;
   block->coordinates = elimination.order;
-  for (size_t place = 0; place < block->count; place++) {
-    block->coordinates[place] = members[elimination.order[place]];
-    inertia->place_of[block->coordinates[place]] = place;
+  for (size_t index = 0; index < block->count; index++) {
+    block->coordinates[index] = members[elimination.order[index]];
+    inertia->index_in_block[block->coordinates[index]] = index;
   }
   block->mass = allocate(block->start[block->count], sizeof(Node));
   for (size_t k = from; k < to; k++)
@@ -90,13 +90,13 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   *inertia = (struct Inertia){.count = count,
                               .coordinate_count = count - constraint_count,
                               .block_of = components.of,
-                              .place_of = allocate(count, sizeof(size_t))};
+                              .index_in_block = allocate(count, sizeof(size_t))};
   inertia->block_count = components.count;
   inertia->blocks = allocate(components.count, sizeof *inertia->blocks);
   size_t **members = allocate(components.count, sizeof *members);
-  for (size_t i = 0; i < count; i++) inertia->place_of[i] = inertia->blocks[components.of[i]].count++;
+  for (size_t i = 0; i < count; i++) inertia->index_in_block[i] = inertia->blocks[components.of[i]].count++;
   for (size_t b = 0; b < components.count; b++) members[b] = allocate(inertia->blocks[b].count, sizeof **members);
-  for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->place_of[i]] = i;
+  for (size_t i = 0; i < count; i++) members[components.of[i]][inertia->index_in_block[i]] = i;
   for (size_t i = count - constraint_count; i < count; i++) inertia->blocks[components.of[i]].constraint_count++;
   for (size_t b = 0; b < components.count; b++) {
     size_t first = members[b][0], tree = first < inertia->coordinate_count ? trees->tree_of[first] : NO_TREE;
@@ -124,8 +124,8 @@ static void add_nonsymmetric(struct Inertia *inertia, const struct Elements *non
   for (size_t k = 0; k < nonsymmetric->count; k++) {
     size_t row = inertia->coordinate_count + nonsymmetric->positions[k].row, column = nonsymmetric->positions[k].column;
     struct InertiaBlock *block = &inertia->blocks[inertia->block_of[row]];
-    size_t place = nonsymmetric_column(block, inertia->place_of[row]);
-    block->nonsymmetric[place * block->count + inertia->place_of[column]] = nonsymmetric->nodes[k];
+    size_t index = nonsymmetric_column(block, inertia->index_in_block[row]);
+    block->nonsymmetric[index * block->count + inertia->index_in_block[column]] = nonsymmetric->nodes[k];
   }
 }
 

@@ -36,10 +36,10 @@ static bool is_symbol(const struct Graph *graph, Node node, enum SymbolKind kind
   return graph->vertices[node].operation == SYMBOL && graph->vertices[node].kinds == 1u << kind;
 }
 
-static size_t place_in_link(const struct Link *link, size_t coordinate) {
-  size_t place = 0;
-  while (place < link->count && link->coordinates[place] != coordinate) place++;
-  return place;
+static size_t index_in_link(const struct Link *link, size_t coordinate) {
+  size_t index = 0;
+  while (index < link->count && link->coordinates[index] != coordinate) index++;
+  return index;
 }
 
 static void append_row(struct Link *link, size_t row) {
@@ -55,7 +55,7 @@ static void find_coordinates(const struct Builder *builder, struct Link *link, s
   for (size_t i = 0; i < cone->count; i++) {
     if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
     size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
-    if (builder->model->given.prescribed_motions[coordinate].given || place_in_link(link, coordinate) < link->count)
+    if (builder->model->given.prescribed_motions[coordinate].given || index_in_link(link, coordinate) < link->count)
       continue;
     append_row(link, coordinate);
   }
@@ -67,9 +67,9 @@ static void set_axes(const struct Builder *builder, struct Link *link, struct Ve
   for (int component = 0; component < 3; component++) {
     struct Gradient gradient = gradient_by_kinds(graph, velocity.along[component], 1u << VELOCITY);
     for (size_t i = 0; i < gradient.count; i++) {
-      size_t place = place_in_link(link, (size_t)graph_symbol_of(graph, gradient.symbols[i])->index);
-      if (place == link->count) continue; /* a prescribed coordinate */
-      struct SpatialVector *axis = &link->axes[place];
+      size_t index = index_in_link(link, (size_t)graph_symbol_of(graph, gradient.symbols[i])->index);
+      if (index == link->count) continue; /* a prescribed coordinate */
+      struct SpatialVector *axis = &link->axes[index];
       (is_angular ? &axis->angular : &axis->linear)->along[component] = gradient.values[i];
     }
   }
@@ -162,7 +162,7 @@ static void append_links_of_bodies(struct Builder *builder) {
 }
 
 static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
-  link->inertia[place_in_link(link, i) * link->count + place_in_link(link, j)] = value;
+  link->inertia[index_in_link(link, i) * link->count + index_in_link(link, j)] = value;
   link->has_inertia = true;
 }
 

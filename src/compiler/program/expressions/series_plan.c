@@ -18,7 +18,7 @@ static void append_equations(struct SeriesPlan *plan, const struct Equations *eq
     }
     append_node(&plan->targets, equations->right_side[i]);
     const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
-    size_t row = equations->inertia->place_of[i];
+    size_t row = equations->inertia->index_in_block[i];
     for (size_t k = block->start[row]; k < block->start[row + 1]; k++) append_node(&plan->targets, block->mass[k]);
     for (size_t k = 0; k < block->force_count; k++)
       append_node(&plan->targets, block->nonsymmetric[k * block->count + row]);

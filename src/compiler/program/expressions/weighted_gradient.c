@@ -70,7 +70,7 @@ static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, c
 }
 
 /* Returns the index of a symbol's element in the gradient. */
-static size_t place_of(const struct Model *model, const struct Interface *interface, const struct Symbol *symbol) {
+static size_t row_of(const struct Model *model, const struct Interface *interface, const struct Symbol *symbol) {
   size_t index = (size_t)symbol->index, n = model->coordinates.count, states = interface->state_count;
   switch ((int)symbol->kind) {
   case COORDINATE: return index;
@@ -91,7 +91,7 @@ static void fill_elements(struct Graph *graph, const struct Model *model, const 
   struct Gradient found =
       weighted_gradient(graph, sum->targets.nodes, sum->weights.nodes, sum->targets.count, KNOWN_KINDS);
   for (size_t i = 0; i < found.count; i++)
-    gradient->elements[place_of(model, interface, graph_symbol_of(graph, found.symbols[i]))] = found.values[i];
+    gradient->elements[row_of(model, interface, graph_symbol_of(graph, found.symbols[i]))] = found.values[i];
   for (size_t i = 0; i < n; i++) {
     Node *by_velocity = &gradient->elements[n + i];
     *by_velocity = add(graph, *by_velocity, replacement_of(graph, seeds, model->coordinates.items[i].node));

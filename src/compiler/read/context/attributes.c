@@ -15,20 +15,20 @@ void report_at(const struct Reader *reader, xmlNodePtr node, const char *format,
   va_end(arguments);
 }
 
-struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds) {
-  return (struct Place){
+struct Location location_of(xmlNodePtr node, const char *what, unsigned kinds) {
+  return (struct Location){
       .line = line_of(node), .what = what, .kinds = kinds, .input_derivatives = (kinds & WITH_RATES) != 0};
 }
 
 /* Returns the context of a number or a name in an attribute. */
-static struct Place place_of_attribute(xmlNodePtr node, const char *name) {
-  struct Place place = place_at(node, name, 0);
-  place.line = line_of_attribute(node, name);
-  return place;
+static struct Location location_of_attribute(xmlNodePtr node, const char *name) {
+  struct Location location = location_of(node, name, 0);
+  location.line = line_of_attribute(node, name);
+  return location;
 }
 
 bool number_in(struct Reader *reader, xmlNodePtr node, const char *name, const char *text, double *value) {
-  return *text != '\0' && parse_number(reader->scope, text, place_of_attribute(node, name), value);
+  return *text != '\0' && parse_number(reader->scope, text, location_of_attribute(node, name), value);
 }
 
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value) {
@@ -39,7 +39,7 @@ bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, 
 static char *full_name_in(struct Reader *reader, xmlNodePtr node, const char *name, bool parts) {
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
-  char *expanded = parse_name(reader->scope, text, place_of_attribute(node, name), parts);
+  char *expanded = parse_name(reader->scope, text, location_of_attribute(node, name), parts);
   return expanded != NULL ? scope_full_name(reader->scope, expanded) : NULL;
 }
 
@@ -55,9 +55,9 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
                           struct Quantity *value) {
   char *text = attribute_in_lines(node, name);
   if (text == NULL) return false;
-  struct Place place = place_at(node, format_text("%s of <%s>", name, (const char *)node->name), kinds);
-  place.line = line_of_attribute(node, name);
-  if (*text != '\0') *value = parse_expression(reader->scope, text, place);
+  struct Location location = location_of(node, format_text("%s of <%s>", name, (const char *)node->name), kinds);
+  location.line = line_of_attribute(node, name);
+  if (*text != '\0') *value = parse_expression(reader->scope, text, location);
   return true;
 }
 
@@ -96,9 +96,9 @@ Node add_energy(struct Reader *reader, xmlNodePtr node, const char *what, Node t
 }
 
 struct Quantity expression_text_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {
-  struct Place place = place_at(node, what, kinds);
-  place.line = line_of_content(node);
-  return parse_expression(reader->scope, text_of(node), place);
+  struct Location location = location_of(node, what, kinds);
+  location.line = line_of_content(node);
+  return parse_expression(reader->scope, text_of(node), location);
 }
 
 struct Quantity whole_expression_of(struct Reader *reader, xmlNodePtr node, const char *what, unsigned kinds) {

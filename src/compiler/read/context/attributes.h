@@ -63,7 +63,7 @@ struct Reader {
 void report_at(const struct Reader *reader, xmlNodePtr node, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Kinds of symbols that an expression may depend on, as in struct Place. Higher bits hold further conditions. */
+/* Kinds of symbols that an expression may depend on, as in struct Location. Higher bits hold further conditions. */
 #define KIND(kind) (1u << (kind))
 
 enum {
@@ -82,7 +82,7 @@ enum {
 };
 
 /* Returns the context of an expression on the line of an element that may depend on these kinds of symbols. */
-struct Place place_at(xmlNodePtr node, const char *what, unsigned kinds);
+struct Location location_of(xmlNodePtr node, const char *what, unsigned kinds);
 
 /* Reads a number from an attribute. Returns false if it is missing, or after reporting an error. */
 bool number_attribute(struct Reader *reader, xmlNodePtr node, const char *name, double *value);
@@ -99,7 +99,7 @@ char *name_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 /* Like name_attribute(), for a name that is declared elsewhere, perhaps in an included file. */
 char *reference_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Parses the expression in an attribute. Returns true if the attribute is present. kinds: as in struct Place. */
+/* Parses the expression in an attribute. Returns true if the attribute is present. kinds: as in struct Location. */
 bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds,
                           struct Quantity *value);
 

@@ -33,8 +33,8 @@ void includes_end(struct Reader *reader) {
   source_enter(reader, names_find(includes->sources, ""));
   reader->scope->prefix = ""; /* the scope outlives the sources */
   for (size_t i = 0; i < includes->documents->capacity; i++)
-    if (includes->documents->places[i].text != NULL)
-      xmlFreeDoc(((struct Document *)includes->documents->places[i].meaning)->document);
+    if (includes->documents->slots[i].text != NULL)
+      xmlFreeDoc(((struct Document *)includes->documents->slots[i].meaning)->document);
   reader->includes = NULL;
 }
 
@@ -157,7 +157,7 @@ static void note_given(struct Reader *reader, const struct Source *source) {
   for (xmlNodePtr node = source->include->children; node != NULL; node = node->next) {
     char *text = node->type == XML_ELEMENT_NODE ? attribute(node, "name") : NULL;
     if (text == NULL) continue;
-    char *name = parse_name(reader->scope, text, place_at(node, "name", 0), true);
+    char *name = parse_name(reader->scope, text, location_of(node, "name", 0), true);
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
     if (is_given_in(names_find(reader->includes->given, full_name), source->outer))
       report_at(reader, node, "'%s' is given twice; expected it once", name);
@@ -268,8 +268,8 @@ static void report_unused(struct Reader *reader, const struct Given *given, cons
 void check_given(struct Reader *reader) {
   const struct Names *names = reader->includes->given;
   for (size_t i = 0; i < names->capacity; i++) {
-    const struct Given *given = names->places[i].text != NULL ? names->places[i].meaning : NULL;
+    const struct Given *given = names->slots[i].text != NULL ? names->slots[i].meaning : NULL;
     for (; given != NULL; given = given->inner)
-      if (!given->is_used) report_unused(reader, given, names->places[i].text);
+      if (!given->is_used) report_unused(reader, given, names->slots[i].text);
   }
 }

@@ -30,7 +30,8 @@ static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const st
   const struct Given *giver = giver_of(given, "value");
   struct Source *present = enter_giver(reader, giver, &node);
   char *text = listed != NULL && giver == NULL ? listed : attribute(node, "value");
-  bool right = text != NULL && *text != '\0' && parse_constant(reader->scope, text, place_at(node, "value", 0), value);
+  bool right =
+      text != NULL && *text != '\0' && parse_constant(reader->scope, text, location_of(node, "value", 0), value);
   source_enter(reader, present);
   return right;
 }
@@ -40,13 +41,13 @@ static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, 
   struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
   const struct Given *given = given_for(reader, node, name);
   bool right = read_constant_value(reader, node, given, listed, &value);
-  struct Place place = {.line = 0, .what = "-D"};
+  struct Location location = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
     size_t length = strlen(name);
     if (strncmp(definition, name, length) != 0 || definition[length] != '=') continue;
     reader->definition_used[i] = true;
-    right = parse_constant(reader->scope, definition + length + 1, place, &value);
+    right = parse_constant(reader->scope, definition + length + 1, location, &value);
   }
   if (has_attribute(node, "unit")) {
     struct Dimension unit = unit_attribute(reader, node, "unit");

@@ -117,20 +117,20 @@ static Node condition_of_modes(struct Reader *reader, Node value, long line) {
 /* Reads a condition, whose change to true is the event, or an expression with the direction of its zero crossing. */
 static void read_condition(struct Reader *reader, xmlNodePtr node, const char *when, struct Event *event) {
   struct Graph *graph = reader->model->graph;
-  struct Place place = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
+  struct Location location = {.line = line_of_attribute(node, "when"), .what = "when", .kinds = IN_EVENT};
   char *direction = attribute(node, "direction");
   int errors = reader->diagnostics->errors;
   Node value;
-  bool is_given = parse_when(reader->scope, attribute_in_lines(node, "when"), place, &value);
-  event->line = scope_line(reader->scope, place.line);
+  bool is_given = parse_when(reader->scope, attribute_in_lines(node, "when"), location, &value);
+  event->line = scope_line(reader->scope, location.line);
   if (is_given || is_boolean_parameter(reader, value)) {
-    event->condition = condition_of_modes(reader, value, place.line);
+    event->condition = condition_of_modes(reader, value, location.line);
     if (direction != NULL)
       report_at(reader, node,
                 "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
                 "no direction");
   } else if (value != ZERO) {
-    event->condition = side_of(reader->scope, value, place.line);
+    event->condition = side_of(reader->scope, value, location.line);
     event->side = new_mode(reader, "side", when);
     event->expression = value;
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;

@@ -51,7 +51,8 @@ static struct Quantity parse_with_dummy(struct Parser *parser, const char *name,
 
 static void check_nesting(struct Parser *parser) {
   if (parser->scope->dummy_count == DUMMY_LIMIT)
-    FAIL(parser, "%s: more than %d nested integrals and derivatives; expected fewer", parser->place.what, DUMMY_LIMIT);
+    FAIL(parser, "%s: more than %d nested integrals and derivatives; expected fewer", parser->location.what,
+         DUMMY_LIMIT);
 }
 
 /*
@@ -65,7 +66,7 @@ static char *look_ahead_for_name(struct Parser *parser, const char **end) {
   expect_character(parser, ',', format_text("before the name of %s", derivative_form));
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected a name at the end of %s", parser->place.what, derivative_form);
+    FAIL(parser, "%s: expected a name at the end of %s", parser->location.what, derivative_form);
   char *name = parser->failed ? NULL : read_name(parser);
   expect_character(parser, ')', format_text("after the name of %s", derivative_form));
   *end = parser->next;
@@ -154,7 +155,7 @@ static struct Quantity derivative_by_variable(struct Parser *parser, const char 
     FAIL(parser,
          "%s: diff(..., %s) is by %s; expected a coordinate, velocity, state, input, parameter, time or an "
          "argument of a <function>",
-         parser->place.what, name, words_for(graph, variable.node));
+         parser->location.what, name, words_for(graph, variable.node));
   struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension, unit;
   Node derivative = parser->failed ? ZERO : derivative_with_arguments_held(parser, variable.node, &unit);
   if (parser->failed) return nothing;
@@ -179,7 +180,7 @@ static size_t parse_node_count(struct Parser *parser) {
   if (!accept_character(parser, ',')) return 0;
   long count = parse_whole(parser, "the number of nodes of integral(...)");
   if (!parser->failed && (count < 1 || count > QUADRATURE_LIMIT))
-    FAIL(parser, "%s: integral(...) by %ld nodes; expected 1 to %d", parser->place.what, count, QUADRATURE_LIMIT);
+    FAIL(parser, "%s: integral(...) by %ld nodes; expected 1 to %d", parser->location.what, count, QUADRATURE_LIMIT);
   return parser->failed ? 0 : (size_t)count;
 }
 

@@ -57,7 +57,7 @@ static void refuse_equality(struct Parser *parser) {
     FAIL(parser,
          "%s: found '%s'; write >= for what comes to a value, as in time >= 2, and n > 1.5 and n < 2.5 for a whole "
          "number n that is 2",
-         parser->place.what,
+         parser->location.what,
          is_unequal               ? "!="
          : parser->next[1] == '=' ? "=="
                                   : "=");
@@ -84,7 +84,7 @@ static Node parse_relation(struct Parser *parser) {
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {
     if (graph_is_constant_in_time(graph, left.node)) return left.node;
-    FAIL(parser, "%s: a condition that is not a comparison; expected one such as x > 0", parser->place.what);
+    FAIL(parser, "%s: a condition that is not a comparison; expected one such as x > 0", parser->location.what);
     return ZERO;
   }
   struct Quantity right = parse_sum(parser);
@@ -114,7 +114,8 @@ static Node parse_group(struct Parser *parser) {
   if (*parser->next != '(' || !is_group(parser)) return parse_relation(parser);
   parser->next++;
   if (++parser->nesting > 100)
-    FAIL(parser, "%s: more than 100 nested conditions; expected fewer, or a <define> for a part", parser->place.what);
+    FAIL(parser, "%s: more than 100 nested conditions; expected fewer, or a <define> for a part",
+         parser->location.what);
   Node condition = parser->failed ? ZERO : parse_condition(parser);
   parser->nesting--;
   expect_character(parser, ')', "to close a condition");

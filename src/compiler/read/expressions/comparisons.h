@@ -13,7 +13,7 @@ bool is_condition(const char *text);
  * Parses when="..." of an event. Returns true with the node of a condition, see parse_condition(). Returns false with
  * an expression, whose zero crossing is the event. After reporting an error, returns false with ZERO.
  */
-bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value);
+bool parse_when(struct Scope *scope, const char *text, struct Location location, Node *value);
 
 /* Parses the arguments of if(condition, expression, expression) after the opening parenthesis. */
 struct Quantity parse_choice(struct Parser *parser);

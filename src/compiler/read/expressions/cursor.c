@@ -9,7 +9,7 @@
 long current_line(struct Parser *parser) {
   for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';
   while (parser->counted > parser->next) parser->newlines -= *--parser->counted == '\n';
-  return parser->place.line + parser->newlines;
+  return parser->location.line + parser->newlines;
 }
 
 /* Functions cannot use the indices of a <for> around the calling expression. */
@@ -48,6 +48,6 @@ bool accept_character(struct Parser *parser, char c) {
 void expect_character(struct Parser *parser, char c, const char *context) {
   char buffer[32];
   if (parser->failed || accept_character(parser, c)) return;
-  FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->place.what, c, context, found(parser, buffer),
+  FAIL(parser, "%s: expected '%c' %s, found %s%s", parser->location.what, c, context, found(parser, buffer),
        c == ']' ? "" : hint_for_text(parser->text, parser->next));
 }

@@ -5,7 +5,7 @@
 #include "read/names/scope.h"
 
 /* The context of an expression: its line and subject for messages, and the symbols that it may depend on. */
-struct Place {
+struct Location {
   long line;
   const char *what;      /* such as "the potential" */
   unsigned kinds;        /* bit k: may depend on symbols of kind k */
@@ -24,7 +24,7 @@ struct NamedFunction;
 struct Parser {
   struct Scope *scope;
   struct Graph *graph;
-  struct Place place;
+  struct Location location;
   const char *text, *next;
   const char *counted; /* end of the text whose line breaks are counted in `newlines` */
   long newlines;

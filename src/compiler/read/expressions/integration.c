@@ -134,9 +134,9 @@ static bool *mark_curved(const struct Graph *graph, Node integrand) {
   bool *is_curved = allocate(graph->count, sizeof *is_curved);
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, &integrand, 1);
-  for (size_t place = cone->count; place-- > 0;) {
-    const struct Vertex *vertex = &graph->vertices[cone->nodes[place]];
-    bool bends = is_curved[cone->nodes[place]] || !is_polynomial(graph, vertex);
+  for (size_t index = cone->count; index-- > 0;) {
+    const struct Vertex *vertex = &graph->vertices[cone->nodes[index]];
+    bool bends = is_curved[cone->nodes[index]] || !is_polynomial(graph, vertex);
     int arity = operation_arity(vertex->operation);
     if (arity > 0) is_curved[vertex->left] |= bends;
     if (arity > 1) is_curved[vertex->right] |= bends;
@@ -225,7 +225,7 @@ static struct Choice choose_nodes(struct Parser *parser, const struct Integral *
   struct Sampling sampling = sampling_create(parser->scope, integral->value);
   struct Choice choice = choose(&sampling, limits_move);
   if (!choice.has_value)
-    FAIL(parser, "%s: %s has no finite value; expected one at the start values and near them", parser->place.what,
+    FAIL(parser, "%s: %s has no finite value; expected one at the start values and near them", parser->location.what,
          integral->text);
   else if (is_new(parser, integral)) report_choice(parser, integral, &choice);
   return choice;

@@ -35,7 +35,7 @@ static struct Local *parse_arguments(struct Parser *parser, const struct NamedFu
   } while (!parser->failed && accept_character(parser, ','));
   expect_character(parser, ')', format_text("after the arguments of %s", function->name));
   if (count != function->argument_count)
-    FAIL(parser, "%s: the function '%s' has %zu argument%s; expected %zu, as in %s(%s)", parser->place.what,
+    FAIL(parser, "%s: the function '%s' has %zu argument%s; expected %zu, as in %s(%s)", parser->location.what,
          function->name, count, count == 1 ? "" : "s", function->argument_count, function->name,
          list_arguments(function));
   return parser->failed ? NULL : &locals[count - 1];
@@ -66,14 +66,15 @@ static void check_recursion(struct Parser *parser, const struct NamedFunction *f
   for (const struct Parser *caller = parser; caller != first->caller; caller = caller->caller)
     circle = format_text("%s -> %s", caller->function->name, circle);
   FAIL(parser, "%s: functions call each other in a circle: %s; expected one that does not call the next",
-       parser->place.what, circle);
+       parser->location.what, circle);
 }
 
 static void require_value_unit(struct Parser *parser, const struct NamedFunction *function, struct Quantity *value) {
   if (!function->value.known || parser->failed) return;
   if (!value->literal && !scope_units_agree(parser->scope, value->dimension, function->value)) {
-    char *problem = format_text("%s: unit mismatch: the value of '%s' has the unit %s, expected %s", parser->place.what,
-                                function->name, unit_text(value->dimension), unit_text(function->value));
+    char *problem =
+        format_text("%s: unit mismatch: the value of '%s' has the unit %s, expected %s", parser->location.what,
+                    function->name, unit_text(value->dimension), unit_text(function->value));
     if (!number_may_have_unit(parser->scope, current_line(parser), *value, function->value, problem))
       FAIL(parser, "%s", problem);
   }
@@ -83,7 +84,7 @@ static void require_value_unit(struct Parser *parser, const struct NamedFunction
 /* Returns the subject of messages about the expression: the outermost call with its line, and the function. */
 static const char *name_of_use(struct Parser *parser, const struct NamedFunction *function) {
   if (parser->function != NULL) return format_text("%s '%s'", parser->use, function->name);
-  parser->use = format_text("%s of line %ld, in the function", parser->place.what, current_line(parser));
+  parser->use = format_text("%s of line %ld, in the function", parser->location.what, current_line(parser));
   return format_text("%s '%s'", parser->use, function->name);
 }
 
@@ -93,9 +94,9 @@ static struct Quantity read_expression(struct Parser *parser, const struct Named
   struct Scope *scope = parser->scope;
   const char *file = scope->diagnostics->file, *origin = scope->diagnostics->origin, *prefix = scope->prefix;
   struct Parser inner = *parser;
-  inner.place.what = name_of_use(parser, function);
+  inner.location.what = name_of_use(parser, function);
   inner.use = parser->use;
-  inner.place.line = function->line;
+  inner.location.line = function->line;
   inner.text = inner.next = inner.counted = function->text;
   inner.newlines = 0;
   inner.locals = locals;

@@ -34,9 +34,9 @@ bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quanti
                           const char *problem) {
   const char *number = quantity.factor.text;
   if (number == NULL) return false;
-  char *place = format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
-  if (definitions_are_waiting(scope->definitions) || names_find(scope->warned_numbers, place) != NULL) return true;
-  names_set(scope->warned_numbers, place, place);
+  char *location = format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
+  if (definitions_are_waiting(scope->definitions) || names_find(scope->warned_numbers, location) != NULL) return true;
+  names_set(scope->warned_numbers, location, location);
   const char *unit = missing_unit(quantity, expected);
   bool is_constant = isalpha((unsigned char)*number) || *number == '_';
   if (is_constant)

@@ -55,24 +55,24 @@ static struct Quantity parse_sign(struct Parser *parser);
 static void enter(struct Parser *parser) {
   if (++parser->nesting > NESTING_LIMIT + 1)
     FAIL(parser, "%s: more than %d nested parentheses or powers; expected fewer, or a <define> for a part",
-         parser->place.what, NESTING_LIMIT);
+         parser->location.what, NESTING_LIMIT);
 }
 
 static struct Quantity parse_literal(struct Parser *parser) {
   char *end;
   if (parser->next[0] == '0' && (parser->next[1] == 'x' || parser->next[1] == 'X')) {
-    FAIL(parser, "%s: '0x' is not a number here; expected a decimal number", parser->place.what);
+    FAIL(parser, "%s: '0x' is not a number here; expected a decimal number", parser->location.what);
     return nothing;
   }
   double value = strtod(parser->next, &end);
   if (isinf(value)) {
-    FAIL(parser, "%s: '%.*s' is too large for a number; expected one below 1e308", parser->place.what,
+    FAIL(parser, "%s: '%.*s' is too large for a number; expected one below 1e308", parser->location.what,
          (int)(end - parser->next), parser->next);
     return nothing;
   }
   if (end == parser->next || !isfinite(value) || isalnum((unsigned char)*end) || *end == '_' || *end == '.') {
     FAIL(parser, "%s: '%.12s' is not a number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
-         parser->place.what, parser->next);
+         parser->location.what, parser->next);
     return nothing;
   }
   char *text = format_text("%.*s", (int)(end - parser->next), parser->next);
@@ -84,15 +84,15 @@ static struct Quantity parse_literal(struct Parser *parser) {
 }
 
 long parse_whole(struct Parser *parser, const char *what) {
-  unsigned kinds = parser->place.kinds;
-  parser->place.kinds = 0;
+  unsigned kinds = parser->location.kinds;
+  parser->location.kinds = 0;
   struct Quantity value = parse_sum(parser);
-  parser->place.kinds = kinds;
+  parser->location.kinds = kinds;
   if (parser->failed) return 0;
   double number = graph_is_constant(parser->graph, value.node) ? graph_value(parser->graph, value.node) : NAN;
   if (number == floor(number) && fabs(number) < 1e9) return (long)number;
   FAIL(parser, "%s: %s is not a whole number that is known at build time; expected numbers and constants",
-       parser->place.what, what);
+       parser->location.what, what);
   return 0;
 }
 
@@ -110,7 +110,7 @@ static char *read_index(struct Parser *parser, char *name) {
     parser->next++;
     long index = parse_whole(parser, "the index in brackets");
     if (index < 0)
-      FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->place.what, name, index);
+      FAIL(parser, "%s: the index of %s[%ld] is negative; expected 0, 1, 2, ...", parser->location.what, name, index);
     expect_character(parser, ']', "after the only index of a name");
     name = format_text("%s[%ld]", name, index);
   }
@@ -144,7 +144,7 @@ static int derivatives_of_input(const struct Scope *scope, Node symbol) {
 /* Reports inputs in a node that lack the time derivatives needed here. name: the name that stands for the node. */
 static void require_input_derivatives(struct Parser *parser, Node node, const char *name) {
   const struct Graph *graph = parser->graph;
-  int needed = parser->place.input_derivatives;
+  int needed = parser->location.input_derivatives;
   if (needed == 0 || parser->failed || !graph_depends_on(graph, node, INPUT)) return;
   cone_collect(graph->cone, graph, &node, 1);
   for (size_t i = 0; i < graph->cone->count; i++) {
@@ -152,26 +152,26 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
     if (graph->vertices[symbol].operation != SYMBOL || !graph_depends_on(graph, symbol, INPUT)) continue;
     int known = derivatives_of_input(parser->scope, symbol);
     const char *input = graph_symbol_of(graph, symbol)->name;
-    if (known == 0 && is_derived(parser->place.what))
+    if (known == 0 && is_derived(parser->location.what))
       FAIL(parser, "%s cannot depend on inputs, but '%s' does%s, or an <input> with derivatives=\"%d\"",
-           parser->place.what, name, no_derivative, needed);
+           parser->location.what, name, no_derivative, needed);
     else if (known == 0)
       FAIL(parser,
            "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
            "that moves something",
-           parser->place.what, name);
+           parser->location.what, name);
     else if (known < needed && needed > 2)
-      FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->place.what, needed,
+      FAIL(parser, "%s needs %d time derivatives of the input '%s'; expected at most 2", parser->location.what, needed,
            input);
     else if (known < needed)
       FAIL(parser, "%s needs 2 time derivatives of the input '%s', of which 1 is known; expected derivatives=\"2\"",
-           parser->place.what, input);
+           parser->location.what, input);
   }
 }
 
 /* In <set> pieces of a definition that no event waits for are values. */
 static struct Quantity as_read_there(const struct Parser *parser, struct Quantity quantity) {
-  if ((parser->place.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
+  if ((parser->location.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
   quantity.node = parser->scope->keeps_whole ? quantity.whole : quantity.at_instant;
   return quantity;
 }
@@ -184,17 +184,18 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
     return nothing;
   }
   if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
-  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~(parser->place.kinds | 1u << DUMMY);
+  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~(parser->location.kinds | 1u << DUMMY);
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
-      FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->place.what, kind_names[kind], name,
-           is_derived(parser->place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, parser->place.kinds));
+      FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->location.what, kind_names[kind], name,
+           is_derived(parser->location.what) ? no_derivative
+                                             : hint_for_kind((enum SymbolKind)kind, parser->location.kinds));
   if ((surplus & CONTACT_STATE) != 0)
     FAIL(
         parser,
         "%s cannot depend on whether contacts are closed and frictions slide, but '%s' does; expected it in an <event> "
         "or an <output>, such as an <event> that sets a <mode>",
-        parser->place.what, name);
+        parser->location.what, name);
   require_input_derivatives(parser, quantity->node, name);
   return as_read_there(parser, *quantity);
 }
@@ -225,7 +226,7 @@ char *parse_declared(struct Parser *parser, const char *what, const char *usage)
   char buffer[32];
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected a name as the %s of %s, found %s", parser->place.what, what, usage,
+    FAIL(parser, "%s: expected a name as the %s of %s, found %s", parser->location.what, what, usage,
          found(parser, buffer));
   char *name = read_identifier(parser);
   expect_character(parser, ',', format_text("after the %s of %s", what, usage));
@@ -238,7 +239,7 @@ void require_new_name(struct Parser *parser, const char *what, const char *name,
   bool is_known = find_quantity(parser, name) != NULL || definitions_contain(parser->scope->definitions, full_name);
   release(full_name);
   if (is_known)
-    FAIL(parser, "%s: the %s '%s' of %s(...) is already a name; expected a new one", parser->place.what, what, name,
+    FAIL(parser, "%s: the %s '%s' of %s(...) is already a name; expected a new one", parser->location.what, what, name,
          function);
 }
 
@@ -249,8 +250,8 @@ static struct SumHead parse_sum_head(struct Parser *parser) {
   expect_character(parser, ',', "after the first index");
   head.last = parse_whole(parser, "the last index of sum(...)");
   if (head.last < head.first - 1 && bounds_are_numbers(bounds, parser->next))
-    FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first", parser->place.what,
-         head.first, head.last);
+    FAIL(parser, "%s: sum(...) from %ld to %ld runs backwards; expected the smaller number first",
+         parser->location.what, head.first, head.last);
   expect_character(parser, ',', "after the last index");
   require_new_name(parser, "index", head.index, "sum");
   return head;
@@ -266,7 +267,7 @@ static struct Quantity parse_repeated_sum(struct Parser *parser) {
   if (head.first > head.last) skip_to_end(parser);
   for (long i = head.first; !parser->failed && i <= head.last; i++) {
     if (++parser->repetitions > REPETITION_LIMIT)
-      FAIL(parser, "%s: sum(...) has more than %d terms; expected fewer", parser->place.what, REPETITION_LIMIT);
+      FAIL(parser, "%s: sum(...) has more than %d terms; expected fewer", parser->location.what, REPETITION_LIMIT);
     parser->next = body;
     index.value = number_of(parser, (double)i);
     total = quantity_add(parser, total, parse_sum(parser));
@@ -293,19 +294,19 @@ static bool waits_for_rates(struct Parser *parser, Node node) {
 
 /* Parses der(...). Its argument has no accelerations, no reaction forces, and no inputs without a time derivative. */
 static struct Quantity parse_derivative(struct Parser *parser) {
-  const struct Place place = parser->place;
-  parser->place.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
-  parser->place.input_derivatives++;
-  parser->place.what = format_text("%s%s", derived, place.what);
+  const struct Location location = parser->location;
+  parser->location.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));
+  parser->location.input_derivatives++;
+  parser->location.what = format_text("%s%s", derived, location.what);
   struct Quantity value = parse_sum(parser);
-  parser->place = place;
+  parser->location = location;
   expect_character(parser, ')', "at the end of der(...)");
   if (!parser->failed && waits_for_rates(parser, value.node)) return nothing;
   Node derivative = parser->failed ? ZERO : total_time_derivative(parser->scope, value.node);
   for (int kind = VELOCITY; kind <= ACCELERATION; kind++)
-    if ((place.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
-      FAIL(parser, "%s cannot depend on %s, but der(...) does%s", place.what, kind_names[kind],
-           is_derived(place.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, place.kinds));
+    if ((location.kinds & 1u << kind) == 0 && graph_depends_on(parser->graph, derivative, (enum SymbolKind)kind))
+      FAIL(parser, "%s cannot depend on %s, but der(...) does%s", location.what, kind_names[kind],
+           is_derived(location.what) ? no_derivative : hint_for_kind((enum SymbolKind)kind, location.kinds));
   if (parser->failed) return nothing;
   return (struct Quantity){
       .node = derivative, .dimension = dimension_multiply(value.dimension, unit_of("s"), -1.0), .factor = value.factor};
@@ -396,7 +397,8 @@ static void require_limits(struct Parser *parser) {
   if (limit == NULL) return;
   if (parser->scope->diagnostics->errors > 0) parser->failed = true; /* the limit has been reported */
   else
-    FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->place.what, limit);
+    FAIL(parser, "%s: the system is too large: %s; expected fewer or shorter repetitions", parser->location.what,
+         limit);
 }
 
 static struct Quantity parse_parentheses(struct Parser *parser) {
@@ -431,7 +433,7 @@ static struct Quantity parse_primary(struct Parser *parser) {
   if (isdigit((unsigned char)c) || (c == '.' && isdigit((unsigned char)parser->next[1]))) return parse_literal(parser);
   if (c == '(') return parse_parentheses(parser);
   if (isalpha((unsigned char)c) || c == '_') return parse_named(parser);
-  FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->place.what, found(parser, buffer),
+  FAIL(parser, "%s: expected a number, a name or '(', found %s%s", parser->location.what, found(parser, buffer),
        hint_for_text(parser->text, parser->next));
   return nothing;
 }
@@ -481,10 +483,10 @@ struct Quantity parse_sum(struct Parser *parser) {
   return value;
 }
 
-static struct Parser parser_of(struct Scope *scope, const char *text, struct Place place) {
+static struct Parser parser_of(struct Scope *scope, const char *text, struct Location location) {
   scope->graph->not_finite = false;
   return (struct Parser){
-      .scope = scope, .graph = scope->graph, .place = place, .text = text, .next = text, .counted = text};
+      .scope = scope, .graph = scope->graph, .location = location, .text = text, .next = text, .counted = text};
 }
 
 struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(struct Parser *parser)) {
@@ -492,25 +494,25 @@ struct Quantity parse_whole_text(struct Parser *parser, struct Quantity (*read)(
   struct Quantity value = read(parser);
   skip_space(parser);
   if (!parser->failed && *parser->next == ')')
-    FAIL(parser, "%s: ')' without '('; expected an operator or the end", parser->place.what);
+    FAIL(parser, "%s: ')' without '('; expected an operator or the end", parser->location.what);
   if (!parser->failed && *parser->next != '\0')
-    FAIL(parser, "%s: expected an operator or the end, found %s%s", parser->place.what, found(parser, buffer),
+    FAIL(parser, "%s: expected an operator or the end, found %s%s", parser->location.what, found(parser, buffer),
          hint_for_text(parser->text, parser->next));
   require_limits(parser);
   return parser->failed ? nothing : value;
 }
 
 /* Parses the text by the function `read`. Returns false after an error; the value is then 0. */
-static bool read_text(struct Scope *scope, const char *text, struct Place place,
+static bool read_text(struct Scope *scope, const char *text, struct Location location,
                       struct Quantity (*read)(struct Parser *parser), struct Quantity *value) {
-  struct Parser parser = parser_of(scope, text, place);
+  struct Parser parser = parser_of(scope, text, location);
   *value = parse_whole_text(&parser, read);
   return !parser.failed;
 }
 
-struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place) {
+struct Quantity parse_expression(struct Scope *scope, const char *text, struct Location location) {
   struct Quantity value;
-  read_text(scope, text, place, parse_sum, &value);
+  read_text(scope, text, location, parse_sum, &value);
   return value;
 }
 
@@ -526,33 +528,33 @@ static bool is_truth(const struct Scope *scope, const char *text, Node node) {
   return is_choice || is_mode || (kinds_that_decide(scope, node) & CONTACT_STATE) != 0;
 }
 
-bool parse_when(struct Scope *scope, const char *text, struct Place place, Node *value) {
+bool parse_when(struct Scope *scope, const char *text, struct Location location, Node *value) {
   bool compares = is_condition(text);
   struct Quantity quantity;
-  bool is_right = read_text(scope, text, place, compares ? condition_as_quantity : parse_sum, &quantity);
+  bool is_right = read_text(scope, text, location, compares ? condition_as_quantity : parse_sum, &quantity);
   *value = is_right ? quantity.node : ZERO;
   if (!is_right || compares) return is_right;
   return is_truth(scope, text, *value);
 }
 
-bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value) {
-  place.kinds = 0;
-  return read_text(scope, text, place, parse_sum, value);
+bool parse_constant(struct Scope *scope, const char *text, struct Location location, struct Quantity *value) {
+  location.kinds = 0;
+  return read_text(scope, text, location, parse_sum, value);
 }
 
-bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value) {
+bool parse_number(struct Scope *scope, const char *text, struct Location location, double *value) {
   struct Quantity quantity;
-  if (!parse_constant(scope, text, place, &quantity)) return false;
+  if (!parse_constant(scope, text, location, &quantity)) return false;
   *value = graph_value(scope->graph, quantity.node);
   return true;
 }
 
-char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts) {
-  struct Parser parser = parser_of(scope, text, place);
+char *parse_name(struct Scope *scope, const char *text, struct Location location, bool parts) {
+  struct Parser parser = parser_of(scope, text, location);
   char *name = NULL;
   if (isalpha((unsigned char)*text) || *text == '_') name = read_name_suffix(&parser, read_identifier(&parser));
   if (name == NULL || *parser.next != '\0' || (!parts && strchr(name, '.') != NULL))
-    FAIL(&parser, "%s: '%s' is not a name; expected letters, digits and _, or name[index]%s", place.what, text,
+    FAIL(&parser, "%s: '%s' is not a name; expected letters, digits and _, or name[index]%s", location.what, text,
          parts ? ", also of an included system, as in motor.theta" : "");
   return parser.failed ? NULL : name;
 }

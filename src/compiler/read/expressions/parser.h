@@ -20,7 +20,7 @@
  *   scaled   = [ power { ("*" | "/") power } "*" ] arrow { ("*" | "/") power }, where the first power is no parenthesis
  *   arrow    = name | "cross" "(" vector "," vector ")" | "(" vector ")"
  */
-struct Quantity parse_expression(struct Scope *scope, const char *text, struct Place place);
+struct Quantity parse_expression(struct Scope *scope, const char *text, struct Location location);
 
 /* Parses a sum at the reading position, as far as it extends. */
 struct Quantity parse_sum(struct Parser *parser);
@@ -50,13 +50,13 @@ char *read_name(struct Parser *parser);
 struct Quantity look_up(struct Parser *parser, const char *name);
 
 /* Parses an expression of compile-time numbers. Returns false after reporting an error. */
-bool parse_constant(struct Scope *scope, const char *text, struct Place place, struct Quantity *value);
+bool parse_constant(struct Scope *scope, const char *text, struct Location location, struct Quantity *value);
 
 /* Like parse_constant(), without the unit. */
-bool parse_number(struct Scope *scope, const char *text, struct Place place, double *value);
+bool parse_number(struct Scope *scope, const char *text, struct Location location, double *value);
 
 /*
  * Evaluates the indices in a name: theta[i+1] becomes theta[3]. parts: the name may have several parts, as motor.theta.
  * Returns NULL after reporting an error.
  */
-char *parse_name(struct Scope *scope, const char *text, struct Place place, bool parts);
+char *parse_name(struct Scope *scope, const char *text, struct Location location, bool parts);

@@ -27,7 +27,7 @@ static double value_at_start(const struct Scope *scope, Node node) {
 
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
-  char *problem = format_text("%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->place.what, what,
+  char *problem = format_text("%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->location.what, what,
                               unit_text(value.dimension));
   if (!number_may_have_unit(parser->scope, current_line(parser), value, dimension_one, problem))
     FAIL(parser, "%s", problem);
@@ -39,7 +39,7 @@ static void require_dimensionless(struct Parser *parser, struct Quantity value, 
  */
 static struct Dimension mended_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
                                          const char *where) {
-  char *problem = format_text("%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->place.what,
+  char *problem = format_text("%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->location.what,
                               unit_text(a.dimension), unit_text(b.dimension), where);
   long line = current_line(parser);
   if (number_may_have_unit(parser->scope, line, b, a.dimension, problem)) return a.dimension;
@@ -61,7 +61,7 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
 /* Reports a constant that overflowed or is undefined. The flag was cleared at the beginning of the expression. */
 static void require_finite(struct Parser *parser, const char *what) {
   if (parser->graph->not_finite)
-    FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->place.what, what);
+    FAIL(parser, "%s: %s of numbers is not finite; expected numbers below 1e308", parser->location.what, what);
 }
 
 static struct Quantity sum_with(struct Parser *parser, struct Quantity a, struct Quantity b, Node node) {
@@ -91,7 +91,7 @@ struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, stru
 }
 
 struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct Quantity b) {
-  if (b.node == ZERO) FAIL(parser, "%s: division by zero", parser->place.what);
+  if (b.node == ZERO) FAIL(parser, "%s: division by zero", parser->location.what);
   struct Quantity result = {.node = divide(parser->graph, a.node, b.node),
                             .dimension = dimension_multiply(a.dimension, b.dimension, -1.0),
                             .factor = factor_of_product(a.factor, factor_raised(b.factor, -1.0)),
@@ -113,13 +113,13 @@ static void check_power(struct Parser *parser, Node base, Node exponent) {
   bool base_given = graph_is_constant(graph, base), exponent_given = graph_is_constant(graph, exponent);
   double b = graph_value(graph, base), n = graph_value(graph, exponent);
   if (base_given && exponent_given && graph->not_finite && n == 0.5)
-    FAIL(parser, "%s: sqrt(%g) is not a real number; expected an argument %s", parser->place.what, b,
+    FAIL(parser, "%s: sqrt(%g) is not a real number; expected an argument %s", parser->location.what, b,
          domain_text(POWER));
   else if (base_given && exponent_given && graph->not_finite)
-    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->place.what, b, n,
+    FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->location.what, b, n,
          b < 0 ? "a positive base, or sign(x)*abs(x)^n for an odd root" : "another base or exponent");
   else if (base_given && !exponent_given && b <= 0)
-    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->place.what, b);
+    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->location.what, b);
   require_finite(parser, "a power");
   if (!exponent_given || n != floor(n))
     require_domain(&parser->scope->requirements, graph, POWER, base, line_after_reading(parser));
@@ -142,7 +142,7 @@ struct Quantity quantity_power(struct Parser *parser, struct Quantity base, stru
 /* Reports a constant value that is not finite. Records a variable argument for the check of domains at the start. */
 static void check_function(struct Parser *parser, enum Operation operation, Node argument) {
   if (parser->graph->not_finite)
-    FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->place.what,
+    FAIL(parser, "%s: %s(%g) has no finite value; expected an argument %s", parser->location.what,
          operation_name(operation), graph_value(parser->graph, argument), domain_text(operation));
   require_domain(&parser->scope->requirements, parser->graph, operation, argument, line_after_reading(parser));
 }
@@ -170,7 +170,7 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
 
 /* Returns floor(node): in a <set> evaluated at the event, elsewhere piecewise constant with events at its jumps. */
 static Node floor_in_place(struct Parser *parser, Node node) {
-  bool is_value = (parser->place.kinds & AT_INSTANT) != 0;
+  bool is_value = (parser->location.kinds & AT_INSTANT) != 0;
   return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));
 }
 
@@ -180,7 +180,7 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
   if (strcmp(name, "mod") == 0) {
     result.dimension = common_dimension(parser, a, b, "mod");
     result.literal = a.literal && b.literal;
-    if (b.node == ZERO) FAIL(parser, "%s: mod(..., 0) has no value; expected another divisor", parser->place.what);
+    if (b.node == ZERO) FAIL(parser, "%s: mod(..., 0) has no value; expected another divisor", parser->location.what);
     Node whole = floor_in_place(parser, divide(graph, a.node, b.node));
     result.node = subtract(graph, a.node, multiply(graph, b.node, whole));
     return result;
@@ -201,7 +201,7 @@ static void require_whole(struct Parser *parser, const char *name, const char *w
   double value = value_at_start(parser->scope, node);
   if (value == floor(value)) return;
   FAIL(parser, "%s: the %s of %s is %g; expected a whole number, such as a parameter of type=\"Integer\"",
-       parser->place.what, what, name, value);
+       parser->location.what, what, name, value);
 }
 
 struct Quantity quantity_random(struct Parser *parser, const char *name, struct Quantity seed, struct Quantity number) {
@@ -209,7 +209,7 @@ struct Quantity quantity_random(struct Parser *parser, const char *name, struct 
   require_dimensionless(parser, seed, format_text("the seed of %s", name));
   require_dimensionless(parser, number, format_text("the number of %s", name));
   if (!graph_is_constant_in_time(graph, seed.node))
-    FAIL(parser, "%s: the seed of %s changes in time; expected a number or a parameter", parser->place.what, name);
+    FAIL(parser, "%s: the seed of %s changes in time; expected a number or a parameter", parser->location.what, name);
   require_whole(parser, name, "seed", seed.node);
   require_whole(parser, name, "number k", number.node);
   bool is_whole = gradient_by_kinds(graph, number.node, ~(1u << PARAMETER | 1u << MODE)).count == 0;
@@ -223,7 +223,7 @@ static bool check_argument(struct Parser *parser, struct Dimension unit, const c
                            struct Quantity argument) {
   if (argument.literal || scope_units_agree(parser->scope, argument.dimension, unit)) return true;
   char *problem = format_text("%s: unit mismatch: the %sargument of '%s' has the unit %s, expected %s",
-                              parser->place.what, which, name, unit_text(argument.dimension), unit_text(unit));
+                              parser->location.what, which, name, unit_text(argument.dimension), unit_text(unit));
   if (number_may_have_unit(parser->scope, current_line(parser), argument, unit, problem)) return true;
   FAIL(parser, "%s%s", problem, unit_hint(argument.dimension));
   return false;

@@ -13,10 +13,10 @@
 
 /* Returns the kinds of names that are allowed here, for messages. */
 static const char *expected_names(const struct Parser *parser) {
-  if (parser->place.kinds == 1u << PARAMETER) return "a parameter or a constant";
+  if (parser->location.kinds == 1u << PARAMETER) return "a parameter or a constant";
   if (parser->scope->model == NULL) return "a number, perhaps with its unit, such as 0.5, pi/2 or 30deg";
-  return parser->place.kinds == 0 ? "a number, or a constant that is defined above"
-                                  : "a parameter, coordinate, velocity, input, definition or time";
+  return parser->location.kinds == 0 ? "a number, or a constant that is defined above"
+                                     : "a parameter, coordinate, velocity, input, definition or time";
 }
 
 static bool is_known(const struct Parser *parser, const char *name) {
@@ -51,7 +51,7 @@ static bool report_index(struct Parser *parser, const char *name) {
   char *list = format_text("%.*s", (int)(bracket != NULL ? (size_t)(bracket - name) : strlen(name)), name);
   int last = last_index(parser, list), first = is_known(parser, format_text("%s[0]", list)) ? 0 : 1;
   if (last > 0)
-    FAIL(parser, "%s: unknown name '%s'; expected %s[%d], ..., %s[%d]", parser->place.what, name, list, first, list,
+    FAIL(parser, "%s: unknown name '%s'; expected %s[%d], ..., %s[%d]", parser->location.what, name, list, first, list,
          last);
   return last > 0;
 }
@@ -65,13 +65,13 @@ void report_unknown_name(struct Parser *parser, const char *name) {
   const char *next = parser->next + strspn(parser->next, " \t\r\n");
   if (*hint == '\0' && *next == '=') hint = hint_for_text(parser->text, next);
   if (*components != '\0')
-    FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->place.what, name,
+    FAIL(parser, "%s: unknown name '%s'; expected %s, and der(...) of it for a velocity", parser->location.what, name,
          components);
-  else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->place.what, name, hint);
+  else if (*hint != '\0') FAIL(parser, "%s: unknown name '%s'%s", parser->location.what, name, hint);
   else if (shown && report_index(parser, name)) return;
   else if (similar != NULL)
-    FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->place.what, name, similar);
-  else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->place.what, name, expected_names(parser));
+    FAIL(parser, "%s: unknown name '%s'; did you mean '%s'?", parser->location.what, name, similar);
+  else FAIL(parser, "%s: unknown name '%s'; expected %s", parser->location.what, name, expected_names(parser));
 }
 
 void report_reserved(struct Parser *parser, const char *name) {
@@ -81,14 +81,14 @@ void report_reserved(struct Parser *parser, const char *name) {
   char *force = format_text("%s.force", full_name);
   bool is_constraint = scope_find(parser->scope, force) != NULL;
   if (is_constraint)
-    FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->place.what,
+    FAIL(parser, "%s: '%s' is a constraint, whose value is 0; expected %s.force for its force", parser->location.what,
          name, name);
   else if (is_table || is_function)
     FAIL(parser, "%s: '%s' is not a variable but a %s; expected its argument in parentheses, as in %s(...)",
-         parser->place.what, name, is_table ? "table" : "function", name);
+         parser->location.what, name, is_table ? "table" : "function", name);
   else
     FAIL(parser, "%s: '%s' is not a variable but a result, which expressions cannot use; expected %s",
-         parser->place.what, name, expected_names(parser));
+         parser->location.what, name, expected_names(parser));
 }
 
 /* Lists the functions: those of the graph, of one argument first, then those with arguments of their own kinds. */
@@ -109,7 +109,7 @@ static char *function_names(void) {
 static void consider_own(struct Similar *similar, const struct Names *names, const char *prefix) {
   size_t length = strlen(prefix);
   for (size_t i = 0; i < names->capacity; i++) {
-    const char *name = names->places[i].text;
+    const char *name = names->slots[i].text;
     if (name != NULL && strncmp(name, prefix, length) == 0) similar_consider(similar, name + length);
   }
 }
@@ -124,12 +124,12 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   consider_own(&similar, parser->scope->functions, parser->scope->prefix);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   if (similar.best != NULL && *hint_for_function(name) == '\0')
-    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->place.what, name, similar.best);
+    FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->location.what, name, similar.best);
   else if (is_known(parser, name))
-    FAIL(parser, "%s: '%s' is not a function; write * for a product", parser->place.what, name);
+    FAIL(parser, "%s: '%s' is not a function; write * for a product", parser->location.what, name);
   else if (*hint_for_function(name) != '\0')
-    FAIL(parser, "%s: unknown function '%s'%s", parser->place.what, name, hint_for_function(name));
+    FAIL(parser, "%s: unknown function '%s'%s", parser->location.what, name, hint_for_function(name));
   else if (is_known(parser, indexed))
-    FAIL(parser, "%s: '%s' is not a function; write %s[...] for an index", parser->place.what, name, name);
-  else FAIL(parser, "%s: unknown function '%s'; expected %s", parser->place.what, name, names);
+    FAIL(parser, "%s: '%s' is not a function; write %s[...] for an index", parser->location.what, name, name);
+  else FAIL(parser, "%s: unknown function '%s'; expected %s", parser->location.what, name, names);
 }

@@ -72,7 +72,7 @@ static struct Arrow parse_named_arrow(struct Parser *parser, const char *name) {
   arrow.dimension = unit_of("m");
   if (strcmp(name, "base") == 0 || find_components(parser, name, "", &arrow.vector)) return arrow;
   if (!parser->failed && !find_part(parser, name, &arrow))
-    FAIL(parser, "%s: there is no point '%s'; expected %s", parser->place.what, name, expected);
+    FAIL(parser, "%s: there is no point '%s'; expected %s", parser->location.what, name, expected);
   return arrow;
 }
 
@@ -95,7 +95,7 @@ static struct Arrow parse_arrow(struct Parser *parser) {
   }
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected %s, or a vector such as arm.axisX, tip.v or cross(...), found %s", parser->place.what,
+    FAIL(parser, "%s: expected %s, or a vector such as arm.axisX, tip.v or cross(...), found %s", parser->location.what,
          expected, found(parser, buffer));
   if (parser->failed) return no_arrow;
   char *name = read_name(parser);
@@ -137,7 +137,8 @@ static struct Quantity parse_factors(struct Parser *parser) {
   while (!parser->failed) {
     bool is_quotient = accept_character(parser, '/');
     if (!is_quotient && !accept_character(parser, '*')) {
-      FAIL(parser, "%s: a number is no vector; expected * and a vector after it, or %s", parser->place.what, expected);
+      FAIL(parser, "%s: a number is no vector; expected * and a vector after it, or %s", parser->location.what,
+           expected);
       break;
     }
     if (!is_quotient && !is_number_ahead(parser)) break;
@@ -176,7 +177,7 @@ static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct 
 static struct Arrow parse_vector(struct Parser *parser) {
   enum { NESTING_LIMIT = 1000 }; /* as in parser.c */
   if (++parser->nesting > NESTING_LIMIT)
-    FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->place.what, NESTING_LIMIT);
+    FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->location.what, NESTING_LIMIT);
   if (parser->failed) return no_arrow;
   bool is_negative = accept_character(parser, '-');
   struct Arrow sum = parse_scaled(parser);
@@ -199,7 +200,8 @@ static struct Quantity norm_of(struct Graph *graph, struct Arrow arrow) {
 static struct Quantity distance_of(struct Parser *parser, struct Arrow first, struct Arrow second) {
   struct Graph *graph = parser->graph;
   bool are_points = dimension_agrees(first.dimension, unit_of("m")) && dimension_agrees(second.dimension, unit_of("m"));
-  if (!are_points) FAIL(parser, "%s: distance(...) is between two points; expected %s", parser->place.what, expected);
+  if (!are_points)
+    FAIL(parser, "%s: distance(...) is between two points; expected %s", parser->location.what, expected);
   struct Vector back = vector_scale(graph, graph_constant(graph, -1.0), first.vector);
   return norm_of(graph, (struct Arrow){vector_add(graph, second.vector, back), unit_of("m")});
 }
@@ -209,7 +211,7 @@ struct Quantity parse_function_of_vectors(struct Parser *parser, const char *nam
   bool is_norm = strcmp(name, "norm") == 0;
   const char *of = strcmp(name, "distance") == 0 ? "points" : "vectors";
   if (strcmp(name, "cross") == 0)
-    FAIL(parser, "%s: cross(...) is a vector; expected it in dot(...) or norm(...)", parser->place.what);
+    FAIL(parser, "%s: cross(...) is a vector; expected it in dot(...) or norm(...)", parser->location.what);
   struct Arrow first = parse_vector(parser), second = no_arrow;
   if (!is_norm) {
     expect_character(parser, ',', format_text("between the two %s of %s", of, name));

@@ -50,18 +50,18 @@ static bool ends_with(const char *path, const char *ending) {
 
 /* Removes points that no triangle uses: they are not part of the surface. */
 static void drop_unused_points(struct Mesh *mesh) {
-  size_t *places = allocate(mesh->point_count, sizeof *places), kept = 0;
+  size_t *indices = allocate(mesh->point_count, sizeof *indices), kept = 0;
   for (size_t i = 0; i < mesh->triangle_count; i++)
-    for (int k = 0; k < 3; k++) places[mesh->triangles[i][k]] = 1;
+    for (int k = 0; k < 3; k++) indices[mesh->triangles[i][k]] = 1;
   for (size_t i = 0; i < mesh->point_count; i++) {
-    if (places[i] == 0) continue;
+    if (indices[i] == 0) continue;
     for (int axis = 0; axis < 3; axis++) mesh->points[kept][axis] = mesh->points[i][axis];
-    places[i] = kept++;
+    indices[i] = kept++;
   }
   for (size_t i = 0; i < mesh->triangle_count; i++)
-    for (int k = 0; k < 3; k++) mesh->triangles[i][k] = places[mesh->triangles[i][k]];
+    for (int k = 0; k < 3; k++) mesh->triangles[i][k] = indices[mesh->triangles[i][k]];
   mesh->point_count = kept;
-  release(places);
+  release(indices);
 }
 
 /* Scales the points. A reflection reverses the order of corners, which is restored so that normals stay outward. */

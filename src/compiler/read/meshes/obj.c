@@ -7,12 +7,12 @@
 #include "read/meshes/mesh_lines.h"
 
 /* Sets the index of the point in a corner such as 3, 3/1/2, or -1 for the last. Returns false for none. */
-static bool read_corner(const char *word, const struct Mesh *mesh, size_t *place) {
+static bool read_corner(const char *word, const struct Mesh *mesh, size_t *index) {
   char *end;
   long long number = strtoll(word, &end, 10), count = (long long)mesh->point_count;
   if (end == word || (*end != '\0' && *end != '/')) return false;
   if (number == 0 || number > count || number < -count) return false;
-  *place = (size_t)(number > 0 ? number - 1 : count + number);
+  *index = (size_t)(number > 0 ? number - 1 : count + number);
   return true;
 }
 

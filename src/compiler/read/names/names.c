@@ -9,7 +9,7 @@
 struct Names *names_create(void) {
   struct Names *names = allocate(1, sizeof *names);
   names->capacity = 64; /* a power of two, at least twice the number of names */
-  names->places = allocate(names->capacity, sizeof *names->places);
+  names->slots = allocate(names->capacity, sizeof *names->slots);
   return names;
 }
 
@@ -20,33 +20,33 @@ static size_t home_of(const struct Names *names, const char *text) {
   return (size_t)(hash ^ hash >> 32) & (names->capacity - 1);
 }
 
-static size_t after(const struct Names *names, size_t place) {
-  return (place + 1) & (names->capacity - 1);
+static size_t after(const struct Names *names, size_t slot) {
+  return (slot + 1) & (names->capacity - 1);
 }
 
 /* Returns the slot of a name, or the empty slot for it. */
-static struct Name *place_of(const struct Names *names, const char *text) {
-  size_t place = home_of(names, text);
-  while (names->places[place].text != NULL && strcmp(names->places[place].text, text) != 0) place = after(names, place);
-  return &names->places[place];
+static struct Name *slot_for(const struct Names *names, const char *text) {
+  size_t slot = home_of(names, text);
+  while (names->slots[slot].text != NULL && strcmp(names->slots[slot].text, text) != 0) slot = after(names, slot);
+  return &names->slots[slot];
 }
 
 static void grow(struct Names *names) {
   struct Names larger = {.capacity = 2 * names->capacity, .count = names->count};
-  larger.places = allocate(larger.capacity, sizeof *larger.places);
+  larger.slots = allocate(larger.capacity, sizeof *larger.slots);
   for (size_t i = 0; i < names->capacity; i++)
-    if (names->places[i].text != NULL) *place_of(&larger, names->places[i].text) = names->places[i];
-  release(names->places);
+    if (names->slots[i].text != NULL) *slot_for(&larger, names->slots[i].text) = names->slots[i];
+  release(names->slots);
   *names = larger;
 }
 
 void *names_find(const struct Names *names, const char *text) {
-  return place_of(names, text)->meaning;
+  return slot_for(names, text)->meaning;
 }
 
 void names_set(struct Names *names, const char *text, void *meaning) {
   if (2 * (names->count + 1) > names->capacity) grow(names);
-  struct Name *name = place_of(names, text);
+  struct Name *name = slot_for(names, text);
   if (name->text == NULL) {
     name->text = copy_text(text);
     names->count++;
@@ -56,17 +56,17 @@ void names_set(struct Names *names, const char *text, void *meaning) {
 }
 
 void names_remove(struct Names *names, const char *text) {
-  struct Name *name = place_of(names, text);
+  struct Name *name = slot_for(names, text);
   if (name->text == NULL) return;
   release(name->text);
   release(name->meaning);
   *name = (struct Name){0};
   names->count--;
   /* Names in the following slots may have been displaced by this one: insert them again. */
-  size_t place = (size_t)(name - names->places);
-  for (place = after(names, place); names->places[place].text != NULL; place = after(names, place)) {
-    struct Name moved = names->places[place];
-    names->places[place] = (struct Name){0};
-    *place_of(names, moved.text) = moved;
+  size_t slot = (size_t)(name - names->slots);
+  for (slot = after(names, slot); names->slots[slot].text != NULL; slot = after(names, slot)) {
+    struct Name moved = names->slots[slot];
+    names->slots[slot] = (struct Name){0};
+    *slot_for(names, moved.text) = moved;
   }
 }

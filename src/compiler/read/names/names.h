@@ -9,7 +9,7 @@ struct Name {
 };
 
 struct Names {
-  struct Name *places;
+  struct Name *slots;
   size_t capacity, count;
 };
 

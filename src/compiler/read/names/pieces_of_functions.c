@@ -143,12 +143,12 @@ Node with_pieces(struct Scope *scope, Node node, long line) {
   cone_collect(cone, graph, &node, 1);
   graph_work(graph, cone->work);
   Node *mapped = allocate(cone->count, sizeof *mapped);
-  for (size_t place = 0; place < cone->count; place++) {
-    const struct Vertex vertex = graph->vertices[cone->nodes[place]];
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[index]];
     int arity = operation_arity(vertex.operation);
     Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
     Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO;
-    mapped[place] = arity == 0 ? cone->nodes[place] : rebuilt(scope, vertex.operation, left, right, line);
+    mapped[index] = arity == 0 ? cone->nodes[index] : rebuilt(scope, vertex.operation, left, right, line);
   }
   Node result = mapped[cone_slot(cone, node)];
   release(mapped);

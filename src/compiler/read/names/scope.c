@@ -108,7 +108,7 @@ const char *scope_similar_name(const struct Scope *scope, const char *name) {
   struct Similar similar = {.wanted = name};
   size_t length = strlen(scope->prefix);
   for (size_t i = 0; i < scope->names->capacity; i++) {
-    const char *known = scope->names->places[i].text;
+    const char *known = scope->names->slots[i].text;
     if (known == NULL || scope_is_reserved(scope, scope_find(scope, known))) continue;
     if (strncmp(known, scope->prefix, length) == 0) similar_consider(&similar, known + length);
   }

@@ -76,5 +76,5 @@ void similar_consider(struct Similar *similar, const char *known) {
 
 void similar_consider_all(struct Similar *similar, const struct Names *names) {
   for (size_t i = 0; i < names->capacity; i++)
-    if (names->places[i].text != NULL) similar_consider(similar, names->places[i].text);
+    if (names->slots[i].text != NULL) similar_consider(similar, names->slots[i].text);
 }

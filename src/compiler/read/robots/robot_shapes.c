@@ -15,12 +15,12 @@ static const char ground[] = "ground";
  */
 static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
 
-static void place_element(xmlNodePtr shape, const struct Placement *place) {
+static void place_element(xmlNodePtr shape, const struct Placement *placement) {
   static const char *const names[] = {"roll", "pitch", "yaw"};
   double angles[3];
-  placement_angles(place, angles);
+  placement_angles(placement, angles);
   for (int axis = 0; axis < 3; axis++) {
-    set_number(shape, axes[axis], place->translation[axis]);
+    set_number(shape, axes[axis], placement->translation[axis]);
     set_number(shape, names[axis], angles[axis]);
   }
 }
@@ -74,7 +74,7 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
   xmlNodePtr plane = write_element(writer, "shape");
   set_attribute(plane, "name", copy_text(ground));
   set_attribute(plane, "type", copy_text("plane"));
-  if (robot->ground != NULL) place_element(plane, &robot->ground->place);
+  if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
 }
 
 static void write_contact(const struct Writer *writer, const struct Link *link, const struct Collision *collision,
@@ -100,7 +100,7 @@ static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, co
   set_attribute(shape, "name", name);
   set_attribute(shape, "in", copy_text(link->symbol));
   set_attribute(shape, "type", copy_text(collision->type));
-  place_element(shape, &collision->place);
+  place_element(shape, &collision->placement);
   for (int axis = 0; axis < 3; axis++) set_number(shape, sizes[axis], collision->size[axis]);
   set_number(shape, "radius", collision->radius);
   set_number(shape, "length", collision->length);

@@ -82,7 +82,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
   set_attribute(frame, "name", copy_text(link->symbol));
   if (joint != NULL) {
     const struct Link *parent = joint->parent;
-    struct Placement placement = placement_within(&parent->place, &joint->origin);
+    struct Placement placement = placement_within(&parent->placement, &joint->origin);
     set_attribute(frame, "in", copy_text(parent->carrier->symbol));
     write_placement(writer, frame, &placement);
     write_motion(writer, frame, joint);

@@ -190,7 +190,7 @@ static void order_links(struct Connection *connection) {
 
 /* Reports placements and inertias that overflowed. */
 static void check_numbers(struct Connection *connection, const struct Link *link) {
-  if (placement_is_finite(&link->place) && body_is_finite(&link->carrier->carried)) return;
+  if (placement_is_finite(&link->placement) && body_is_finite(&link->carrier->carried)) return;
   report_error(connection->diagnostics, link->line,
                "the position or inertia of the link '%s' as a part of '%s' is not finite; expected smaller numbers in "
                "its <origin> and <inertial> and in those of links fixed to it",
@@ -203,13 +203,13 @@ static void join_fixed_links(struct Connection *connection) {
   int errors = connection->diagnostics->errors;
   for (struct Link *link = robot->root; link != NULL && connection->diagnostics->errors == errors; link = link->next) {
     link->carrier = link;
-    link->place = no_displacement;
+    link->placement = no_displacement;
     if (link->joint != NULL && !joint_moves(link->joint)) {
       const struct Link *parent = link->joint->parent;
       link->carrier = parent->carrier;
-      link->place = placement_within(&parent->place, &link->joint->origin);
+      link->placement = placement_within(&parent->placement, &link->joint->origin);
     }
-    struct RigidBody body = body_seen_from(&link->place, &link->body);
+    struct RigidBody body = body_seen_from(&link->placement, &link->body);
     link->carrier->carried = body_joined(&link->carrier->carried, &body);
     check_numbers(connection, link);
   }

@@ -48,12 +48,12 @@ static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct Link *
   leave_out_others(urdf, node, known);
   xmlNodePtr mass = required_child_of(urdf, node, "mass"), inertia = required_child_of(urdf, node, "inertia");
   int errors = urdf->diagnostics->errors;
-  struct Placement place = read_origin(urdf, node);
+  struct Placement placement = read_origin(urdf, node);
   struct RigidBody body = {.mass = 0};
   if (mass != NULL) body.mass = required_number(urdf, mass, "value");
   if (inertia != NULL) body.tensor = read_tensor(urdf, inertia);
   if (urdf->diagnostics->errors == errors) check_inertial(urdf, node, link, &body);
-  link->body = body_seen_from(&place, &body);
+  link->body = body_seen_from(&placement, &body);
 }
 
 /* Returns the only child of this name; NULL if there is none or several. */
@@ -135,7 +135,7 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
 
 static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
-  struct Collision collision = {.place = read_origin(urdf, node), .friction = NAN, .line = line_of(node)};
+  struct Collision collision = {.placement = read_origin(urdf, node), .friction = NAN, .line = line_of(node)};
   char *problem = NULL;
   bool touches = link_touches_ground(urdf->options, link->name);
   if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
@@ -214,7 +214,7 @@ static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *li
   struct Collision visual = {.line = line_of(node)};
   bool is_right = is_sound_visual(node);
   if (is_right) {
-    visual.place = read_origin(urdf, node);
+    visual.placement = read_origin(urdf, node);
     visual.color = read_color(node);
     is_right = read_geometry(urdf, child_of(urdf, node, "geometry"), false, &visual, &problem);
   }

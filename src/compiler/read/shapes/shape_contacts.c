@@ -214,8 +214,8 @@ static void add_force_on(struct Reader *reader, long line, const struct Side *si
   const struct ReferenceFrame *frame = &mechanism->frames[shape->frame];
   bool is_particle = shape->particle != NO_PARTICLE;
   for (int i = 0; i < 3; i++) {
-    Node place = is_particle ? mechanism->bodies[shape->particle].displaced[i] : frame->pose.origin.along[i];
-    add_force_along(reader, line, shape->name, place, force.along[i]);
+    Node position = is_particle ? mechanism->bodies[shape->particle].displaced[i] : frame->pose.origin.along[i];
+    add_force_along(reader, line, shape->name, position, force.along[i]);
   }
   if (is_particle) return;
   struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin);
@@ -234,7 +234,7 @@ static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
   variable.node = force;
   scope_define(reader->scope, variable.name, (struct Quantity){.node = force, .dimension = variable.dimension},
                variable.line);
-  append_variable(&reader->model->mechanism.places, variable);
+  append_variable(&reader->model->mechanism.element_variables, variable);
 }
 
 void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {

@@ -26,7 +26,7 @@ struct Pair {
 
 /* Centres of balls of a common radius; the touches of a shape with a plane are on these balls. */
 struct Points {
-  struct Vector places[MOST_POINTS]; /* along the axes of the shape's frame */
+  struct Vector positions[MOST_POINTS]; /* along the axes of the shape's frame */
   size_t count;
   Node radius;
 };
@@ -55,19 +55,19 @@ static struct Vector along_axis(const struct ContactShape *shape, Node length) {
 
 static void append_point(struct Graph *graph, struct Points *points, const struct ContactShape *shape,
                          struct Vector from) {
-  points->places[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->turn, from));
+  points->positions[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->turn, from));
 }
 
 static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
   for (int corner = 0; corner < 8; corner++) {
-    struct Vector place = {{ZERO, ZERO, ZERO}};
+    struct Vector point = {{ZERO, ZERO, ZERO}};
     bool is_another = true; /* false for the duplicate corners of a box without size along an axis */
     for (int i = 0; i < 3; i++) {
       bool is_upper = (corner >> i & 1) != 0;
-      place.along[i] = scale(graph, is_upper ? 0.5 : -0.5, shape->size.along[i]);
+      point.along[i] = scale(graph, is_upper ? 0.5 : -0.5, shape->size.along[i]);
       is_another &= !(is_upper && shape->size.along[i] == ZERO);
     }
-    if (is_another) append_point(graph, points, shape, place);
+    if (is_another) append_point(graph, points, shape, point);
   }
 }
 
@@ -78,20 +78,20 @@ static void append_rims(struct Graph *graph, struct Points *points, const struct
                                                {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
   int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
   for (int i = 0; i < RIMS_POINTS; i++) {
-    struct Vector place = along_axis(shape, scale(graph, i < RIM_POINTS ? 0.5 : -0.5, shape->length));
-    place.along[across] = scale(graph, circle[i % RIM_POINTS][0], shape->radius);
-    place.along[beside] = scale(graph, circle[i % RIM_POINTS][1], shape->radius);
-    append_point(graph, points, shape, place);
+    struct Vector point = along_axis(shape, scale(graph, i < RIM_POINTS ? 0.5 : -0.5, shape->length));
+    point.along[across] = scale(graph, circle[i % RIM_POINTS][0], shape->radius);
+    point.along[beside] = scale(graph, circle[i % RIM_POINTS][1], shape->radius);
+    append_point(graph, points, shape, point);
   }
 }
 
 static void append_mesh_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
   const struct Mesh *mesh = shape->mesh;
   for (size_t i = 0; i < mesh->corner_count; i++) {
-    struct Vector place;
+    struct Vector point;
     for (int axis = 0; axis < 3; axis++)
-      place.along[axis] = graph_constant(graph, mesh->points[mesh->corners[i]][axis]);
-    append_point(graph, points, shape, place);
+      point.along[axis] = graph_constant(graph, mesh->points[mesh->corners[i]][axis]);
+    append_point(graph, points, shape, point);
   }
 }
 
@@ -139,7 +139,7 @@ static void touch_plane(const struct Pair *pair, struct Touches *touches) {
   struct Points points = points_of(graph, pair->first->shape);
   struct Vector normal = axis_of(pair, pair->second), ground = middle_of(pair, pair->second);
   for (size_t i = 0; i < points.count; i++) {
-    struct Vector centre = position_at(graph, &pair->first->pose, points.places[i]);
+    struct Vector centre = position_at(graph, &pair->first->pose, points.positions[i]);
     Node height = vector_dot(graph, normal, vector_subtract(graph, centre, ground));
     struct Vector down = vector_scale(graph, negate(graph, points.radius), normal);
     touches->items[touches->count++] =
@@ -209,8 +209,8 @@ static struct Vector seen_from_second(const struct Pair *pair) {
 
 static void touch_nearest(const struct Pair *pair, struct Vector nearest, struct Touches *touches) {
   struct Vector turned = turned_by(pair, pair->second, nearest);
-  struct Vector place = vector_add(pair->graph, middle_of(pair, pair->second), turned);
-  touch_balls(pair, middle_of(pair, pair->first), place, ZERO, touches);
+  struct Vector point = vector_add(pair->graph, middle_of(pair, pair->second), turned);
+  touch_balls(pair, middle_of(pair, pair->first), point, ZERO, touches);
 }
 
 static void touch_box(const struct Pair *pair, struct Touches *touches) {

@@ -23,13 +23,13 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
 
 /* A body's index in the model, and its line in its own file. */
 struct NamedBody {
-  size_t place;
+  size_t index;
   long line;
 };
 
 const struct Body *find_body(const struct Reader *reader, const char *name) {
   const struct NamedBody *named = names_find(reader->bodies, name);
-  return named != NULL ? &reader->model->mechanism.bodies[named->place] : NULL;
+  return named != NULL ? &reader->model->mechanism.bodies[named->index] : NULL;
 }
 
 /* If several bodies have the same name, which is reported, the name refers to the first. */
@@ -149,7 +149,7 @@ static void read_planar_body(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++)
     add_kinetic_energy(model, reader->scope, body.mass.node, body.position[axis].node);
   add_kinetic_energy(model, reader->scope, body.inertia.node, body.angle.node);
-  if (other == NULL) append_places(reader, node, body.name);
+  if (other == NULL) append_element_variables(reader, node, body.name);
   append_body(reader, body);
 }
 
@@ -217,7 +217,7 @@ static void read_spatial_body(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++) require_accelerations(reader, &body, axis);
   if (body.mass.node != ZERO) require_angular_accelerations(reader, &body);
   add_spatial_energy(reader->model, &body);
-  append_places(reader, node, body.name);
+  append_element_variables(reader, node, body.name);
   append_body(reader, body);
 }
 
@@ -240,7 +240,7 @@ static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
 void read_body(struct Reader *reader, xmlNodePtr node) {
   if (is_element(node, "frame")) {
     char *name = name_attribute(reader, node, "name");
-    if (name != NULL) append_places(reader, node, name);
+    if (name != NULL) append_element_variables(reader, node, name);
   } else if (!has_right_attributes(reader, node)) return;
   else if (is_spatial(node)) read_spatial_body(reader, node);
   else read_planar_body(reader, node);

@@ -16,7 +16,7 @@ static struct Vector read_factors(struct Reader *reader, xmlNodePtr node, const 
   int count = 0;
   for (char *part = text != NULL ? strtok_r(text, " \t\r\n", &rest) : NULL; part != NULL;
        part = strtok_r(NULL, " \t\r\n", &rest)) {
-    struct Quantity factor = parse_expression(reader->scope, part, place_at(node, what, IN_MASS));
+    struct Quantity factor = parse_expression(reader->scope, part, location_of(node, what, IN_MASS));
     require_unit(reader, line_of_attribute(node, what), what, factor, unit_of(unit));
     expect_not_negative(reader, node, what, factor.node, false);
     if (count < 3) factors.along[count] = factor.node;
@@ -45,7 +45,7 @@ static Node half_of_squares(struct Graph *graph, struct Vector factors, struct V
 
 static struct Vector stretch_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
   struct Vector stretch;
-  for (int i = 0; i < 3; i++) stretch.along[i] = place_along(graph, from, to, i);
+  for (int i = 0; i < 3; i++) stretch.along[i] = offset_along(graph, from, to, i);
   return stretch;
 }
 

@@ -37,13 +37,13 @@ static struct Vector derivative_of(struct Scope *scope, struct Vector vector) {
 
 static void append_frame(struct Reader *reader, const char *name, struct ReferenceFrame frame) {
   struct Model *model = reader->model;
-  size_t *place = allocate(1, sizeof *place);
-  *place = model->mechanism.frame_count;
+  size_t *index = allocate(1, sizeof *index);
+  *index = model->mechanism.frame_count;
   model->mechanism.frames =
       make_room(model->mechanism.frames, model->mechanism.frame_count, sizeof *model->mechanism.frames);
   frame.name = copy_text(name);
   model->mechanism.frames[model->mechanism.frame_count++] = frame;
-  names_set(reader->frames, name, place);
+  names_set(reader->frames, name, index);
 }
 
 void frames_begin(struct Reader *reader) {
@@ -132,8 +132,8 @@ static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const c
 }
 
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {
-  const size_t *place = names_find(reader->frames, name);
-  if (place != NULL) return &reader->model->mechanism.frames[*place];
+  const size_t *index = names_find(reader->frames, name);
+  if (index != NULL) return &reader->model->mechanism.frames[*index];
   const struct SpatialPoint *point = names_find(reader->spatial_points, name);
   return point != NULL && point->is_body ? &reader->model->mechanism.frames[point->frame] : NULL;
 }
@@ -150,10 +150,10 @@ static const struct ReferenceFrame *parent_of(struct Reader *reader, xmlNodePtr 
   char *name = frame_name(reader, node, "in");
   if (name == NULL) return NULL;
   char *whole = whole_name(true, name);
-  const size_t *place = names_find(reader->frames, name);
-  bool waits = place == NULL && definitions_wait_for(reader->definitions, whole);
-  if (place == NULL && !waits) report_unknown_frame(reader, node, name);
-  return place != NULL ? &reader->model->mechanism.frames[*place] : NULL;
+  const size_t *index = names_find(reader->frames, name);
+  bool waits = index == NULL && definitions_wait_for(reader->definitions, whole);
+  if (index == NULL && !waits) report_unknown_frame(reader, node, name);
+  return index != NULL ? &reader->model->mechanism.frames[*index] : NULL;
 }
 
 /* Reads a length along each axis from the attributes x, y and z, and its time derivative. */
@@ -260,7 +260,7 @@ bool find_spatial_point(const struct Reader *reader, const char *name, struct Sp
   return known != NULL || frame != NULL;
 }
 
-bool waits_for_place(struct Reader *reader, const char *name) {
+bool waits_for_element(struct Reader *reader, const char *name) {
   char *frame = whole_name(true, name), *point = whole_name(false, name);
   return definitions_wait_for(reader->definitions, frame) || definitions_wait_for(reader->definitions, point);
 }
@@ -331,18 +331,18 @@ static char *description_of(const char *name, const char *component) {
   return format_text("%c %s of %s", axis, what, name);
 }
 
-void append_places(struct Reader *reader, xmlNodePtr node, const char *name) {
+void append_element_variables(struct Reader *reader, xmlNodePtr node, const char *name) {
   const char *const *components = components_of(node);
   for (size_t i = 0; components[i] != NULL; i++) {
     char *full_name = format_text("%s.%s", name, components[i]);
     const struct Quantity *value = scope_find(reader->scope, full_name);
     if (value == NULL || components[i][0] == 'w') continue; /* for expressions only; omegaX, ... are the same vector */
-    struct Variable place = {.name = full_name,
-                             .description = description_of(name, components[i]),
-                             .unit = copy_text(unit_of_component(components[i])),
-                             .dimension = value->dimension,
-                             .node = without_displacements(reader, line_of(node), full_name, value->node)};
-    append_variable(&reader->model->mechanism.places, place);
+    struct Variable variable = {.name = full_name,
+                                .description = description_of(name, components[i]),
+                                .unit = copy_text(unit_of_component(components[i])),
+                                .dimension = value->dimension,
+                                .node = without_displacements(reader, line_of(node), full_name, value->node)};
+    append_variable(&reader->model->mechanism.element_variables, variable);
   }
 }
 

@@ -36,13 +36,13 @@ void collect_spatial(struct Reader *reader, xmlNodePtr node, const char *name);
 struct Quantity read_spatial(struct Reader *reader, xmlNodePtr node, const char *name, const char *attribute);
 
 /* Appends the components of an element to the model as variables. */
-void append_places(struct Reader *reader, xmlNodePtr node, const char *name);
+void append_element_variables(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Finds a point, a body or particle in a frame, or the origin of a frame by its name. Returns false for none. */
 bool find_spatial_point(const struct Reader *reader, const char *name, struct SpatialPoint *point);
 
 /* True if the current definition waits for the frame, point or body of this name, which has not been read. */
-bool waits_for_place(struct Reader *reader, const char *name);
+bool waits_for_element(struct Reader *reader, const char *name);
 
 /* Returns the frame of this name, also of a planar body or of a body in a frame; NULL for none. */
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name);

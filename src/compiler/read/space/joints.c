@@ -175,7 +175,7 @@ static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held
   case CROSS: return negate(graph, product_of_axes(graph, from, X, to, Y));
   default: break;
   }
-  return place_along(graph, from, to, (int)held);
+  return offset_along(graph, from, to, (int)held);
 }
 
 /*
@@ -230,9 +230,9 @@ struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const c
 /* True if the constraint is satisfied identically, so that it constrains nothing. */
 static bool is_idle(const struct Graph *graph, const struct Variable *constraint, const struct Side *from,
                     const struct Side *to) {
-  const struct Vector places[] = {from->position, to->position};
+  const struct Vector positions[] = {from->position, to->position};
   bool is_length = strcmp(constraint->unit, "m") == 0;
-  return vanishes(graph, constraint->node, places, is_length ? sizeof places / sizeof *places : 0);
+  return vanishes(graph, constraint->node, positions, is_length ? sizeof positions / sizeof *positions : 0);
 }
 
 /*

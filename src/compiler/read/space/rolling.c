@@ -25,7 +25,7 @@ static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const s
                                  const struct Side *to) {
   struct Graph *graph = reader->model->graph;
   Node lead = scale(graph, 0.5 / M_PI, read_length(reader, node, "pitch"));
-  Node fitting = divide(graph, place_along(graph, from, to, Z), lead);
+  Node fitting = divide(graph, offset_along(graph, from, to, Z), lead);
   Node sine = function(graph, SINE, fitting, ZERO), cosine = function(graph, COSINE, fitting, ZERO);
   Node along = product_of_axes(graph, from, X, to, X), across = product_of_axes(graph, from, Y, to, X);
   return (struct Thread){
@@ -68,7 +68,7 @@ static struct Tilt tilt_of(struct Graph *graph, const struct Side *from, const s
 
 Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
   struct Graph *graph = reader->model->graph;
-  Node radius = read_length(reader, node, "radius"), centre = place_along(graph, from, to, Z);
+  Node radius = read_length(reader, node, "radius"), centre = offset_along(graph, from, to, Z);
   if (is_sphere(node)) return subtract(graph, centre, radius);
   return subtract(graph, centre, multiply(graph, radius, tilt_of(graph, from, to).sine));
 }

@@ -56,7 +56,7 @@ bool read_side(struct Reader *reader, xmlNodePtr node, const char *name, struct 
 bool read_side_early(struct Reader *reader, xmlNodePtr node, const char *name, struct Side *side) {
   char *full_name = side_name(reader, node, name);
   struct SpatialPoint point;
-  if (full_name != NULL && waits_for_place(reader, full_name)) return false;
+  if (full_name != NULL && waits_for_element(reader, full_name)) return false;
   if (full_name != NULL && find_spatial_point(reader, full_name, &point)) return read_side(reader, node, name, side);
   *side = (struct Side){.rotation = reader->model->mechanism.frames[0].pose.rotation};
   return true;
@@ -78,7 +78,7 @@ Node product_of_axes(struct Graph *graph, const struct Side *from, int first, co
   return vector_dot(graph, axis_of_side(from, first), axis_of_side(to, second));
 }
 
-Node place_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis) {
+Node offset_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis) {
   struct Vector between = vector_subtract(graph, to->position, from->position);
   return vector_dot(graph, axis_of_side(from, axis), between);
 }

@@ -32,4 +32,4 @@ struct Vector axis_of_side(const struct Side *side, int axis);
 Node product_of_axes(struct Graph *graph, const struct Side *from, int first, const struct Side *to, int second);
 
 /* Returns the position of `to` relative to `from` along an axis of `from`, in m. */
-Node place_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis);
+Node offset_along(struct Graph *graph, const struct Side *from, const struct Side *to, int axis);

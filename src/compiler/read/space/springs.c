@@ -27,10 +27,10 @@ static Node read_constant(struct Reader *reader, xmlNodePtr node, const char *na
 static struct Spring spring_of(struct Reader *reader, xmlNodePtr node, unsigned kinds) {
   struct Graph *graph = reader->model->graph;
   char *text = format_text("distance(%s, %s)", attribute(node, "from"), attribute(node, "to"));
-  struct Place place = place_at(node, "the length of <spring>", kinds);
+  struct Location location = location_of(node, "the length of <spring>", kinds);
   struct Spring spring = {.stiffness = read_constant(reader, node, "stiffness", "N/m"),
                           .damping = read_constant(reader, node, "damping", "N.s/m"),
-                          .length = parse_expression(reader->scope, text, place).node};
+                          .length = parse_expression(reader->scope, text, location).node};
   Node relaxed = read_constant(reader, node, "length", "m");
   spring.stretch = subtract(graph, spring.length, relaxed);
   return spring;
@@ -66,7 +66,7 @@ static void append_components(struct Reader *reader, xmlNodePtr node, const char
         .unit = copy_text(units[i]),
         .dimension = value->dimension};
     variable.node = without_displacements(reader, line_of(node), full_name, value->node);
-    append_variable(&reader->model->mechanism.places, variable);
+    append_variable(&reader->model->mechanism.element_variables, variable);
   }
 }
 

@@ -20,10 +20,10 @@ static const char blanks[] = " \t\r\n";
 static void read_expressions(struct Reader *reader, xmlNodePtr node, const char *name, unsigned kinds, size_t count,
                              Node *nodes) {
   char *text = attribute(node, name), *what = format_text("%s of <rotate>", name), *rest = NULL;
-  struct Place place = {.line = line_of_attribute(node, name), .what = what, .kinds = kinds};
+  struct Location location = {.line = line_of_attribute(node, name), .what = what, .kinds = kinds};
   char *part = strtok_r(text, blanks, &rest);
   for (size_t i = 0; i < count && part != NULL; i++, part = strtok_r(NULL, blanks, &rest))
-    nodes[i] = parse_expression(reader->scope, part, place).node;
+    nodes[i] = parse_expression(reader->scope, part, location).node;
 }
 
 /* True if the text is one of the letters x, y and z. */

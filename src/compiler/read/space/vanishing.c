@@ -15,20 +15,20 @@ static double sample_of(size_t sample, size_t symbol) {
   return 0.5 + 0.45 * sin(1.0 + 2.7 * (double)(sample + 1) * (double)(symbol + 1));
 }
 
-static double scale_of(const double *values, const struct Vector *places, size_t place_count) {
-  double scale = place_count > 0 ? 0.0 : 1.0;
-  for (size_t i = 0; i < place_count; i++)
-    for (int axis = 0; axis < 3; axis++) scale = fmax(scale, fabs(values[places[i].along[axis]]));
+static double scale_of(const double *values, const struct Vector *positions, size_t position_count) {
+  double scale = position_count > 0 ? 0.0 : 1.0;
+  for (size_t i = 0; i < position_count; i++)
+    for (int axis = 0; axis < 3; axis++) scale = fmax(scale, fabs(values[positions[i].along[axis]]));
   return scale;
 }
 
-bool vanishes(const struct Graph *graph, Node node, const struct Vector *places, size_t place_count) {
+bool vanishes(const struct Graph *graph, Node node, const struct Vector *positions, size_t position_count) {
   double *symbols = allocate(graph->symbol_count, sizeof *symbols);
   bool is_zero = true;
   for (size_t sample = 0; sample < SAMPLES && is_zero; sample++) {
     for (size_t i = 0; i < graph->symbol_count; i++) symbols[i] = sample_of(sample, i);
     double *values = graph_evaluate(graph, symbols);
-    is_zero = fabs(values[node]) <= digits * scale_of(values, places, place_count);
+    is_zero = fabs(values[node]) <= digits * scale_of(values, positions, position_count);
     release(values);
   }
   release(symbols);

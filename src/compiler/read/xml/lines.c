@@ -72,15 +72,15 @@ void set_line(xmlNodePtr node, long line) {
  * parsed value: a UTF-8 sequence, an entity and a CR LF pair are one each.
  */
 static void find_breaks(struct Scan *scan, char quote, struct AttributeLines *lines) {
-  size_t place = 0;
+  size_t offset = 0;
   for (; scan->next < scan->end && *scan->next != quote; pass(scan)) {
     if (*scan->next == '\n') {
       lines->breaks = make_room(lines->breaks, lines->break_count, sizeof *lines->breaks);
-      lines->breaks[lines->break_count++] = place;
+      lines->breaks[lines->break_count++] = offset;
     } else if (*scan->next == '&') pass_to(scan, ";");
     if (scan->next == scan->end) break;
     bool continues = ((unsigned char)*scan->next & 0xC0u) == 0x80u, is_in_break = begins(scan, "\r\n");
-    place += !continues && !is_in_break;
+    offset += !continues && !is_in_break;
   }
 }
 
@@ -186,8 +186,8 @@ char *attribute_in_lines(xmlNodePtr element, const char *name) {
   const struct AttributeLines *lines = attribute_lines(element, name);
   if (text == NULL || lines == NULL) return text;
   char *letter = text;
-  for (size_t i = 0, place = 0; i < lines->break_count; i++) {
-    for (; place < lines->breaks[i] && *letter != '\0'; place++) letter += letter_length(letter);
+  for (size_t i = 0, offset = 0; i < lines->break_count; i++) {
+    for (; offset < lines->breaks[i] && *letter != '\0'; offset++) letter += letter_length(letter);
     if (*letter == ' ') *letter = '\n';
   }
   return text;

@@ -53,7 +53,8 @@ static xmlNodePtr find_declared(xmlNodePtr parent, const char *kind, const char 
   return found;
 }
 
-static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices);
+static void collect(xmlNodePtr schema, xmlNodePtr declaration, const char *kind, const char *key,
+                    struct Choices *choices);
 
 /* Collects from the target of a reference, such as <xs:group ref="..."> or <xs:extension base="...">. */
 static void collect_referred(xmlNodePtr schema, xmlNodePtr node, const char *reference, const char *kind_of_target,
@@ -68,11 +69,12 @@ static void collect_referred(xmlNodePtr schema, xmlNodePtr node, const char *ref
  * Collects the attribute `key` of every <xs:kind> that the schema allows at a node, such as the names of all attributes
  * of an element. Nested elements are not entered.
  */
-static void collect(xmlNodePtr schema, xmlNodePtr place, const char *kind, const char *key, struct Choices *choices) {
-  collect_referred(schema, place, "type", "complexType", kind, key, choices);
-  collect_referred(schema, place, "base", "complexType", kind, key, choices);
-  collect_referred(schema, place, "ref", (const char *)place->name, kind, key, choices);
-  for (xmlNodePtr node = place->children; node != NULL; node = node->next) {
+static void collect(xmlNodePtr schema, xmlNodePtr declaration, const char *kind, const char *key,
+                    struct Choices *choices) {
+  collect_referred(schema, declaration, "type", "complexType", kind, key, choices);
+  collect_referred(schema, declaration, "base", "complexType", kind, key, choices);
+  collect_referred(schema, declaration, "ref", (const char *)declaration->name, kind, key, choices);
+  for (xmlNodePtr node = declaration->children; node != NULL; node = node->next) {
     xmlChar *name = is_element(node, kind) ? xmlGetProp(node, (const xmlChar *)key) : NULL;
     if (name != NULL && choices->count < CHOICE_LIMIT) choices->names[choices->count++] = copy_text((const char *)name);
     xmlFree(name);
@@ -95,8 +97,8 @@ static xmlNodePtr declaration_of(const struct SchemaCheck *check, xmlNodePtr ele
 
 static struct Choices choices_in(const struct SchemaCheck *check, xmlNodePtr element, const char *kind) {
   struct Choices choices = {.count = 0};
-  xmlNodePtr place = declaration_of(check, element);
-  if (place != NULL) collect(xmlDocGetRootElement(check->schema), place, kind, "name", &choices);
+  xmlNodePtr declaration = declaration_of(check, element);
+  if (declaration != NULL) collect(xmlDocGetRootElement(check->schema), declaration, kind, "name", &choices);
   return choices;
 }
 
@@ -108,9 +110,9 @@ static struct Choices choices_of_value(const struct SchemaCheck *check, xmlNodeP
   struct Choices choices = {.count = 0};
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);
   xmlNodePtr type = find_declared(schema, "complexType", (const char *)element->name);
-  xmlNodePtr place = find_declared(type != NULL ? type : schema, "attribute", attribute);
-  if (place == NULL) place = find_declared(schema, "attribute", attribute);
-  if (place != NULL) collect(schema, place, "enumeration", "value", &choices);
+  xmlNodePtr declaration = find_declared(type != NULL ? type : schema, "attribute", attribute);
+  if (declaration == NULL) declaration = find_declared(schema, "attribute", attribute);
+  if (declaration != NULL) collect(schema, declaration, "enumeration", "value", &choices);
   return choices;
 }
 

@@ -11,7 +11,7 @@ enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL,
 /* Geometry of a link for contacts or drawing, in the link's frame. type: as in <shape type="...">. */
 struct Collision {
   const char *type;
-  struct Placement place;
+  struct Placement placement;
   double radius, length, size[3]; /* m; cylinders are along their z axis; size is that of a box */
   char *file;                     /* of a mesh, relative to the robot file; NULL for other types */
   double scale[3];                /* of a mesh: m per unit of the file */
@@ -33,7 +33,7 @@ struct Link {
   struct Link *first_child, *next_sibling; /* in the order of the file */
   struct Link *next;                       /* in depth-first order, parents first; NULL for the last */
   struct Link *carrier;                    /* the nearest link, from this one upward, that is movable or the root */
-  struct Placement place;                  /* of this link in its carrier's frame */
+  struct Placement placement;              /* of this link in its carrier's frame */
   struct RigidBody carried;                /* of a carrier: all links that are fixed to it, merged, in its frame */
   bool moves_inertia;                      /* of a carrier: it or one of its descendants has inertia */
 };

@@ -126,15 +126,15 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint
 }
 
 /* Sets the start of a free joint to the placement of its body, with the quaternion of its roll, pitch and yaw. */
-static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *place) {
+static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *placement) {
   double angles[3], s[3], c[3];
   if (strcmp(joint->parent_name, mjcf_world) != 0)
     report_error(mjcf->file.diagnostics, joint->line,
                  "the free joint '%s' is in the body '%s'; expected it in a <body> of the <worldbody>", joint->name,
                  joint->child_name);
-  placement_angles(place, angles);
+  placement_angles(placement, angles);
   for (int i = 0; i < 3; i++) {
-    joint->start.position[i] = place->translation[i];
+    joint->start.position[i] = placement->translation[i];
     s[i] = sin(angles[i] / 2);
     c[i] = cos(angles[i] / 2);
   }
@@ -146,8 +146,8 @@ static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Place
 
 /* The joints of a body, connected in series by massless links. */
 struct Chain {
-  char *body, *parent;    /* the last link so far */
-  struct Placement place; /* of the body in that link, if all remaining joints are at their ref */
+  char *body, *parent;        /* the last link so far */
+  struct Placement placement; /* of the body in that link, if all remaining joints are at their ref */
   size_t count;
   bool is_free, has_body;
 };
@@ -170,14 +170,14 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
   struct Joint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
   chain->is_free |= type == FLOATING;
-  if (type == FLOATING) read_free(mjcf, joint, &chain->place);
-  else joint->origin = placement_within(&chain->place, &anchor);
+  if (type == FLOATING) read_free(mjcf, joint, &chain->placement);
+  else joint->origin = placement_within(&chain->placement, &anchor);
   if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
   else read_several(mjcf, node, joint);
   if (child != chain->body) mjcf_add_link(mjcf, node, child);
   chain->has_body = child == chain->body;
   chain->parent = child;
-  chain->place = back;
+  chain->placement = back;
   chain->count++;
 }
 
@@ -190,7 +190,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain)
   if (chain->is_free && chain->count > 1)
     report_error(mjcf->file.diagnostics, line_of(node),
                  "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
-  if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->place);
+  if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->placement);
 }
 
 static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer);
@@ -198,12 +198,12 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
 static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
   char *name = attribute(node, "name");
   if (name == NULL) name = format_text("body%zu", ++mjcf->unnamed_count);
-  struct Placement place = mjcf_placement(mjcf, node);
-  struct Chain chain = {.body = name, .parent = parent, .place = placement_within(outer, &place)};
+  struct Placement placement = mjcf_placement(mjcf, node);
+  struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
   struct Link *link = mjcf_add_link(mjcf, node, name);
   mjcf_refuse(mjcf, node, "gravcomp");
   mjcf_refuse(mjcf, node, "mocap");
-  mjcf_note_place(mjcf, name, parent, &chain.place);
+  mjcf_note_placement(mjcf, name, parent, &chain.placement);
   read_joints(mjcf, node, &chain);
   mjcf_read_body(mjcf, node, link);
   read_children(mjcf, node, name, &no_displacement);
@@ -212,11 +212,11 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
 static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
   char *name = attribute(node, "name");
   if (name == NULL) return;
-  struct Placement place = mjcf_placement(mjcf, node);
-  place = placement_within(outer, &place);
+  struct Placement placement = mjcf_placement(mjcf, node);
+  placement = placement_within(outer, &placement);
   mjcf_add_link(mjcf, node, name);
-  mjcf_fix(mjcf, node, parent, name, &place);
-  mjcf_note_place(mjcf, name, parent, &place);
+  mjcf_fix(mjcf, node, parent, name, &placement);
+  mjcf_note_placement(mjcf, name, parent, &placement);
 }
 
 /* Reads bodies and sites, also in <frame>s, which transform them. */
@@ -268,7 +268,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
                       .meshes = names_create(),
-                      .places = names_create(),
+                      .placements = names_create(),
                       .angle = M_PI / 180,
                       .euler_sequence = "xyz",
                       .inertia_groups = {0, 5},
@@ -289,7 +289,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "compiler", false, read_compiler);
   for_each(&mjcf, "option", false, read_option);
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
-  mjcf_note_place(&mjcf, mjcf_world, NULL, &no_displacement);
+  mjcf_note_placement(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "contact", true, mjcf_read_rule);
   for_each(&mjcf, "worldbody", false, read_geoms_of_world);
   for_each(&mjcf, "worldbody", false, read_world);

@@ -34,7 +34,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
 /* The ends of a loop: two sites, or two bodies. The second body is the world if the element names none. */
 struct Ends {
   char *names[2];
-  const struct Placement *places[2]; /* in the world, with all joints at their ref */
+  const struct Placement *placements[2]; /* in the world, with all joints at their ref */
 };
 
 /* Reads the ends. Returns false after reporting one that does not exist. */
@@ -44,36 +44,36 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
   for (int i = 0; i < 2; i++) {
     bool is_world = names == of_bodies && i == 1 && !has_attribute(node, names[i]);
     ends->names[i] = is_world ? copy_text(mjcf_world) : required_attribute(&mjcf->file, node, names[i]);
-    ends->places[i] = mjcf_place_of(mjcf, ends->names[i]);
-    if (ends->places[i] == NULL && *ends->names[i] != '\0')
+    ends->placements[i] = mjcf_placement_of(mjcf, ends->names[i]);
+    if (ends->placements[i] == NULL && *ends->names[i] != '\0')
       report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected one of the file",
                    names == of_sites ? "site" : "body", ends->names[i], (const char *)node->name);
   }
-  return ends->places[0] != NULL && ends->places[1] != NULL;
+  return ends->placements[0] != NULL && ends->placements[1] != NULL;
 }
 
 /* Adds a link that is fixed to a body and returns its name. */
-static char *add_end(struct Mjcf *mjcf, xmlNodePtr node, char *body, char *name, const struct Placement *place) {
+static char *add_end(struct Mjcf *mjcf, xmlNodePtr node, char *body, char *name, const struct Placement *placement) {
   mjcf_add_link(mjcf, node, name);
-  mjcf_fix(mjcf, node, body, name, place);
+  mjcf_fix(mjcf, node, body, name, placement);
   return name;
 }
 
 /* Fixes the second body to the first by relpose, or as placed with all joints at their ref. */
 static void weld_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
-  struct Placement place = placement_between(ends->places[0], ends->places[1]);
+  struct Placement placement = placement_between(ends->placements[0], ends->placements[1]);
   double pose[7] = {0};
   mjcf_numbers(mjcf, node, "relpose", 7, 7, pose);
   if (pose[3] != 0 || pose[4] != 0 || pose[5] != 0 || pose[6] != 0) {
-    place.rotation = rotation_of_quaternion(&pose[3]);
-    memcpy(place.translation, pose, sizeof place.translation);
+    placement.rotation = rotation_of_quaternion(&pose[3]);
+    memcpy(placement.translation, pose, sizeof placement.translation);
   }
-  ends->names[0] = add_end(mjcf, node, ends->names[0], format_text("%s_1", loop), &place);
+  ends->names[0] = add_end(mjcf, node, ends->names[0], format_text("%s_1", loop), &placement);
 }
 
 /* Connects both bodies at the anchor, which is given in the first one. */
 static void connect_bodies(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends, const char *loop) {
-  struct Placement anchor = no_displacement, between = placement_between(ends->places[1], ends->places[0]);
+  struct Placement anchor = no_displacement, between = placement_between(ends->placements[1], ends->placements[0]);
   if (mjcf_numbers(mjcf, node, "anchor", 3, 3, anchor.translation) == 0)
     required_attribute(&mjcf->file, node, "anchor");
   struct Placement other = placement_within(&between, &anchor);

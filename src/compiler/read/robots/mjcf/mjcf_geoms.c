@@ -17,7 +17,7 @@ static const char *const geom_types[GEOM_TYPES + 1] = {"sphere", "capsule", "cyl
 /* size: radius and half length of a capsule or cylinder; half extent along each axis of others. */
 struct Geom {
   enum GeomType type;
-  struct Placement place;
+  struct Placement placement;
   double size[3];
   const struct MjcfMesh *mesh; /* NULL for other types, and for a shape that MuJoCo would fit to a mesh */
 };
@@ -27,7 +27,7 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   double ends[6], along[3];
   if (mjcf_numbers(mjcf, node, "fromto", 6, 6, ends) == 0) return;
   for (int i = 0; i < 3; i++) {
-    geom->place.translation[i] = (ends[i] + ends[i + 3]) / 2;
+    geom->placement.translation[i] = (ends[i] + ends[i + 3]) / 2;
     along[i] = ends[i] - ends[i + 3];
   }
   double length = make_unit(along);
@@ -38,7 +38,7 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
         "fromto of a <geom> is not valid; expected two different points, of a capsule, cylinder, box or ellipsoid");
     return;
   }
-  geom->place.rotation = rotation_of_z(along);
+  geom->placement.rotation = rotation_of_z(along);
   geom->size[is_round ? 1 : 2] = length / 2;
   if (!is_round) geom->size[1] = geom->size[0];
 }
@@ -50,7 +50,7 @@ static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   const char *mesh = mjcf_text(mjcf, node, "mesh");
   if (mesh != NULL && geom.type == MESH) geom.mesh = mjcf_mesh(mjcf, node, mesh);
   if (mesh != NULL) geom.type = MESH;
-  geom.place = mjcf_placement(mjcf, node);
+  geom.placement = mjcf_placement(mjcf, node);
   int errors = mjcf->file.diagnostics->errors;
   if (needed[geom.type] > 0) mjcf_numbers(mjcf, node, "size", 1, 3, geom.size);
   place_between(mjcf, node, &geom);
@@ -97,7 +97,7 @@ static struct RigidBody solid(const struct Geom *geom, double mass) {
   }
   struct RigidBody body = {.mass = mass};
   for (int i = 0; i < 3; i++) body.tensor.at[i][i] = moments[i];
-  return body_seen_from(&geom->place, &body);
+  return body_seen_from(&geom->placement, &body);
 }
 
 /* Returns the inertia of a geom. Reports geoms with a mass whose shape is not supported. */
@@ -109,7 +109,7 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   mjcf_refuse(mjcf, node, "shellinertia");
   if (geom->mesh != NULL && geom->mesh->is_weighed) {
     struct RigidBody body = body_scaled(&geom->mesh->body, has_mass ? mass / geom->mesh->body.mass : density);
-    return body_seen_from(&geom->place, &body);
+    return body_seen_from(&geom->placement, &body);
   }
   if (!is_solid && geom->type != PLANE && (has_mass ? mass : density) > 0)
     report_error(mjcf->file.diagnostics, line_of(node),
@@ -141,7 +141,7 @@ static const char *problem_of(const struct Geom *geom, bool touches) {
 }
 
 static struct Collision shape_of(const struct Geom *geom, long line) {
-  struct Collision shape = {.type = geom_types[geom->type], .place = geom->place, .line = line};
+  struct Collision shape = {.type = geom_types[geom->type], .placement = geom->placement, .line = line};
   if (geom->type == MESH) {
     shape.file = geom->mesh->path;
     memcpy(shape.scale, geom->mesh->scale, sizeof shape.scale);
@@ -159,7 +159,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
   bool is_of_world = link == robot->links[0];
   if (is_of_world && robot->ground == NULL) {
     robot->ground = allocate(1, sizeof *robot->ground);
-    robot->ground->place = geom->place;
+    robot->ground->placement = geom->placement;
     mjcf->ground = *contact;
   } else if (mjcf->file.options->has_ground)
     report_warning(mjcf->file.diagnostics, line_of(contact->node),
@@ -197,7 +197,7 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
 
 static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link) {
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-  struct Placement place = mjcf_placement(mjcf, node);
+  struct Placement placement = mjcf_placement(mjcf, node);
   struct RigidBody body = {.mass = mjcf_number_not_negative(mjcf, node, "mass", 0)};
   double moments[6] = {0};
   bool is_full = mjcf_numbers(mjcf, node, "fullinertia", 6, 6, moments) > 0;
@@ -207,7 +207,7 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link)
                  "<inertial> has diaginertia and fullinertia; expected one of them");
   required_attribute(&mjcf->file, node, "mass");
   for (int i = 0; i < 6; i++) body.tensor.at[row[i]][column[i]] = body.tensor.at[column[i]][row[i]] = moments[i];
-  link->body = body_seen_from(&place, &body);
+  link->body = body_seen_from(&placement, &body);
 }
 
 /* Reads the geoms of a body, and those in its <frame>s, which transform them. */
@@ -221,7 +221,7 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
     }
     if (!is_element(child, "geom")) continue;
     struct Geom geom = read_geom(mjcf, child);
-    geom.place = placement_within(outer, &geom.place);
+    geom.placement = placement_within(outer, &geom.placement);
     double group = mjcf_number(mjcf, child, "group", 0);
     if (weighs && group >= mjcf->inertia_groups[0] && group <= mjcf->inertia_groups[1]) {
       struct RigidBody part = weigh(mjcf, child, &geom);

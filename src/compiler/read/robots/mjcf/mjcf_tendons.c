@@ -72,8 +72,8 @@ static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *t
 static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
   double length = sum_of_pulls(mjcf, transmission, false);
   for (size_t i = 1; i < transmission->site_count; i++) {
-    const struct Placement *from = mjcf_place_of(mjcf, transmission->site_names[i - 1]),
-                           *to = mjcf_place_of(mjcf, transmission->site_names[i]);
+    const struct Placement *from = mjcf_placement_of(mjcf, transmission->site_names[i - 1]),
+                           *to = mjcf_placement_of(mjcf, transmission->site_names[i]);
     if (from == NULL || to == NULL) continue;
     const double *a = from->translation, *b = to->translation;
     length += sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));

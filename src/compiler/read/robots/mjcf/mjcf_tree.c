@@ -39,17 +39,17 @@ struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name) {
   return NULL;
 }
 
-void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place) {
-  mjcf_add_joint(mjcf, node, FIXED, format_text("%s_fixed", child), parent, child)->origin = *place;
+void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *placement) {
+  mjcf_add_joint(mjcf, node, FIXED, format_text("%s_fixed", child), parent, child)->origin = *placement;
 }
 
-void mjcf_note_place(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *place) {
-  const struct Placement *outer = parent != NULL ? mjcf_place_of(mjcf, parent) : NULL;
+void mjcf_note_placement(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *placement) {
+  const struct Placement *outer = parent != NULL ? mjcf_placement_of(mjcf, parent) : NULL;
   struct Placement *known = allocate(1, sizeof *known);
-  *known = placement_within(outer != NULL ? outer : &no_displacement, place);
-  names_set(mjcf->places, name, known);
+  *known = placement_within(outer != NULL ? outer : &no_displacement, placement);
+  names_set(mjcf->placements, name, known);
 }
 
-const struct Placement *mjcf_place_of(const struct Mjcf *mjcf, const char *name) {
-  return names_find(mjcf->places, name);
+const struct Placement *mjcf_placement_of(const struct Mjcf *mjcf, const char *name) {
+  return names_find(mjcf->placements, name);
 }

@@ -16,10 +16,10 @@ struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType 
 struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
 
 /* Fixes a link to its parent. */
-void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *place);
+void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *placement);
 
 /* Records a body's or site's placement in its parent (NULL for the world), with all joints at their ref. */
-void mjcf_note_place(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *place);
+void mjcf_note_placement(struct Mjcf *mjcf, const char *name, const char *parent, const struct Placement *placement);
 
 /* Returns the placement in the world that was recorded; NULL for none. */
-const struct Placement *mjcf_place_of(const struct Mjcf *mjcf, const char *name);
+const struct Placement *mjcf_placement_of(const struct Mjcf *mjcf, const char *name);

@@ -261,29 +261,30 @@ static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *con
 struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const names[ORIENTATIONS] = {"quat", "axisangle", "euler", "xyaxes", "zaxis"};
   static const size_t counts[ORIENTATIONS] = {4, 4, 3, 6, 3};
-  struct Placement place = no_displacement;
+  struct Placement placement = no_displacement;
   double v[6];
-  mjcf_numbers(mjcf, node, "pos", 3, 3, place.translation);
+  mjcf_numbers(mjcf, node, "pos", 3, 3, placement.translation);
   size_t kind = orientation_of(mjcf, node, names);
-  if (kind == ORIENTATIONS || mjcf_numbers(mjcf, node, names[kind], counts[kind], counts[kind], v) == 0) return place;
+  if (kind == ORIENTATIONS || mjcf_numbers(mjcf, node, names[kind], counts[kind], counts[kind], v) == 0)
+    return placement;
   bool is_right = true;
   if (kind == QUATERNION) {
     is_right = v[0] != 0 || v[1] != 0 || v[2] != 0 || v[3] != 0;
-    place.rotation = rotation_of_quaternion(v);
+    placement.rotation = rotation_of_quaternion(v);
   } else if (kind == AXIS_AND_ANGLE) {
     is_right = make_unit(v) > 0;
-    place.rotation = rotation_about(v, v[3] * mjcf->angle);
-  } else if (kind == EULER_ANGLES) place.rotation = of_euler(mjcf, v);
-  else if (kind == TWO_AXES) is_right = of_axes(v, &place.rotation);
+    placement.rotation = rotation_about(v, v[3] * mjcf->angle);
+  } else if (kind == EULER_ANGLES) placement.rotation = of_euler(mjcf, v);
+  else if (kind == TWO_AXES) is_right = of_axes(v, &placement.rotation);
   else {
     is_right = make_unit(v) > 0;
-    place.rotation = rotation_of_z(v);
+    placement.rotation = rotation_of_z(v);
   }
   if (!is_right)
     report_error(mjcf->file.diagnostics, line_of(node),
                  "%s=\"%s\" of <%s> gives no direction; expected vectors that are not 0, and not parallel", names[kind],
                  mjcf_text(mjcf, node, names[kind]), (const char *)node->name);
-  return place;
+  return placement;
 }
 
 void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]) {

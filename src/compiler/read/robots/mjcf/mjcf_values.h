@@ -45,7 +45,7 @@ struct Mjcf {
   size_t contact_count, rule_count;
   bool has_no_contacts, touches_parents; /* set by <flag> */
   bool is_off[ACTUATOR_GROUPS];          /* disabled groups of actuators */
-  struct Names *places; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
+  struct Names *placements; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
 /* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
