@@ -21,6 +21,7 @@ from scripts.live_page.description import read_tree
 from scripts.live_page.editor import files_of, write_editor
 from scripts.live_page.page import write_page
 from scripts.problem import Problem
+from scripts.reference_pages import PYTHON, reference_pages, relink, sections_of
 from scripts.whole_files import write_whole
 
 BUILD = ROOT / "build"
@@ -50,7 +51,7 @@ READ = {
         "Import into Simulink and Dymola": "fmu/howto/import-into-simulink-and-dymola.md",
         "Integrate into CMake": "fmu/howto/integrate-into-cmake.md",
     },
-    "Reference": "fmu/README.md",
+    "Reference": {},  # made of fmu/README.md and fmu/system.xsd by reference_pages
     "Theory": {
         "Overview": "fmu/theory/README.md",
         "1. Equations of motion": "fmu/theory/01-equations-of-motion.md",
@@ -73,6 +74,7 @@ READ = {
         "Importing FMUs": "fmu/IMPORTING.md",
         "Other tools": "fmu/COMPARISON.md",
         "The Python package": "scripts/wheel/README.md",
+        "Python functions and classes": "python.md",
         "Scripts": "scripts/README.md",
         "The code": "src/README.md",
         "Contributing": "CONTRIBUTING.md",
@@ -80,6 +82,9 @@ READ = {
         "Changes": "CHANGELOG.md",
     },
 }
+DOCSTRINGS = {"docstring_style": "numpy", "show_source": False, "show_root_toc_entry": False, "show_bases": False, "heading_level": 2, "separate_signature": True}
+PYTHON_WORDS = "From the docstrings. [The Python package](scripts/wheel/README.md) introduces it by examples."
+MADE = {"gallery.md", "python.md"}  # pages that are no files of the tree
 FIRST = "DoublePendulum"  # system that the laboratory shows first
 # Files to which pages link.
 BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "scripts/coupling/slaves.py", "scripts/coupling/BalancedCart/SystemStructure.ssd", *(f"fmu/{name}/system.xml" for name in (
@@ -139,6 +144,25 @@ def write_laboratory(names):
     return 'In the [laboratory](laboratory.html) you change them, or write your own: it derives the equations in your browser.\n'
 
 
+def write_pages(places):
+    """Write the pages of the tree, with the reference cut into its parts, and return the navigation of the reference."""
+    source = (ROOT / "fmu" / "README.md").read_text(encoding="utf-8")
+    reference, navigation = reference_pages(source, (ROOT / "fmu" / "system.xsd").read_text(encoding="utf-8"))
+    sections = sections_of(source)
+    for place in places:
+        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
+        if place.endswith(".md"):
+            write_whole(PAGES / place, relink((ROOT / place).read_text(encoding="utf-8"), place, place, sections))
+        else:
+            shutil.copy(ROOT / place, PAGES / place)
+    for place, text in reference.items():
+        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
+        write_whole(PAGES / place, text)
+    parts = [f"::: {module}\n    options:\n      members: {json.dumps(members)}" for module, members in PYTHON.items()]
+    write_whole(PAGES / "python.md", "\n\n".join(["# Python functions and classes", PYTHON_WORDS, *parts]))
+    return navigation
+
+
 def slug(text, separator):
     """Return the anchor of a heading; the theme does not find anchors that begin with a digit."""
     word = toc.slugify(text, separator)
@@ -149,7 +173,7 @@ def build_site(navigation):
     logging.basicConfig(format="%(message)s", level=logging.WARNING)  # shows the warnings that end a strict build
     shutil.copy(ROOT / "scripts" / "gallery_search.js", PAGES / "search.js")
     settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
-                "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search"],
+                "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search", {"mkdocstrings": {"handlers": {"python": {"paths": [str(ROOT / "scripts" / "wheel")], "options": DOCSTRINGS}}}}],
                 "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
     file = BUILD / "mkdocs.json"  # JSON is YAML, which MkDocs reads
     write_whole(file, json.dumps(settings))
@@ -163,16 +187,14 @@ def main():
     if not archives:
         sys.exit("scripts/gallery: there are no FMUs in build/fmu")
     shutil.rmtree(PAGES, ignore_errors=True)
-    for place in {*places(READ), *BESIDE} - {"gallery.md"}:
-        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / place, PAGES / place)
+    contents = READ | {"Reference": write_pages({*places(READ), *BESIDE} - MADE)}
     with ThreadPoolExecutor() as pool:
         cards = list(pool.map(write_system, archives))
     words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page. "
     words += write_laboratory([archive.stem for archive in archives])
     write_whole(PAGES / "gallery.md", f'# Gallery\n\n{words}\n<div class="systems">\n{"".join(cards)}\n</div>\n')
     write_whole(PAGES / "style.css", STYLE)
-    navigation = [{title: [{t: p} for t, p in page.items()] if isinstance(page, dict) else page} for title, page in READ.items()]
+    navigation = [{title: [{t: p} for t, p in page.items()] if isinstance(page, dict) else page} for title, page in contents.items()]
     build_site(navigation)
     print(f"gallery    {SITE / 'index.html'}")
 

@@ -3,8 +3,11 @@ get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 
 # add_string(NAME FILE): writes NAME.c, which defines the content of FILE as a string: the schema, and the style and script of an FMU's page.
+# The documentation in the schema is for editors and for the site, and left out.
 function(add_string name file)
-  file(READ ${root}/${file} bytes HEX)
+  file(READ ${root}/${file} text)
+  string(REGEX REPLACE "\n *<xs:annotation>[^\n]*</xs:annotation>" "" text "${text}")
+  string(HEX "${text}" bytes)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
   file(CONFIGURE OUTPUT ${name}.c CONTENT "extern const char ${name}[];\nconst char ${name}[] = {${bytes}0};\n" @ONLY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/${file})

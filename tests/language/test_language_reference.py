@@ -256,6 +256,7 @@ MOTIONS = {
     "BandBrake": (band_brake, 1e-12),
     "CueBall": (cue_ball, 1e-9),
     "DroppedBall": (dropped_ball, 1e-12),
+    "Shuttle": (lambda t: {"x": t if t < 0.3 else 0.3 - (t - 0.3) / 2 if t < 1.3 else -0.2 + (t - 1.3) / 4}, 1e-12),
     "Thermostat": (thermostat, 1e-9),
     "SampledShaft": (sampled_shaft, 1e-12),
     "Latch": (lambda t: {"x": (10 * t**3 - 1.25) / 6 - 1.25 * (t - 0.5) if t > 0.5 else 0}, 1e-12),

@@ -1,0 +1,217 @@
+"""
+Pages of the site for the reference of the language: fmu/README.md cut into a page for each section, and a page for each element, whose frame
+(attributes, values, where the element stands) comes from fmu/system.xsd. And the names of the page about the Python package.
+"""
+
+import posixpath
+import re
+import xml.etree.ElementTree as tree
+from dataclasses import dataclass
+
+XS = "{http://www.w3.org/2001/XMLSchema}"
+REFERENCE, FOLDER = "fmu/README.md", "fmu/reference"
+# Values of attributes by their type in the schema, as readers know them. Other types list their values.
+VALUES = {"xs:string": "text", "xs:boolean": "`true` or `false`", "xs:double": "number", "positive": "number above 0", "number": "number, or expression of constants", "expression": "expression",
+          "variableName": "name", "systemName": "name", "reference": "name of another element"}  # fmt: skip
+
+# The public functions and classes of the Python package, whose docstrings make a page.
+PYTHON = {"lagrange_fmu": ["simulate", "run", "start", "sweep", "live", "linearize", "equilibrium", "fit", "sensitivities", "gradient", "from_sympy", "words"],
+          "lagrange_fmu.building": ["build", "check", "new"], "lagrange_fmu.session": ["Simulation"], "lagrange_fmu.results": ["Result"],
+          "lagrange_fmu.linearization": ["Linearization"], "lagrange_fmu.resting": ["Equilibrium"], "lagrange_fmu.fit_result": ["Fit"],
+          "lagrange_fmu.variational": ["Sensitivities"], "lagrange_fmu.adjoint": ["Gradient"]}  # fmt: skip
+
+
+class Schema:
+    """fmu/system.xsd: the elements of the language, with their attributes and children."""
+
+    def __init__(self, text):
+        self.root = tree.fromstring(text)
+        self.named = {(node.tag, node.get("name")): node for node in self.root if node.get("name")}
+        self.elements = {}  # declarations by name; an element may mean different things in different parents
+        for node in self.root.iter(f"{XS}element"):
+            self.elements.setdefault(node.get("name"), []).append(node)
+
+    def type_of(self, declaration):
+        """Return the complex type of an element, or None if it has text alone."""
+        inline = declaration.find(f"{XS}complexType")
+        return inline if inline is not None else self.named.get((f"{XS}complexType", declaration.get("type")))
+
+    def bases(self, node):
+        """Yield a type, and the types that it extends, the base first."""
+        for extension in node.iter(f"{XS}extension"):
+            base = self.named.get((f"{XS}complexType", extension.get("base")))
+            if base is not None:
+                yield from self.bases(base)
+        yield node
+
+    def attributes(self, node):
+        """Yield the attributes of a type: declarations, in the order of the schema. Attributes of the elements in it are left out."""
+        for child in node:
+            if child.tag == f"{XS}attribute":
+                yield child
+            elif child.tag == f"{XS}attributeGroup":
+                yield from self.attributes(self.named[(f"{XS}attributeGroup", child.get("ref"))])
+            elif child.tag in (f"{XS}complexContent", f"{XS}simpleContent", f"{XS}extension"):
+                yield from self.attributes(child)
+
+    def children(self, node):
+        """Yield the names of the elements that a type contains."""
+        for child in node:
+            if child.tag == f"{XS}element":
+                yield child.get("name")
+            elif child.tag == f"{XS}group":
+                yield from self.children(self.named[(f"{XS}group", child.get("ref"))])
+            elif child.tag in (f"{XS}choice", f"{XS}sequence"):
+                yield from self.children(child)
+
+    def kinds(self, name):
+        """Return pairs of parents and a declaration, one for each type that an element has; that of a <system> first."""
+        kinds = {}
+        for parent, declarations in self.elements.items():
+            types = filter(None, map(self.type_of, declarations))
+            for declaration in (found for node in types for found in self.found_in(node, name)):
+                kinds.setdefault(declaration.get("type") or id(declaration), ([], declaration))[0].append(parent)
+        return sorted(kinds.values(), key=lambda kind: "system" not in kind[0]) or [([], self.elements[name][0])]
+
+    def found_in(self, node, name):
+        """Yield the declarations of an element in a type."""
+        for child in node:
+            if child.tag == f"{XS}element" and child.get("name") == name:
+                yield child
+            elif child.tag == f"{XS}group":
+                yield from self.found_in(self.named[(f"{XS}group", child.get("ref"))], name)
+            elif child.tag in (f"{XS}choice", f"{XS}sequence"):
+                yield from self.found_in(child, name)
+
+    def frame(self, declaration):
+        """Return the sentence about an element, its attributes, the names of its children, and whether it has text."""
+        node = self.type_of(declaration)
+        if node is None:
+            return documentation(declaration), [], [], True
+        attributes = {attribute.get("name"): attribute for part in self.bases(node) for attribute in self.attributes(part)}
+        contents = {name: None for part in self.bases(node) for name in self.children(part)}
+        has_text = node.get("mixed") == "true" or node.find(f"{XS}simpleContent") is not None
+        return documentation(declaration) or documentation(node), list(attributes.values()), list(contents), has_text
+
+
+def documentation(node):
+    """Return the documentation of a declaration; an empty text if it has none."""
+    return node.findtext(f"{XS}annotation/{XS}documentation") or ""
+
+
+def values_of(attribute):
+    """Return the words for the values of an attribute."""
+    listed = [f"`{value.get('value')}`" for value in attribute.iter(f"{XS}enumeration")]
+    if listed:
+        return ", ".join(listed)
+    return "`#rrggbb`" if attribute.find(f"{XS}simpleType") is not None else VALUES[attribute.get("type")]
+
+
+@dataclass
+class Section:
+    """A part of the reference, from its heading to the next one of any level. The text before the first heading has the anchor ""."""
+
+    anchor: str
+    title: str
+    text: str
+    page: str  # the path of the page that it is on
+
+
+def sections_of(text):
+    """Return the sections of the reference, in its order. Headings of the second level begin a page."""
+    sections, page = [], REFERENCE
+    for part in re.split(r"^(?=##+ )", text, flags=re.M):
+        heading = part.splitlines()[0] if sections else ""
+        title = heading.lstrip("# ")
+        anchor = re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-")
+        page = f"{FOLDER}/{anchor}.md" if heading.startswith("## ") else page
+        sections.append(Section(anchor, title, part, page))
+    return sections
+
+
+def place_of(anchor, sections):
+    """Return the page of an anchor of the reference, with the anchor on it."""
+    section = next(section for section in sections if section.anchor == anchor)
+    return section.page if section.page == f"{FOLDER}/{anchor}.md" else f"{section.page}#{anchor}"
+
+
+def relink(text, old, new, sections):
+    """Return a page that has moved from old to new, with links that lead where they led; those to the reference lead to its parts."""
+
+    def link(match):
+        path, _, anchor = match.group(1).partition("#")
+        if re.match(r"\w+:", path):
+            return match.group(0)
+        target = posixpath.normpath(posixpath.join(posixpath.dirname(old), path)) if path else old
+        if target == REFERENCE and anchor:
+            target, _, anchor = place_of(anchor, sections).partition("#")
+        place = "" if target == new and anchor else posixpath.relpath(target, posixpath.dirname(new) or ".")
+        return f"]({place}{'#' * bool(anchor)}{anchor})"
+
+    # Code holds no links.
+    parts = re.split(r"(^```.*?^```)", text, flags=re.M | re.S)
+    return "".join(part if part.startswith("```") else re.sub(r"\]\(([^()\s]+)\)", link, part) for part in parts)
+
+
+def rows_of_elements(sections):
+    """Yield the rows of the reference's table of elements, each as the anchors of its elements by their names."""
+    for row in re.findall(r"^\| .*?<.*\|$", sections[0].text, re.M):
+        yield {name: anchor for names, anchor in re.findall(r"\[(`<.*?)\]\(#([\w-]+)\)", row) for name in re.findall(r"<(\w+)", names)}
+
+
+def example_of(name, page, sections):
+    """Return the shortest example of a file with an element, from a page of the reference if it has one; an empty text if there is none."""
+
+    def examples(parts):
+        blocks = [block for part in parts for block in re.findall(r"^```xml\n<(?:system|linearization).*?^```$", part.text, re.M | re.S)]
+        return [block for block in blocks if re.search(rf"<{name}\b", block)]
+
+    return min(examples(part for part in sections if part.page == page) or examples(sections), key=len, default="")
+
+
+def element_page(name, row, schema, sections):
+    """Return the page of an element as Markdown, whose links are those of a page in fmu/; row has the elements that it is listed with."""
+    lines = [f"# `<{name}>`", ""]
+    for parents, declaration in schema.kinds(name):
+        sentence, attributes, contents, has_text = schema.frame(declaration)
+        where = f"Stands in {', '.join(map(link_of, sorted(set(parents))))}." if parents else "It is the root of a file."
+        inside = ["text"] * has_text + list(map(link_of, contents))
+        lines += [sentence, "", where + f" Contains {', '.join(inside)}." * bool(inside), ""]
+        if attributes:
+            lines += ["| attribute (**needed**) | value | meaning |", "| --- | --- | --- |", *map(row_of, attributes), ""]
+    section = next(section for section in sections if section.anchor == row[name])
+    lines += [f"The rules and the mathematics are in [{section.title}](README.md#{section.anchor}).", ""]
+    example = example_of(name, section.page, sections)
+    lines += ["## Example", "", example, ""] * bool(example)
+    others = [link_of(other) for other in row if other != name and other in schema.elements]
+    return "\n".join(lines + [f"See also {', '.join(others)}.", ""] * bool(others))
+
+
+def link_of(element):
+    return f"[`<{element}>`](elements/{element}.md)"
+
+
+def row_of(attribute):
+    """Return the row of an attribute in the table of its element."""
+    name = attribute.get("name")
+    return f"| {f'**{name}**' if attribute.get('use') == 'required' else name} | {values_of(attribute)} | {documentation(attribute)} |"
+
+
+def reference_pages(text, schema_text):
+    """
+    Return the pages of the reference: texts by path, and the navigation, a list of titles with paths. Links are right, but for those of the
+    other pages of the site, which `relink` adapts.
+    """
+    sections, schema = sections_of(text), Schema(schema_text)
+    pages = {}
+    for section in sections:
+        pages[section.page] = pages.get(section.page, "") + section.text
+    navigation = {"Overview": REFERENCE} | {section.title: section.page for section in sections if section.text.startswith("## ")}
+    # A page begins with a heading of the first level.
+    pages = {page: relink(re.sub(r"^#(?=#)", "", text, flags=re.M) if page != REFERENCE else text, REFERENCE, page, sections) for page, text in pages.items()}
+    for row in rows_of_elements(sections):
+        for name in row:
+            if name in schema.elements:
+                page = f"fmu/elements/{name}.md"
+                pages[page] = relink(element_page(name, row, schema, sections), REFERENCE, page, sections)
+    return pages, navigation
