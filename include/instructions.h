@@ -43,7 +43,10 @@ enum Space {
 /* A space in the upper 5 bits, and an index in it. */
 typedef uint32_t Slot;
 
-/* SLOT_BITS: of the index in a Place. SPACE_BITS: of each space in the header of a run, the result's in the lowest. */
+/*
+ * SLOT_BITS: of the index in a Slot. SPACE_BITS: of each space in the header of a run, that of the result in the lowest
+ * bits.
+ */
 enum { SLOT_BITS = 27, SPACE_BITS = 5 };
 
 /*
@@ -110,7 +113,10 @@ enum Opcode {
   OPCODE_COUNT
 };
 
-/* A block of M that is factored at run time: its parts of the spaces, and the pattern of its factor as in ldlt.h. */
+/*
+ * A block of M that is factored at run time: its slices of SPACE_MASS and SPACE_SIDE, and the pattern of its factor as
+ * in ldlt.h.
+ */
 struct BlockTable {
   size_t count, first_mass, first_side;
   const size_t *start, *column; /* NULL for a full pattern */

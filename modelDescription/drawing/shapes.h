@@ -7,7 +7,10 @@
 
 enum Look { GROUND, AXIS, SOLID, EDGE, LINK, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
 
-/* The style of a look in a picture of PICTURE_SIZE; name is a class of page.css and of the icon's style. */
+/*
+ * How shapes of one look are drawn, in a picture of PICTURE_SIZE pixels; name is a class of page.css and of the icon's
+ * style.
+ */
 struct LookStyle {
   const char *name;
   double width;            /* line width or diameter of dots, in pixels */
@@ -47,7 +50,10 @@ struct Rectangle {
 
 struct Rectangle rectangle_of(const struct Drawing *drawing);
 
-/* Scales and centres the drawing in PICTURE_SIZE pixels, to the right and down. Returns false if it has no extent. */
+/*
+ * Scales and centres the drawing in PICTURE_SIZE pixels, with x to the right and y down. Returns false if it has no
+ * extent.
+ */
 bool fit_drawing(struct Drawing *drawing);
 
 /* Finds the convex hull; sorts points. Returns its number of points, which come first in hull[2 count]. */

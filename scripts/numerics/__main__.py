@@ -274,7 +274,7 @@ def write_page(sections):
 
 
 def main(words=None):
-    """Write the report; return 1 if an FMU gives a wrong result. Missing programs and references are sentences in the page."""
+    """Write the report; return 1 if an FMU gives a wrong result. Missing programs and references are named in the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="compare five systems at few tolerances, in two minutes")
     quick = parser.parse_args(words).quick

@@ -25,7 +25,7 @@ struct LaneSteps {
   Lanes *state, *rate;        /* the state at which functions are evaluated, and scratch */
   Lanes *point_work;          /* workspace of generated functions */
   Mask is_limited;            /* the coefficients do not limit the step; a bound or a defect does */
-  Lanes fast;                 /* number of last consecutive steps that fast modes may have limited */
+  Lanes fast;                 /* number of consecutive steps, up to the last, that fast modes may have limited */
   Lanes path, steps;          /* of recent steps that the coefficients limit: sum of the state's changes, and number */
 };
 

@@ -16,7 +16,7 @@ static void assert_near(double value, double expected) {
   if (!(fabs(value - expected) <= 1e-9 * fabs(expected))) fail_msg("%.17g, expected %.17g", value, expected);
 }
 
-/* Checks each order, as a constant and as a variable of the compiler. */
+/* Runs a check at each order, once with the order as a constant, which compilers unroll, and once as a variable. */
 #define EACH_ORDER(CHECK)                                                                                              \
   CHECK(1)                                                                                                             \
   CHECK(2)                                                                                                             \

@@ -1,5 +1,5 @@
 /*
- * Prints the seconds that one evaluation of the derivatives takes, of a generated system that is linked in:
+ * Prints the seconds that one evaluation of the derivatives of a generated system takes, which is linked in:
  * accelerations COUNT. The state changes between evaluations; its values do not affect the time.
  */
 #include <stdio.h>

@@ -100,10 +100,10 @@ bool has_switches(const struct Switches *switches);
 /* True if a friction acts in a plane. */
 bool has_planes(const struct Switches *switches);
 
-/* Returns the square of the speed of a friction in a plane, given its part along. */
+/* Returns the square of the speed of a friction in a plane. along: the first of its two frictions. */
 Node square_of_speed(struct Graph *graph, const struct Friction *along);
 
-/* Returns the force against the velocity that the friction exerts beside its constraint. */
+/* Returns the force that the friction exerts against the velocity, in addition to the force of its constraint. */
 Node sliding_push(struct Graph *graph, const struct Friction *friction);
 
 /* Returns an expression that is 1 while the friction's constraint is active, else 0. */

@@ -13,7 +13,7 @@
 
 #include "arithmetic.h"
 
-/* Pivots for each row of the problem before a path is given up. */
+/* Pivots for each row before a path is abandoned: in practice Lemke's method needs a few for each row. */
 enum { PIVOTS_A_ROW = 50 };
 
 /* Smaller pivots count as rounding errors; M and q are scaled to a size of 1. */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Returns the numbers of workspace for n rows. */
+/* Returns the number of doubles of workspace for n rows. */
 size_t complementarity_work_count(size_t n);
 
 /*

@@ -26,7 +26,7 @@
 
 /*
  * In rounding error bounds: accelerations of a contact whose force has just vanished that count as 0. Such an
- * acceleration is 0 but for several rounding errors, more than the bound covers.
+ * acceleration is a sum of several rounding errors, more than one bound covers.
  */
 static const double parting_in_error_bound = 1e3;
 
@@ -119,7 +119,9 @@ static double delassus_with_friction(const struct Resolution *resolution, const 
   return sum;
 }
 
-/* Fills S, scaled by the units, and the free accelerations: the present ones less those by the present forces. */
+/*
+ * Fills S, scaled by the units, and the free accelerations: the present ones minus those that the present forces cause.
+ */
 static void fill_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
   const struct Pushes *pushes = &resting->pushes;
   struct RestingForces *forces = &resting->forces;

@@ -43,7 +43,10 @@ static const double largest_penetration = 1e-9;
 /* Relative to the largest coordinate: start values with four digits penetrate a contact by no more. */
 static const double rounded_start = 1e-4;
 
-/* In rounding error bounds: a negative gap up to this is not located again, as the search allows FLOOR_IN_ERROR_BOUND. */
+/*
+ * In rounding error bounds: a negative gap up to this is not located again, since the search allows
+ * FLOOR_IN_ERROR_BOUND.
+ */
 static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 
 /* Relative to the largest rate of the gap in this event: impulses by iteration may leave smaller closing rates. */
@@ -95,7 +98,7 @@ static bool check_restitution(const struct Resolution *resolution, size_t contac
 }
 
 /*
- * Selects the contacts that are hit as fast as one, within rounding, and all frictions; beyond IMPACT_LIMIT all
+ * Selects the contacts that close as fast as the given one, up to rounding, and all frictions; beyond IMPACT_LIMIT all
  * touching contacts. False after logging an invalid restitution.
  */
 static bool choose_hit(struct Resolution *resolution, size_t contact) {
@@ -182,8 +185,8 @@ static const char *refuse_singular_impact(const struct Resolution *resolution, s
 static const double largest_step_error = 1e-4;
 
 /*
- * True if an importer reaches the ground while the contact still parts: the error of its first step after the last impact exceeds the
- * height of the bounce, as that of the next first step would.
+ * True if the bounce is lower than the error of the first step that an importer makes after the impact: it would then
+ * reach the ground while the contact still opens, and again after the next impact.
  */
 static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);

@@ -21,7 +21,9 @@
 #include "evaluation/services.h"
 #include "events/continuity.h"
 
-/* In s: a rate that would change the velocity by less than its rounding error within this time may be rounding. */
+/*
+ * In s: a rate counts as a rounding error if it changes the velocity by less than its rounding error within this time.
+ */
 static const double shortest_slip = 1e-4;
 
 /* In rounding error bounds: the sign of a smaller force is not determined. */
@@ -66,7 +68,7 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
   state->error_bound_of_force = resolution->force_error_bound[friction] + error_bound[stiction];
 }
 
-/* True if a velocity is larger than a kink of the constraints or an error of the method may make it. */
+/* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
 static bool is_off_zero(const struct Resolution *resolution, double velocity) {
   double scale = largest_scale(resolution->state, lagrangian.coordinate_count);
   return fabs(velocity) > continuity_allowed_share(resolution) * scale;
@@ -96,7 +98,7 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
                        value[FRICTION_STICTION_BACK] == 0.0 && value[FRICTION_FORCE_BACK] == 0.0;
   /* Rounding of the time, at the largest rate of this velocity. */
   double error_bound_in_time = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->largest[slot + FRICTION_RATE]);
-  /* Once the velocity has reached 0, its rest counts as rounding, until velocities jump. */
+  /* After the velocity has reached 0, a remainder counts as a rounding error, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
   state.is_moving = fabs(state.velocity) > state.error_bound + error_bound_in_time && (state.may_jump || !is_at_zero);
   return state;
@@ -262,7 +264,10 @@ static bool leaves_rest(const struct Resolution *resolution, size_t friction) {
   return fabs(resolution->value[rate]) > least;
 }
 
-/* Reports as sticking what slides without moving: others constrain its velocity, and forces are not unique. */
+/*
+ * Reports frictions as sticking that slide without moving: other constraints hold their velocity, and forces are not
+ * unique.
+ */
 bool frictions_report(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
   double slowest = resting_speed(resolution);

@@ -17,7 +17,7 @@ bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *h
 /* Logs a friction without a consistent mode; returns the reason why the motion cannot go on. */
 const char *frictions_refuse(const struct Resolution *resolution, size_t friction);
 
-/* Logs that something is missing, and the friction that switched most often. */
+/* Logs what is missing, such as the accelerations, with the name of the friction that switched most often. */
 void frictions_blame(const struct Resolution *resolution, const char *missing);
 
 /*

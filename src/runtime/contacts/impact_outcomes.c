@@ -62,7 +62,7 @@ static double rate_behind_in(const struct Combination *combination, size_t row) 
   return rate;
 }
 
-/* Returns the change of a rate by a unit impulse that is sought, with the sliding frictions on it. */
+/* Returns the change of a rate by a unit of an unknown impulse, including that of the frictions that slide on it. */
 static double effect_in(const struct Combination *combination, size_t row, size_t push) {
   double sum = delassus_between(combination, row, push);
   for (size_t f = combination->pushes->contact_count;

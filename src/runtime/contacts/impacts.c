@@ -34,7 +34,10 @@ enum { HALVINGS = 52, SOLUTIONS = 50 };
 /* Energy gains below this fraction of the terms of the work are rounding errors. */
 static const double least_gain = 1e-13;
 
-/* Outcomes differ if the difference of their impulses makes more than this fraction of their energies, from rest. */
+/*
+ * Two outcomes differ if the difference of their impulses, applied at rest, makes more than this fraction of their
+ * energies.
+ */
 static const double differing_share = 1e-8;
 
 /* Relative to the largest velocity: impacts at lower rates are rounding errors at rest. */

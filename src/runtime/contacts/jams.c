@@ -154,7 +154,9 @@ static void log_several(const struct JamSearch *search) {
               resolution->time, resolution->switches->frictions[search->friction].name);
 }
 
-/* Sets the switch counters of what was tried to 1: later rounds treat these modes as chosen in this event. */
+/*
+ * Sets the switch counters of the modes that were tried to 1: later rounds treat these modes as chosen in this event.
+ */
 static void count_frictions(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++)

@@ -86,8 +86,8 @@ static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTabl
 }
 
 /*
- * Computes the effect of each unit impulse: in lever (count rows) the generalized impulses, rows of J, and in
- * pushes->velocities M^-1 J^T; then their products W. False if M is singular.
+ * Computes the effect of each unit impulse: the generalized impulses in jacobian_row (count rows, those of J), and M^-1
+ * J^T in pushes->velocities; then their products W. False if M is singular.
  */
 static bool respond_to_pushes(struct Resolution *resolution, struct Pushes *pushes, double *jacobian_row,
                               double *impulse, double *response) {

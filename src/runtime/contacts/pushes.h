@@ -48,7 +48,7 @@ static inline bool friction_sticks(const struct Resolution *resolution, size_t f
   return friction_holds(resolution->instance, friction);
 }
 
-/* Sets the mode of a friction: the sign of its velocity, which one in a plane ignores, or 0 for sticking. */
+/* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
 void set_friction(struct Resolution *resolution, size_t friction, double mode);
 
 /* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */

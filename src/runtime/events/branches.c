@@ -42,7 +42,7 @@ static double error_bound_of_branch(const struct Resolution *resolution, size_t 
   return error_bound * (is_rough ? FLOOR_IN_ERROR_BOUND : 1.0);
 }
 
-/* True if an event has left it a little beyond 0, and its rate leads back to the sign of its mode. */
+/* True if an event has left the indicator a little beyond 0, and its rate leads back to the sign of its mode. */
 static bool comes_back(const struct Resolution *resolution, size_t branch, double mode, double error_bound) {
   size_t rate = branch_rate_slot(resolution->switches, branch);
   double value = resolution->value[branch];

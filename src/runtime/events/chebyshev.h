@@ -22,13 +22,16 @@ void chebyshev_coefficients(const Real *f, Real *c);
 /* Returns a bound of |p(s) - c[0]|: the sum of the other |c[k]|. */
 Real chebyshev_range(const Real *c);
 
-/* Returns |c[7]| + |c[8]|, an estimate of the interpolation error; its largest ratio to the range, if resolved. */
+/*
+ * Returns |c[7]| + |c[8]|, which estimates the interpolation error. A polynomial is resolved if this is at most
+ * chebyshev_resolved times chebyshev_range().
+ */
 Real chebyshev_tail(const Real *c);
 static const double chebyshev_resolved = 1e-4;
 
 /*
- * Computes the coefficients d of dp/ds. The constants bound the effect of the tail on the first and second derivatives:
- * four times those of Markov's inequalities.
+ * Computes the coefficients d of dp/ds. The tail of c times chebyshev_tail_of_derivative bounds its effect on the first
+ * derivative, and times chebyshev_tail_of_curvature that on the second: four times Markov's inequalities.
  */
 void chebyshev_derivative(const Real *c, Real *d);
 static const double chebyshev_tail_of_derivative = 4.0 * CHEBYSHEV_DEGREE * CHEBYSHEV_DEGREE;

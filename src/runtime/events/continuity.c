@@ -12,7 +12,9 @@ static const double least_kink = 1e-6;
 
 const double crowding_share = 1e-6;
 
-/* Events at a corner that follow one another within this share of the time, before they count as Zeno behaviour. */
+/*
+ * Events at a corner, each within crowding_share of the time after the last one, before they count as Zeno behaviour.
+ */
 enum { CORNER_LIMIT = 30 };
 
 const char constraints_not_kept[] = "the constraints cannot be fulfilled after an event";

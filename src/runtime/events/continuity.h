@@ -10,7 +10,7 @@
 /* Projects the state that the solver has left. Returns NULL, or the reason why the motion cannot go on. */
 const char *continuity_begin(struct Resolution *resolution);
 
-/* Stores the energies and the lateness before a branch switches. */
+/* Stores the energies, and the time since the indicator was 0, before a branch switches. */
 void continuity_note(struct Resolution *resolution, size_t branch);
 
 /*
@@ -20,8 +20,8 @@ void continuity_note(struct Resolution *resolution, size_t branch);
 const char *continuity_check(struct Resolution *resolution);
 
 /*
- * Refuses Zeno behaviour at the corner of a gap in model exchange: errors of an integrator take a body that rests in the corner from
- * one piece to the other. Returns NULL, or the reason.
+ * Reports Zeno behaviour at the corner of a gap in model exchange: errors of an integrator move a body that rests in
+ * the corner from one piece to the other. Returns NULL, or the reason.
  */
 const char *continuity_check_corner(struct Resolution *resolution);
 

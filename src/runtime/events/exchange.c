@@ -19,7 +19,7 @@ enum { LATE_LIMIT = 8 };
 /* Relative excess of the step back to a zero, so that rounding does not leave the state beyond it. */
 static const double surplus = 64.0 * DBL_EPSILON;
 
-/* Returns the time in s since the motion left its pieces, the longest one; 0 if it has left none, NAN if unknown. */
+/* Returns the longest time in s since the motion left the range of a piece; 0 if it has left none, NAN if unknown. */
 static double time_beyond(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   double time = 0.0;
@@ -68,7 +68,10 @@ static void complete_indicators(struct Instance *instance, double *value) {
 /* Distance beyond 0 at which a zero is reported: the largest one, and in units of the rounding error bound. */
 static const double largest_shift = 1e-11, shift_in_error_bound = 1e5;
 
-/* Returns the shift for rounding error bounds by the state (noise) and by the indicator's operations (rounding). */
+/*
+ * Returns the shift, from the rounding error bounds by the state (error_bound) and by the indicator's operations
+ * (rounding).
+ */
 static double shift_of(double error_bound, double rounding) {
   double shift = fmax(shift_in_error_bound * error_bound, FLOOR_IN_ERROR_BOUND * rounding);
   return shift > 0.0 && shift < largest_shift ? shift : largest_shift;

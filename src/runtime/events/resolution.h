@@ -32,7 +32,7 @@ struct Resolution {
   bool moved, thrown, set_mode;           /* events have set coordinates; coordinates or velocities; a mode */
   bool lags;                              /* frictions have switched, and velocities were not projected since */
   bool came_to_rest;                      /* contacts came to rest in their last round */
-  bool is_evaluated;                      /* value[] and noise are valid */
+  bool is_evaluated;                      /* value[] and error_bound are valid */
   bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
   bool has_shared;                        /* contacts at rest share the load */
   bool has_several_motions;               /* several motions of the frictions were logged */
@@ -98,19 +98,20 @@ struct FrictionLaws {
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
   /*
    * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact, such that the rates
-   * after it fulfil the law of impacts. False if none are found. NULL without frictions in planes.
+   * after it fulfil the complementarity conditions of impacts.c. False if none are found. NULL without frictions in
+   * planes.
    */
   bool (*find_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                         double *impulse);
-  /* True if other impulses also fulfil the law of impacts, with another motion. */
+  /* True if other impulses also fulfil these conditions, with another motion. */
   bool (*has_other_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
                              const double *impulse);
 };
 
-/* Returns the numbers in value[]. */
+/* Returns the length of value[]. */
 size_t resolution_value_count(const struct SwitchTable *switches);
 
-/* Return the numbers of workspace, and an event resolution in it. */
+/* Return the number of doubles of workspace, and an event resolution in it. */
 size_t resolution_work_count(void);
 struct Resolution resolution_of(struct Instance *instance);
 

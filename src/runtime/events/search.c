@@ -34,7 +34,10 @@
 #include "events/window.h"
 #include "instance/time_laws.h"
 
-/* Windows that a search may look at. A search that need not be exact leaves windows that take more to the exact one. */
+/*
+ * Windows that a search may examine. An approximate search (BEFORE_IT) gives up earlier and leaves them to the exact
+ * one.
+ */
 enum { WINDOW_LIMIT = 5000, FEW_WINDOWS = 24 };
 
 /* Halvings of a window; steps of the Illinois method; of Newton's method on polynomials; evaluations at its zero. */

@@ -7,7 +7,7 @@
 /* TO_ROUNDING: the time of the event, to rounding. BEFORE_IT: a time before the event, which costs less. */
 enum Exactness { TO_ROUNDING, BEFORE_IT };
 
-/* Returns the numbers of workspace of a search, those of window_narrow() included. */
+/* Returns the number of doubles of workspace of a search, including those of window_narrow(). */
 size_t search_work_count(void);
 
 /*

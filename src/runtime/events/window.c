@@ -79,7 +79,10 @@ static bool sample_accelerations(const struct Window *window) {
   return true;
 }
 
-/* Returns the largest of them: a force near 0, where large ones cancel, has their rounding error. */
+/*
+ * Returns the largest acceleration or force. A force near 0, where large ones cancel, has the rounding error of this
+ * size.
+ */
 static double largest_acceleration(const struct Window *window) {
   size_t count = CHEBYSHEV_NODES * lagrangian.switches->watched_acceleration_count;
   double largest = 0.0;
@@ -88,8 +91,8 @@ static double largest_acceleration(const struct Window *window) {
 }
 
 /*
- * Returns their rounding error by rounding of the state in the middle. It is large just before a body rolls or rests:
- * the slip direction is then that of a velocity near rounding.
+ * Returns the rounding error of the accelerations and forces by rounding of the state in the middle. It is large just
+ * before a body rolls or rests: the slip direction is then that of a velocity near rounding.
  */
 static double error_bound_in_window(const struct Window *window) {
   size_t count = lagrangian.switches->watched_acceleration_count, middle = CHEBYSHEV_NODES / 2;
@@ -106,7 +109,7 @@ static double error_bound_in_window(const struct Window *window) {
   return error_bound;
 }
 
-/* Expands a sampled quantity about the middle. False if its polynomial does not describe it, up to noise. */
+/* Expands a sampled quantity about the middle. False if its polynomial does not describe it up to error_bound. */
 static bool expand_sampled(const struct Window *window, const double *samples, size_t count, size_t i,
                            double error_bound, double *series) {
   double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];

@@ -4,7 +4,7 @@
 
 #include "instance/instance.h"
 
-/* Returns the numbers of workspace, and of the samples in it, which come first. */
+/* Return the number of doubles of workspace, and of the samples, which are its first part. */
 size_t window_work_count(void);
 size_t window_sample_count(void);
 

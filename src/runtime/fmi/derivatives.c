@@ -41,7 +41,7 @@ static enum Status follow(struct Instance *instance, const struct Point *point, 
   return instance->singular == 0 ? STATUS_DONE : STATUS_DISCARD;
 }
 
-/* Adds to the seed: a known may stand more than once in a list. */
+/* Adds to the seed, since a list may contain a known several times. */
 static enum Status add_seed(struct Instance *instance, struct Direction *direction,
                             const struct ScalarVariable *variable, double value) {
   if (!isfinite(value))

@@ -37,8 +37,8 @@ enum Function {
 };
 
 /*
- * Returns the instance of a component, of which it is the first member, if the function may be called now. name: of the
- * function, for messages. Returns NULL, after logging an error, if it may not; NULL if component is NULL.
+ * Returns the instance of a component, which is its first member, if the function may be called now. name: of the
+ * function, for messages. Returns NULL after logging an error if it may not, or if component is NULL.
  */
 struct Instance *enter(void *component, enum Function function, const char *name);
 

@@ -31,7 +31,7 @@ struct EventProgress {
 };
 
 struct EventLaws {
-  /* Returns the numbers of workspace that an instance needs. */
+  /* Returns the number of doubles of workspace that an instance needs. */
   size_t (*work_count)(void);
   /*
    * Brings the modes into agreement with the state to which an importer has integrated. Impacts and events may change

@@ -39,7 +39,7 @@ struct Projection {
 
 extern const struct Projection projection;
 
-/* Returns the numbers of workspace that an instance needs for it. */
+/* Returns the number of doubles of workspace of the projection. */
 static inline size_t projection_work_count(void) {
   if (lagrangian.constraints.projection == NULL) return 0;
   return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count + 1 +

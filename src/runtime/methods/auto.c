@@ -46,7 +46,7 @@ static const double LARGEST_WORK = 1e15; /* plausibility limit of restored count
 static const double GROWTH = 1.25;       /* of speed from window to window that keeps a trial alive */
 static const double FIRST_GROWTH = 8.0;  /* largest ratio of the first Radau step to the last Taylor step */
 
-/* The part of the snapshot behind that of the active method. */
+/* The part of the snapshot after that of the active method. */
 struct Choice {
   int64_t method;          /* enum AutoMethod: the active one */
   int64_t steps, restarts; /* in the window; inputs that change cause restarts */

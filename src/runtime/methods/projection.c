@@ -34,7 +34,9 @@ static const double largest_jump = 0.1;        /* residual by an input's change,
 static const double noted_move = 1e-2;         /* with prescribed inputs: moves to log, in the same units */
 static const double vanishing = 1e-6;          /* ratio of a row of J where its constraint holds to the row nearby */
 
-/* The parts of the workspace. change, lack, pivot and slope follow each other, as lagrangian.constraints has them. */
+/*
+ * The parts of the workspace. change, residual, pivot and slope follow each other, as lagrangian.constraints has them.
+ */
 struct Work {
   double *change;                   /* of the coordinates or velocities */
   double *residual, *pivot, *slope; /* of each constraint: -residual, pivot, length of its row of J */
@@ -43,7 +45,7 @@ struct Work {
   double *start;                    /* state_count: where project() began */
   double *first_slope;              /* of each constraint */
   double *rounding;                 /* rounding error bounds of the indicators */
-  double *first; /* the first state that lack belongs to: 0 for coordinates, coordinate_count for velocities */
+  double *first; /* the first state that the residuals belong to: 0 for coordinates, coordinate_count for velocities */
 };
 
 static struct Work work_of(const struct Instance *instance) {
@@ -226,7 +228,10 @@ static size_t find_violated(const struct Work *work, const double *state, size_t
   return find_above(work, state, first, &most);
 }
 
-/* Looks at the residuals that project() has left. Without any, looks at those at its beginning, of both kinds. */
+/*
+ * Returns the constraint of largest residual that project() has left; if all are fulfilled, that at its start, among
+ * coordinates and velocities.
+ */
 static size_t unkept(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   int singular = instance->singular;
@@ -297,7 +302,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 
 static void log_redundant(const struct Instance *instance, const struct Work *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* that of an open contact has none */
+    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* the row of an open contact is 0 */
       log_message(instance, STATUS_DONE, "time %g: the %s '%s' is redundant; the forces are those of least norm",
                   instance->fmu_state->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }
@@ -327,7 +332,7 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
 static size_t find_vanishing(struct Instance *instance, double time, double *state) {
   struct Work work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
-  double *there = work.moved; /* which velocities do not need */
+  double *there = work.moved; /* workspace that projections of velocities do not use */
   if (!evaluate_residual(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
   memcpy(work.first_slope, work.slope, lagrangian.constraints.count * sizeof *work.slope);
   memcpy(there, state, lagrangian.state_count * sizeof *state);

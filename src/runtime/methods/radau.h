@@ -27,8 +27,8 @@ struct Complex {
 
 /*
  * The linear systems (mu - J) x = r of a step, with mu = eigenvalue / step and J = d f / d state. As q' = v, the
- * unknowns dv = mu dq - r_q are eliminated. The remaining systems have rows for q and for the states z behind the
- * velocities:
+ * unknowns dv = mu dq - r_q are eliminated. The remaining systems have rows for q and for the other states z, which
+ * follow the velocities:
  *
  *     (mu^2 - mu D - K) dq -        E  dz = r_v + (mu - D) r_q        K, D, E: of the accelerations by q, v, z
  *        -(mu G + F)    dq + (mu - H) dz = r_z -       G  r_q         F, G, H: of the rates by q, v, z
@@ -42,7 +42,7 @@ struct RadauSystems {
   double *work;                          /* workspace of lagrangian.implicit.lu */
 };
 
-/* Returns the numbers of memory that the systems need; radau_systems_slot() divides them. */
+/* Returns the number of doubles that the systems need; radau_systems_slot() divides them among the arrays. */
 size_t radau_systems_size(void);
 void radau_systems_slot(struct RadauSystems *systems, double *memory);
 

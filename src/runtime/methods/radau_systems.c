@@ -15,7 +15,10 @@ size_t radau_systems_size(void) {
   return count + (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
 }
 
-/* Finds the offsets of J's elements in a matrix. Those by a velocity share the offset of those by its coordinate. */
+/*
+ * Finds the offsets of J's elements in a matrix. The derivative by a velocity shares the offset of that by its
+ * coordinate.
+ */
 static void find_slots(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;

@@ -109,9 +109,8 @@ static double norm_of_block(const double *jacobian, struct Range rows, struct Ra
 }
 
 /*
- * Modes of the coordinates obey rate^2 = damping * rate + stiffness. The states z behind the velocities add their own
- * rates, and those of the loops v -> z -> v and v -> q -> z -> v, whose rates are roots of order 2 and 3 of the
- * products of norms.
+ * Modes of the coordinates obey rate^2 = damping * rate + stiffness. The other states z add their own rates, and those
+ * of the loops v -> z -> v and v -> q -> z -> v, whose rates are roots of order 2 and 3 of the products of norms.
  */
 double stiffness_rate(const double *jacobian, double *work) {
   size_t n = lagrangian.coordinate_count;

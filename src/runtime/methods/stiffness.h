@@ -12,7 +12,7 @@ double stiffness_promise(const struct Taylor *taylor, int order, double toleranc
 
 /*
  * Returns an upper bound of the fastest rate in 1/s, from the Jacobian in the order of lagrangian.implicit.pattern.
- * work: state_count numbers of workspace.
+ * work: state_count doubles of workspace.
  */
 double stiffness_rate(const double *jacobian, double *work);
 

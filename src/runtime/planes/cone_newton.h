@@ -4,7 +4,7 @@
 
 #include "planes/cones.h"
 
-/* Returns the numbers of workspace for n rows. */
+/* Returns the number of doubles of workspace for n rows. */
 size_t cone_newton_work_count(size_t n);
 
 /* Improves the impulses while each step reduces the residual by at least 10 %. Returns the residual, as a rate. */

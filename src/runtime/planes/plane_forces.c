@@ -25,7 +25,7 @@ struct PlaneForces {
   double *rate, *force, *behind;
 };
 
-/* True if it is at rest or may be brought to rest. A friction on an open contact moves with it. */
+/* True if the friction is at rest or may be brought to rest. A friction on an open contact moves with it. */
 static bool is_at_rest(const struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS || !plane_moves(state)) return true;
   return state->has_force && plane_is_slow(resolution, state);
@@ -78,7 +78,7 @@ static bool slides(const struct PlaneForces *forces, size_t row) {
   return !is_at_rest(forces->resolution, &state);
 }
 
-/* Eliminates sliding frictions: their forces are added to the effects of the contacts, and their rows become 0. */
+/* Eliminates sliding frictions: adds their forces to the effects of the contacts, and sets their rows to 0. */
 static void join_sliding(struct PlaneForces *forces) {
   const struct Pushes *pushes = &forces->pushes;
   size_t n = pushes->count, contacts = pushes->contact_count;
@@ -121,7 +121,7 @@ static double fill_behind(struct PlaneForces *forces) {
   return largest;
 }
 
-/* Sets the contacts. One that neither presses nor opens keeps its mode: others may share its force. */
+/* Sets the contacts. A contact that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
   struct Resolution *resolution = forces->resolution;
   const struct Pushes *pushes = &forces->pushes;

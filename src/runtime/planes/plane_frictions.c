@@ -54,7 +54,10 @@ static bool is_overcome(const struct Resolution *resolution, const struct PlaneS
   return state->mode == PLANE_STICKS && (state->needed > state->stiction || is_reached);
 }
 
-/* Lets a sticking friction slide if it moves, as after an impact, or if it needs more than its stiction. True if so. */
+/*
+ * Lets a sticking friction slide if it moves, as after an impact, or if it needs more than its stiction. True if it
+ * does.
+ */
 static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
   if (!(state->speed > state->small || is_overcome(resolution, state))) return false;
   if (plane_moves(state)) plane_slide(resolution, state);
@@ -136,7 +139,7 @@ static const char *act_on_headings(struct Resolution *resolution, bool *again) {
   return NULL;
 }
 
-/* Returns a friction in a plane that has switched more often than that; friction_count for none. */
+/* Returns a friction in a plane that has switched more often than the given number; friction_count for none. */
 static size_t find_flipping(const struct Resolution *resolution, double often) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->plane_count; i++)
@@ -145,7 +148,7 @@ static size_t find_flipping(const struct Resolution *resolution, double often) {
   return switches->friction_count;
 }
 
-/* Lets frictions at rest share the load of one that exceeds its stiction. True if there is such a one. */
+/* Lets frictions at rest share the load of one that exceeds its stiction. True if one does. */
 static bool share_loads(struct Resolution *resolution) {
   bool shares = false;
   for (size_t i = 0; i < resolution->switches->plane_count && !shares; i++) {

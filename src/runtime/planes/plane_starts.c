@@ -74,7 +74,10 @@ static bool leaves_between(struct Heading *heading, double from, double turn, do
   return heading->ahead >= -heading->error_bound;
 }
 
-/* Measures the effect of friction: half a turn changes the acceleration by twice as much; by 0 along constraints. */
+/*
+ * Measures the effect of friction: a reversal of its direction changes the acceleration by twice its effect, which is 0
+ * if constraints hold the velocity.
+ */
 static void measure_friction(struct Heading *heading, double angle) {
   const double half_turn = acos(-1.0);
   heading->error_bound = 0.0;
@@ -101,14 +104,17 @@ static double nearest_heading(struct Heading *heading, double first) {
   return NAN;
 }
 
-/* True if its direction is to be found; if others constrain its velocity, it keeps its direction. */
+/* True if the friction needs a slip direction. If other constraints hold its velocity, it keeps its direction. */
 static bool turns(struct Resolution *resolution, const struct PlaneState *state) {
   bool is_held = false;
   if (state->mode != PLANE_HEADS || state->is_given || state->speed > state->upper) return false;
   return !frictions_find_held(resolution, state->metadata->along, &is_held) || !is_held;
 }
 
-/* Makes a sweep over all. *largest: largest rotation, in rad; *stays as above. False if accelerations do not exist. */
+/*
+ * Makes a sweep over all frictions. *largest: largest rotation, in rad; *stays as in plane_headings_find(). False if
+ * accelerations do not exist.
+ */
 static bool turn_all(struct Resolution *resolution, double *largest, size_t *stays) {
   const struct SwitchTable *switches = resolution->switches;
   *largest = 0.0;

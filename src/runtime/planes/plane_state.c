@@ -68,7 +68,7 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
   return state;
 }
 
-/* At the start velocities are given: what slides is not brought to rest. */
+/* At the start the velocities are given, and a sliding friction is not brought to rest. */
 bool plane_is_slow(const struct Resolution *resolution, const struct PlaneState *state) {
   if (resolution->occasion == AT_START) return state->speed <= state->none;
   return state->speed <= slow_share * state->small || state->has_turned_back;
@@ -117,7 +117,7 @@ bool plane_has_part(const struct Resolution *resolution, const struct PlaneState
   return share < 1.0 - least_part;
 }
 
-/* Sets the slip direction. A direction of 0 keeps the present one, or takes that along if there is none. */
+/* Sets the slip direction. A direction of 0 keeps the present one, or selects the first axis if there is none. */
 static void set_heading(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]) {
   const double any[] = {1.0, 0.0};
   const size_t *mode = state->metadata->heading;

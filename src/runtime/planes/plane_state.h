@@ -34,12 +34,12 @@ struct PlaneState {
 
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane);
 
-/* True if it slides faster than counts as 0. */
+/* True if the friction slides faster than counts as 0. */
 static inline bool plane_moves(const struct PlaneState *state) {
   return state->speed > 2.0 * state->none;
 }
 
-/* True if it may be brought to rest at once; at the start only if its speed counts as 0. */
+/* True if the friction may be brought to rest at once; at the start only if its speed counts as 0. */
 bool plane_is_slow(const struct Resolution *resolution, const struct PlaneState *state);
 
 /* Evaluates the values for the present modes; false if accelerations do not exist. */
@@ -48,31 +48,34 @@ bool plane_evaluate(struct Resolution *resolution);
 /* Counts a switch of the friction. */
 void plane_count_switch(struct Resolution *resolution, const struct PlaneState *state);
 
-/* Lets it stick by its constraint alone. If forces are not unique, the constraint carries a share of the least norm. */
+/*
+ * Lets the friction stick by its constraint alone. If forces are not unique, the constraint carries its share of those
+ * of least norm.
+ */
 void plane_stick(struct Resolution *resolution, const struct PlaneState *state);
 
-/* Lets it stick with a given force; its constraint carries what is left of the load. */
+/* Lets the friction stick with a given force; its constraint carries the rest of the load. */
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]);
 
 /*
- * plane_push: keeps its given force as a friction force without a constraint, while others constrain its velocity.
- * plane_hold: lets it stick again, with the same given force.
+ * plane_push() keeps the given force as a friction force without a constraint, while other constraints hold the
+ * velocity. plane_hold() lets the friction stick again, with the same force.
  */
 void plane_push(struct Resolution *resolution, const struct PlaneState *state);
 void plane_hold(struct Resolution *resolution, const struct PlaneState *state);
 
-/* True if its given force is less than the kinetic friction force, and so not that of sliding. */
+/* True if the given force is below the kinetic friction force, and so not that of sliding. */
 bool plane_has_part(const struct Resolution *resolution, const struct PlaneState *state);
 
-/* Lets it slide until it is slow; a slow one until it is much slower or faster than at present. */
+/* Lets the friction slide until it is slow; a slow one until it is much slower or faster than at present. */
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state);
 
-/* Lets it move without force. */
+/* Lets the friction move without force. */
 void plane_free(struct Resolution *resolution, const struct PlaneState *state);
 
 /*
- * Lets it slide from rest along a direction, of any length, until it goes back or aside. A direction of 0 keeps the
- * last one.
+ * Lets the friction slide from rest along a direction, of any length, until the velocity leaves this direction. A
+ * direction of 0 keeps the last one.
  */
 void plane_head(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]);
 

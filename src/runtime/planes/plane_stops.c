@@ -32,7 +32,7 @@ static void try_all(struct Resolution *resolution) {
   }
 }
 
-/* True if its velocity changes although it sticks. */
+/* True if the velocity of the friction changes although it sticks. */
 static bool goes_on(const struct Resolution *resolution, const struct PlaneState *state) {
   double largest = 0.0;
   for (size_t i = 0; i < 2; i++) {
@@ -58,13 +58,13 @@ static size_t find_overcome(const struct Resolution *resolution) {
   return found;
 }
 
-/* True if others take what exceeds its stiction. */
+/* True if other frictions take the load beyond its stiction. */
 static bool shares_load(struct Resolution *resolution, size_t plane) {
   struct PlaneState state = plane_state(resolution, plane);
   return !goes_on(resolution, &state) && plane_loads_share(resolution, plane);
 }
 
-/* Lets it slide on, or slip in a new direction from rest. */
+/* Lets the friction continue to slide, or slip in a new direction from rest. */
 static void let_plane_slide(struct Resolution *resolution, size_t plane) {
   struct PlaneState state = plane_state(resolution, plane);
   bool passes = goes_on(resolution, &state);
@@ -74,7 +74,7 @@ static void let_plane_slide(struct Resolution *resolution, size_t plane) {
   else plane_head(resolution, &state, passes ? state.rate : state.force);
 }
 
-/* Projects the velocities of what sticks, or slips from rest, to 0. False if that fails. */
+/* Projects to 0 the velocities of frictions that stick, or slip from rest. False if that fails. */
 static bool bring_to_rest(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   bool moves = false;

@@ -23,7 +23,7 @@ static void exchange_fmu_states(struct Instance *instance) {
   instance->parameter_constants_are_stale = true;
 }
 
-/* Receives messages; keeps the first one. */
+/* Receives messages, and keeps the first one. */
 static void keep_message(void *receiver, enum Status status, const char *message) {
   char *text = receiver;
   (void)status;
@@ -84,7 +84,7 @@ static const double displacement[] = {1e-3, 1e-5, 1e-7};
 /* Second difference over displacement that is no kink, in units of the scales. */
 static const double straight = 1e-2;
 
-/* Returns the largest of count values relative to the variables that they change, at least 1. */
+/* Returns the largest of count values, each divided by the variable that it changes, but at least by 1. */
 static double relative_size(const double *value, const double *of, size_t count) {
   double largest = 0.0;
   for (size_t i = 0; i < count; i++) largest = fmax(largest, fabs(value[i]) / fmax(fabs(of[i]), 1.0));

@@ -172,7 +172,7 @@ static void log_weakest(struct Instance *instance, double time) {
                 time, name);
 }
 
-/* Logs that the solver stopped, and advice. Another solver does not help against endless events. */
+/* Logs that the solver stopped, with advice. For endless events it names no other solver, since none would help. */
 static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                      bool ends_at_event, double reached) {
   const struct Solver *solver = lagrangian.solver;

@@ -9,7 +9,7 @@
 /* Smallest pivot of 1 + E^T S C. Below it the forces have no solution, or many: friction that locks. */
 static const double smallest_locking_pivot = 1e-12;
 
-/* Offsets of the parts of m behind those of the symmetric matrix. */
+/* Offsets of the parts of m after those of the symmetric matrix. */
 struct Nonsymmetric {
   size_t count;     /* r */
   const int *force; /* rows of the forces from which others follow */
@@ -67,7 +67,7 @@ static void solve_small(size_t r, const double *a, const double *pivot, double *
   }
 }
 
-/* Solves with least-norm constraint forces, those of equally stiff contacts, for other forces to follow from. */
+/* Solves with least-norm constraint forces, from which the other forces follow. */
 static void solve_symmetric(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                             double *x) {
   saddle_solve(n, start, column, m, x);

@@ -7,7 +7,7 @@
 
 enum { X, Y, Z };
 
-/* Reads a nonzero length of parameters. */
+/* Reads a nonzero length, an expression of parameters. */
 static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Quantity length = {.node = ZERO};
   if (!expression_attribute(reader, node, name, IN_MASS, &length)) return ONE; /* the error has been reported */

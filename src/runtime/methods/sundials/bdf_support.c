@@ -42,7 +42,10 @@ static int correction_to_constraints(realtype time, N_Vector state, N_Vector cor
   return 0;
 }
 
-/* Projects steps without projecting their error estimate: an error that the projection removes still is an error. */
+/*
+ * Projects the states after steps, but not their error estimates: an error that the projection removes is an error of
+ * the step.
+ */
 static bool keep_constraints(struct Instance *instance, const struct Bdf *bdf) {
   return lagrangian.constraints.projection == NULL ||
          (SUCCEEDS(instance, CVodeSetProjFn, bdf->cvode, correction_to_constraints) &&

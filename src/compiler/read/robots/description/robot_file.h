@@ -9,7 +9,10 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
-/* Kinds of elements and attributes that are reported at most, and numbers in an attribute. */
+/*
+ * Limits: names of elements that are listed as left out, attributes that are reported as not read, numbers in an
+ * attribute.
+ */
 enum { LEFT_OUT_LIMIT = 20, UNREAD_LIMIT = 100, NUMBERS_LIMIT = 64 };
 
 struct RobotFile {
@@ -54,7 +57,7 @@ struct Attributes {
 
 /*
  * Warns of attributes in the element and its descendants that are not read and may change the motion: those with a
- * remedy, and those that the table lacks for an element in it. The last row has no elements.
+ * remedy, and those that the table does not list for their element. The last row has no elements.
  */
 void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attributes *table);
 
