@@ -453,7 +453,8 @@ struct Lagrangian {
   const struct ReverseSweep *reverse_sweep; /* reverse_sweep.h; NULL unless lagc was asked for --adjoint */
 
   /*
-   * Computes prepared[parameter_constants_count] from parameter[parameter_count]: the constants that depend on parameters alone.
+   * Computes parameter_constants[parameter_constants_count] from parameter[parameter_count]: the constants that depend
+   * on parameters alone.
    */
   int (*prepare)(const Real *parameter, Real *parameter_constants);
   /*

@@ -21,7 +21,7 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m)
 
 /*
  * Returns the sum of L_ik D_k L_jk over the columns k < j that rows i and j share. Row j holds L there, row i holds L
- * D. place is the index of column j in row i.
+ * D. slot is the index of column j in row i.
  */
 Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t slot);
 

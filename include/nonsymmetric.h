@@ -19,7 +19,7 @@
 
 #include "arithmetic.h"
 
-/* Numbers of storage behind those of saddle.h, see above. */
+/* Numbers of storage after those of saddle.h, see above. */
 #define NONSYMMETRIC_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
 /* As in saddle.h. nonsymmetric_factor() also returns 1 if 1 + E^T S C is singular: the friction jams. */

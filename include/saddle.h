@@ -81,7 +81,7 @@ static inline Condition saddle_is_weak(size_t elements, const Real *m) {
  */
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
-/* Computes an orthogonal basis of the null space of J^T behind the factors. saddle_factor() calls it. */
+/* Computes an orthogonal basis of the null space of J^T, and stores it after the factors. saddle_factor() calls it. */
 void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*

@@ -9,8 +9,9 @@
  *  e(h) = sum over k >= 1 of |u_k| h^k.
  *
  * Each bound is a condition e(h) <= c: f then changes by a factor of at most e^5 in the disc and has no singularity
- * there, or it is constant to the last bit. So no peak, step or pole of any width is skipped. For whole powers a
- * monotone u also suffices, for signs one that moves away from 0.
+ * there, or it is constant to the last bit. By Cauchy's estimate (L. V. Ahlfors: Complex Analysis, chapter 4) the
+ * coefficients of f then decay like those of a geometric series, so that no peak, step or pole of any width is skipped.
+ * For whole powers a monotone u also suffices, for signs one that moves away from 0.
  *
  * e(h) increases with h. The step is divided by 8 until the condition holds, then refined by four bisections of its
  * logarithm, to a factor of 8^(1/16). Each trial costs O(order).

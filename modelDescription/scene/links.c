@@ -4,11 +4,11 @@
  *
  *     d(q)^p = l^p + sum over k of mu_k g_k(q),   p = 2 or 1,
  *
- * for all q: on the constraints, the distance is l. Likewise, a joint is a point that is fixed both to a planar body and
- * to another object, up to multiples of the constraints. Both tests are linear in their unknowns. With about twice as
- * many equations, a residual of 0 to nine digits at unrelated q accepts the identity, as in probabilistic identity
- * tests (J. T. Schwartz: Fast probabilistic algorithms for verification of polynomial identities, 1980). Costs O(c^3)
- * for each pair of objects with c constraints; large systems test neighbours only.
+ * for all q: on the constraints, the distance is l. Likewise, a joint is a point that is fixed both to a planar body
+ * and to another object, up to multiples of the constraints. Both tests are linear in their unknowns. With about twice
+ * as many equations, a residual of 0 to nine digits at unrelated q accepts the identity, as in probabilistic identity
+ * tests (J. T. Schwartz: Fast probabilistic algorithms for verification of polynomial identities, Journal of the ACM
+ * 27, 1980). Costs O(c^3) for each pair of objects with c constraints; large systems test neighbours only.
  */
 #include "links.h"
 

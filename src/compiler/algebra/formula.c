@@ -125,7 +125,10 @@ static void print_product(struct Printer *printer, double coefficient, Node base
   if (below > 1) fputs(")", printer->file);
 }
 
-/* The condition that does not hold where an opener, 1 - gate(condition, 1), is positive; ZERO for other openers. */
+/*
+ * Returns the condition that does not hold where guard_condition, 1 - guard(condition, 1), is positive; ZERO for other
+ * nodes.
+ */
 static Node opposite_of(const struct Graph *graph, Node guard_condition) {
   const struct Vertex *sum = &graph->vertices[guard_condition], *guard;
   Node base;
@@ -136,12 +139,12 @@ static Node opposite_of(const struct Graph *graph, Node guard_condition) {
   return guard->operation == GUARD && guard->right == ONE ? guard->left : ZERO;
 }
 
-/* if(opener > 0, positive, other) */
+/* if(guard_condition > 0, positive, other) */
 struct Choice {
   Node guard_condition, positive, other;
 };
 
-/* A gate, or a sum of two gates of which one is open where the other is closed; false for other nodes. */
+/* Splits a guard, or a sum of two guards with opposite conditions, into a choice. False for other nodes. */
 static bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
   const struct Vertex *vertices = graph->vertices, *vertex = &vertices[node];
   if (vertex->operation == GUARD) {

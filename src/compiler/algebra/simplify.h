@@ -1,6 +1,7 @@
 /*
- * Constructors of simplified expressions. They fold constants, gather like terms, cancel common factors and apply
- * sin^2 + cos^2 = 1.
+ * Constructors of simplified expressions. They fold constants, gather like terms, cancel common factors and apply sin^2
+ * + cos^2 = 1 (J. Moses: Algebraic simplification: a guide for the perplexed, Communications of the ACM 14, 1971,
+ * surveys such rules).
  *
  * Each result is in a local normal form: a node is coefficient * base with at most one numeric factor, which is the
  * left operand; operands of sums and products are ordered by number; a numeric whole power of a power is one power; a

@@ -41,8 +41,8 @@ static enum Dependency step_of(const struct Graph *graph, enum Operation operati
 }
 
 /*
- * Adds the symbols below a node on which something depends by kind. A path to a symbol is as good as its worst step;
- * the symbol gets the worst of its paths.
+ * Adds the symbols below a node. kind: how the dependent value depends on the node. A path has the least favourable
+ * dependency of its steps, and a symbol that of its paths.
  */
 static void descend(struct Dependencies *dependencies, Node target, enum Dependency kind) {
   const struct Graph *graph = dependencies->graph;

@@ -32,7 +32,8 @@ struct Degrees {
 };
 
 /*
- * Returns the degrees of a node from those of the nodes below, which are indexed by their places in the graph's cone.
+ * Returns the degrees of a node from those of the nodes below, which are indexed by their positions in the graph's
+ * cone.
  */
 static struct Degrees degrees_of_vertex(const struct Model *model, Node node, const struct Degrees *of) {
   const struct Graph *graph = model->graph;

@@ -22,7 +22,7 @@ static Node *generalized_forces(const struct Model *model) {
   return force;
 }
 
-/* Copies the elements of a block from an array over all rows; with back, to that array. */
+/* Copies the elements of a block from an array over all rows; with back, in the other direction. */
 static void move_block(const struct InertiaBlock *block, Node *all, Node *of_block, bool back) {
   for (size_t i = 0; i < block->count; i++) {
     if (back) all[block->coordinates[i]] = of_block[i];

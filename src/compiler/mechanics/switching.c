@@ -137,8 +137,8 @@ static Node lower_indicator(const struct Model *model, const struct Friction *al
 }
 
 /*
- * Returns the upper indicator. It falls through 0 if the speed rises to upper, or that to the side of the heading; with
- * a negative upper, if the velocity along the heading falls to it.
+ * Returns the upper indicator. It falls through 0 if the speed rises to upper, or, while slipping along the heading,
+ * the velocity perpendicular to it; with a negative upper, if the velocity along the heading falls to it.
  */
 static Node upper_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;

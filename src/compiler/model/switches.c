@@ -24,12 +24,14 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
 }
 
 /*
- * Below this share of the lower speed, the friction along a prescribed velocity falls to 0: such a velocity may pass through 0, where it
- * has no direction.
+ * Below this share of the lower speed, the friction along a prescribed velocity falls to 0: such a velocity may pass
+ * through 0, where it has no direction.
  */
 static const double resting_share = 0.1;
 
-/* Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading. */
+/*
+ * Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading.
+ */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
   Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.heading);

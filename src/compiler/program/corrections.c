@@ -4,10 +4,10 @@
  *     M dq + J^T F = -M moved,   J dq = -g(q),
  *
  * with the symmetric indefinite matrix K = (M J^T; J 0) of the equations of motion, where moved is the sum of the
- * corrections so far. These are Newton's steps, without the second derivatives of g, for the nearest point in the metric
- * of M: minimize moved^T M moved subject to g = 0. The velocities need one step, as the constraints are linear in
- * them. The runtime (methods/projection.c) iterates and decides when to stop. A correction costs one factorization of
- * each constrained block: O(n^3) if it is full, O(n) for a tree, whose solution is symbolic. E. Hairer, C. Lubich,
+ * corrections so far. These are Newton's steps, without the second derivatives of g, for the nearest point in the
+ * metric of M: minimize moved^T M moved subject to g = 0. The velocities need one step, as the constraints are linear
+ * in them. The runtime (methods/projection.c) iterates and decides when to stop. A correction costs one factorization
+ * of each constrained block: O(n^3) if it is full, O(n) for a tree, whose solution is symbolic. E. Hairer, C. Lubich,
  * G. Wanner: Geometric Numerical Integration, section IV.4.
  */
 #include "program/corrections.h"

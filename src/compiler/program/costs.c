@@ -71,7 +71,7 @@ static double work_of_series(const struct Program *program) {
 }
 
 /*
- * Estimates what counts against the limit of work in a communication step. A step costs, beyond its evaluation, the
+ * Estimates the work that counts against the limit of a communication step. A step costs, beyond its evaluation, the
  * rest of the series, CORRECTIONS Newton steps of the projection onto the constraints, and SEARCHES evaluations of the
  * indicators, with LOOK more operations each, in the search for events. EVENT is the fixed part of an event. The
  * constants were fitted, like those of auto.c, to measured times of the systems in fmu/.

@@ -14,7 +14,7 @@
 
 #include "base/memory.h"
 
-/* A constraint, with the places of its numbers in the block that is factored at run time. */
+/* A constraint, with the slots of its numbers in the block that is factored at run time. */
 struct Row {
   Slot side, target, force;
   Slot turn;      /* its element of dJ w, if turns */

@@ -1,4 +1,7 @@
-/* States of first order in positions, energies and constraints: whether the derivatives that these need follow from their rates. */
+/*
+ * Checks of states of first order in positions, energies and constraints: the derivatives of a state that are needed
+ * there must follow from its rate.
+ */
 #pragma once
 
 #include "read/context/attributes.h"

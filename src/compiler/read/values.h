@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 
 /*
- * Reads a value: an expression of numbers, or a number and its unit, which is converted to the unit of the variable. What is no
- * value, or has another dimension, is reported, and the result is then false.
+ * Reads a value: an expression of numbers, or a number and its unit, which is converted to the unit of the variable.
+ * Returns false after reporting a text that is not a value, or has another dimension.
  */
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value);

@@ -122,7 +122,7 @@ static void write_numbers(FILE *file, const char *name, const struct InertiaBloc
 
 /*
  * Subtracts from element (row, j) of K the products K(row, c) L(j, c) over the columns c < j that both rows have; j is
- * the column of the element at place.
+ * the column of the element at slot.
  */
 static void write_shared_products(FILE *file, const struct InertiaBlock *block, size_t row, size_t slot) {
   const size_t *start = block->start, *column = block->column, other = column[slot];

@@ -39,7 +39,7 @@ static struct Local *find_shared(const struct Routine *routine, size_t steady_co
   return locals;
 }
 
-/* Returns the place in a part. keeps_accelerations: they come first in the shared space. */
+/* Returns the slot in a part. keeps_accelerations: they come first in the shared space. */
 static Slot placed(const struct Local *locals, bool keeps_accelerations, Slot slot) {
   if (space_of(slot) == SPACE_ACCELERATION && keeps_accelerations)
     return slot_in((enum Space)SPACE_SHARED, index_in(slot));

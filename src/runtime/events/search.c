@@ -191,9 +191,10 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
 }
 
 /*
- * Locates the fall of f through 0 between before, where it is not negative, and behind. Returns the neighbouring time
- * with the smaller value. For branches it is the later one, at which the next piece exists. So it is for forces: what
- * gives way must move in its own direction. Uses the Illinois method, with a bisection at every third step.
+ * Locates the fall of f through 0 between before, where it is not negative, and behind, by the Illinois method with a
+ * bisection at every third step. Returns the neighbouring time with the smaller value. Branches and forces get the
+ * later one: the next piece of a function exists there, and a contact that opens, or a friction that slips, then moves
+ * in its own direction.
  */
 static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;

@@ -2,11 +2,15 @@
  * Windows for the search for events. A hill such as exp(-(x/w)^2) may be flat where a window begins, and lie between
  * its samples. So a window must be short enough for every elementary function in the indicators.
  *
- * The states at the Chebyshev nodes of the window, by the dense output of any solver, give polynomials of degree 8 in
- * the time from its middle. Forces and accelerations in the indicators are expanded likewise. series_limit.h bounds
- * each function over the disc around the middle: the arguments' polynomials must not move so far that the function
- * changes by more than a factor of e^5, or meets a singularity. A polynomial whose last coefficients are not small does
- * not describe the motion, and shortens the window, too.
+ * The states at the Chebyshev nodes of the window, by the dense output of any solver, give polynomials u of degree 8 in
+ * the time from its middle (L. N. Trefethen: Approximation Theory and Approximation Practice, 2013). Forces and
+ * accelerations in the indicators are expanded likewise. A window of half length h is short enough if
+ *
+ *   sum over k >= 1 of |u_k| h^k <= c
+ *
+ * for the argument u of each function, with the bound c of series_limit.h: then the function changes by a factor of at
+ * most e^5, and meets no singularity. A polynomial whose last coefficients are not small does not describe the motion,
+ * and shortens the window, too.
  *
  * An attempt costs nine states and a series of order 8. A failed one shortens the window to between 1/8 and 1/2. So the
  * loop ends, at the resolution of time at the latest.

@@ -30,8 +30,8 @@ enum Status exchange_enter_continuous_time_mode(struct Instance *instance);
 bool exchange_complete_step(struct Instance *instance);
 
 /*
- * Brings the modes into agreement with the state, and projects it. Sets *states_changed if a continuous state changed in
- * any bit, as valuesOfContinuousStatesChanged reports (FMI 2.0.4, section 3.2.2).
+ * Brings the modes into agreement with the state, and projects it. Sets *states_changed if a continuous state changed
+ * in any bit, as valuesOfContinuousStatesChanged reports (FMI 2.0.4, section 3.2.2).
  */
 enum Status exchange_update(struct Instance *instance, bool *states_changed);
 

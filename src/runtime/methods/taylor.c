@@ -4,8 +4,8 @@
  *
  * A step expands the solution about its start t0: x(t0 + s) = x_0 + x_1 s + ... + x_p s^p. The generated recurrences
  * give the coefficients by automatic differentiation, at a cost of O(p^2) for each product in f. The tolerance
- * determines the order p (taylor_rule.h). The coefficients and a defect check determine the step (taylor_interval.c). The
- * polynomial also is the dense output.
+ * determines the order p (taylor_rule.h). The coefficients and a defect check determine the step (taylor_interval.c).
+ * The polynomial also is the dense output.
  *
  * A step may end after the communication point. The polynomial is evaluated there, and serves the following
  * communication steps until inputs, parameters or the state are set. The snapshot holds all that determines a step, so

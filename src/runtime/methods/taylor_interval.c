@@ -1,8 +1,8 @@
 /*
  * Step size of the Taylor method, in three parts.
  *
- * 1. Prediction (A. Jorba, M. Zou, 2005, section 3.2). With the norms |x_j| in units of the state's scales, the radius
- * of convergence is about r = min over j = p - 1, p of |x_j|^(-1/j), and the step is r * 2^(-margin) (taylor_rule.h).
+ * 1. Prediction (A. Jorba, M. Zou, 2005, section 3). With the norms |x_j| in units of the state's scales, the radius of
+ * convergence is about r = min over j = p - 1, p of |x_j|^(-1/j), and the step is r * 2^(-margin) (taylor_rule.h).
  *
  * 2. Bound. The last coefficients may vanish by symmetry, or because a function such as exp or tanh is flat at the
  * origin. series_limit.h bounds the step so that no elementary function in the equations can hide a change.

@@ -56,8 +56,7 @@ struct SeriesRule {
 };
 
 /*
- * Chooses the order p of least work per unit of time for the local tolerance (A. Jorba, M. Zou, 2005, sections 3.1 and
- * 3.2).
+ * Chooses the order p of least work per unit of time for the local tolerance (A. Jorba, M. Zou, 2005, section 3).
  *
  * With a step of exp(-fall) times the radius of convergence, each term is exp(-fall) times the one before. The first
  * term left out is about exp(-fall (p + 1)), which gives the fall for each order. If the work of a step grows with p^2,

@@ -13,8 +13,8 @@ struct Intermediate {
    */
   double (*update)(void *receiver, double time, double end);
   /*
-   * Called at each node of a communication step, in ascending order, before the step begins. Inputs can be set then, and
-   * nothing read, in PHASE_INPUT_REQUEST. An input that is not set keeps its last value.
+   * Called at each node of a communication step, in ascending order, before the step begins. Inputs can be set then,
+   * and nothing read, in PHASE_INPUT_REQUEST. An input that is not set keeps its last value.
    */
   void (*request)(void *receiver, double time);
   void *receiver;

@@ -131,7 +131,7 @@ static struct Fraction fraction_power(const struct Fraction *x, int exponent) {
   return result;
 }
 
-/* Returns the fraction of a node; known holds those of the nodes below, by their places in the cone. */
+/* Returns the fraction of a node; known holds those of the nodes below, by their positions in the cone. */
 static struct Fraction convert(struct Converter *converter, Node node, const struct Fraction *known) {
   const struct Cone *cone = converter->graph->cone;
   const struct Vertex *vertex = &converter->graph->vertices[node];

@@ -1,9 +1,9 @@
 /*
- * Expressions as fractions of two polynomials. Symbols, functions and fractional powers are the indeterminates. A
- * fraction is reduced by common monomials, and by the denominator or numerator if one divides the other; there is no
- * general greatest common divisor. Coefficients become whole numbers if possible. Reduced fractions are shorter and
- * better conditioned. Expressions with more than ATOM_LIMIT indeterminates, or MONOMIAL_LIMIT terms, are left as they
- * are.
+ * Expressions as fractions of two polynomials (K. O. Geddes, S. R. Czapor, G. Labahn: Algorithms for Computer Algebra,
+ * 1992, chapter 3). Symbols, functions and fractional powers are the indeterminates. A fraction is reduced by common
+ * monomials, and by the denominator or numerator if one divides the other; there is no general greatest common divisor.
+ * Coefficients become whole numbers if possible. Reduced fractions are shorter and better conditioned. Expressions with
+ * more than ATOM_LIMIT indeterminates, or MONOMIAL_LIMIT terms, are left as they are, which bounds the cost.
  */
 #pragma once
 

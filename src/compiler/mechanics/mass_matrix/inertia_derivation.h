@@ -11,8 +11,9 @@
 enum { UNROLL_LIMIT = 2 };
 
 /*
- * Returns K from the momenta dL/dv of all coordinates; stillness is energy_of_regularization(). Returns NULL after reporting
- * a coordinate without inertia, or an M that is singular everywhere, or not positive definite at the start values.
+ * Returns K from the momenta dL/dv of all coordinates; regularization is energy_of_regularization(). Returns NULL after
+ * reporting a coordinate without inertia, or an M that is singular everywhere, or not positive definite at the start
+ * values.
  */
 struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, Node regularization,
                                const struct ConstraintBlock *constraint_block, struct Diagnostics *diagnostics);

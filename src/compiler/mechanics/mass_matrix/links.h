@@ -30,7 +30,7 @@ struct Links {
 
 /*
  * Finds the kinematic trees of a model: those that are deep enough for articulated inertias to pay, and whose
- * constraints stay within single links. stillness is energy_of_regularization().
+ * constraints stay within single links. regularization is energy_of_regularization().
  */
 struct Links *links_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
                            Node regularization);

@@ -47,7 +47,7 @@ struct SpatialInertia spatial_inertia_of_body(struct Graph *graph, Node mass, st
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     inertia.mass.row[i].along[i] = mass;
-    inertia.coupling.row[i].along[j] = jacobian_row.along[k]; /* -[lever] */
+    inertia.coupling.row[i].along[j] = jacobian_row.along[k]; /* the matrix of -(mass offset) x */
     inertia.coupling.row[j].along[i] = negate(graph, jacobian_row.along[k]);
     Node square = multiply(graph, jacobian_row.along[j], offset.along[j]);
     square = add(graph, square, multiply(graph, jacobian_row.along[k], offset.along[k]));

@@ -8,5 +8,7 @@ struct BlockNumbers {
   size_t count;
 };
 
-/* Returns the numbers of a block's rows: 1 + index of coordinates, -1 - index of constraints; see also nonsymmetric.h. */
+/*
+ * Returns the numbers of a block's rows: 1 + index of coordinates, -1 - index of constraints; see also nonsymmetric.h.
+ */
 struct BlockNumbers block_numbers_of(const struct InertiaBlock *block, size_t coordinates);

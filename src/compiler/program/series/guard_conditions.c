@@ -1,7 +1,8 @@
 /*
- * A backward data-flow analysis: each node passes its set of guard conditions to its operands, and a gate passes its
+ * A backward data-flow analysis: each node passes its set of guard conditions to its operands, and a guard passes its
  * own condition to its operand. Repeats until nothing changes. Ends, as the sets only grow and hold at most
- * GUARD_CONDITION_LIMIT conditions; nodes are numbered after their operands, so that auxiliary nodes alone need a second pass.
+ * GUARD_CONDITION_LIMIT conditions. Nodes are numbered after their operands, so that only auxiliary nodes need a second
+ * pass.
  */
 #include "program/series/guard_conditions.h"
 

@@ -1,6 +1,6 @@
 /*
- * Guard conditions of the nodes in a series. GATE(a, b) is b where a > 0, else 0. A node that is needed only under
- * gates that are closed may have no value, and must not limit the step.
+ * Guard conditions of the nodes in a series. GUARD(a, b) is b where a > 0, else 0. A node that is needed only under
+ * guards whose conditions do not hold may have no value, and must not limit the step.
  */
 #pragma once
 
@@ -19,5 +19,5 @@ struct GuardConditions {
   bool always;
 };
 
-/* Returns the guard conditions of each node of the graph; NULL without gates. */
+/* Returns the guard conditions of each node of the graph; NULL without guards. */
 struct GuardConditions *guard_conditions_of(const struct Graph *graph, const struct SeriesPlan *plan);

@@ -41,7 +41,7 @@ const struct LimitMetadata *limit_metadata(enum LimitRule rule) {
   return &metadata[rule];
 }
 
-/* A check before its rows have places; ZERO for rows that it does not have. */
+/* A check before its rows have slots; ZERO for rows that it does not have. */
 struct Check {
   enum LimitRule rule;
   Node rows[2];

@@ -47,7 +47,7 @@ static void append(struct SeriesBuilder *builder, enum Opcode opcode, Slot resul
   routine_append(builder->order, opcode, result, a, b, c);
 }
 
-/* Returns the place of a value that is constant in time. */
+/* Returns the slot of a value that is constant in time. */
 static Slot value_of(const struct SeriesBuilder *builder, Node node) {
   return values_slot(builder->values, node);
 }

@@ -7,7 +7,7 @@
 #include "program/values/routine.h"
 #include "program/values/values.h"
 
-/* Provisional spaces: places are final only when it is known which nodes have rows. */
+/* Provisional spaces: slots are final only when it is known which nodes have rows. */
 enum {
   SPACE_OF_NODES = SPACE_COUNT, /* the series of a node */
   SPACE_OF_ACCELERATIONS,       /* the row of an acceleration */
@@ -20,7 +20,7 @@ struct SeriesBuilder {
   const struct SeriesPlan *plan;
   size_t coordinates;
   struct Needs *needs;
-  const struct Values *values; /* for the places of values that are constant in time */
+  const struct Values *values; /* for the slots of values that are constant in time */
   struct Routine *order;
   struct NodeList nodes; /* the computed nodes, ascending */
   bool *is_computed;     /* for each node of the graph, as the next two */
@@ -35,7 +35,7 @@ struct SeriesBuilder {
 /* True if all coefficients but the first are 0. */
 bool is_constant_series(const struct SeriesBuilder *builder, Node node);
 
-/* Return the place of a node that changes in time; series_row() also keeps all its coefficients in a row. */
+/* Return the slot of a node that changes in time; series_row() also keeps all its coefficients in a row. */
 Slot series_coefficient(const struct SeriesBuilder *builder, Node node);
 Slot series_row(struct SeriesBuilder *builder, Node node);
 

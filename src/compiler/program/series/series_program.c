@@ -165,7 +165,7 @@ static void append_states(struct SeriesBuilder *builder, const struct Equations 
     append_state(builder, 2 * n + i, series_coefficient(builder, equations->rates.nodes[i]));
 }
 
-/* The final places of the provisional spaces. */
+/* The final slots of the provisional spaces. */
 struct Rows {
   const struct SeriesBuilder *builder;
   size_t *row; /* for each node with has_row of the builder: its row */
@@ -212,7 +212,7 @@ static bool *find_used(const struct SeriesBuilder *builder) {
   return is_used;
 }
 
-/* Returns the instructions of an order with final places. */
+/* Returns the instructions of an order with final slots. */
 static struct Routine *resolve(struct Rows *rows) {
   const struct Routine *open = rows->builder->order;
   bool *is_used = find_used(rows->builder);
@@ -247,7 +247,7 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   return rows;
 }
 
-/* Completes the order, and the places of the limits. */
+/* Completes the order, and the slots of the limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
   program->order = resolve(rows);
   for (size_t i = 0; i < program->order->count; i++)

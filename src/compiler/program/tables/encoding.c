@@ -44,7 +44,7 @@ static void note_limit(struct Encoding *encoding, const struct SeriesProgram *se
 }
 
 /*
- * Updates the largest number of local variables. prepare() has its own behind its results, and statements declare
+ * Updates the largest number of local variables. prepare() keeps its own after its results, and statements declare
  * theirs.
  */
 static void find_most_locals(void *target, enum FunctionName name, const struct Routine *routine) {
@@ -74,7 +74,7 @@ size_t encoding_work_count(const struct Encoding *encoding) {
          row_count(program->equations);
 }
 
-/* Returns the index of a place in its space, in numbers; rows have SERIES_LENGTH numbers each. */
+/* Returns the index of a slot in its space, in numbers; rows have SERIES_LENGTH numbers each. */
 static uint32_t index_of(const struct Encoding *encoding, Slot slot) {
   enum Space space = space_of(slot);
   size_t index = index_in(slot);

@@ -39,5 +39,5 @@ struct RoutineTables {
 struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
                                 const struct ResultGroups *groups);
 
-/* Returns the check with the places that tables use. */
+/* Returns the check with the slots that tables use. */
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check);

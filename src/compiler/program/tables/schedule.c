@@ -1,6 +1,6 @@
 /*
  * Level scheduling. The level of an instruction is 1 + the highest level that it must follow: the last writes of its
- * operands, and the last writes and reads of the place that its result overwrites. Instructions of one level are
+ * operands, and the last writes and reads of the slot that its result overwrites. Instructions of one level are
  * independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
  */
 #include "program/tables/schedule.h"
@@ -10,12 +10,12 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 
-/* The levels at which a place was last written and read; 0: not yet. */
+/* The levels at which a slot was last written and read; 0: not yet. */
 struct Access {
   size_t written, read;
 };
 
-/* The accesses of the places in each space. */
+/* The accesses of the slots in each space. */
 struct Accesses {
   struct Access *of[SPACE_COUNT];
   size_t count[SPACE_COUNT];

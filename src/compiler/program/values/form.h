@@ -28,7 +28,7 @@ struct Needs *needs_create(const struct Graph *graph);
 /* Collects the nodes that the targets need, in place of those collected before. */
 void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing);
 
-/* True if the node is a symbol, a number or a prepared value. */
+/* True if the node is a symbol, a number or a parameter constant. */
 bool is_fetched(const struct Needs *needs, Node node);
 
 /* Returns a member's operation, with a + (-b) fused into a - b, and a * (1 / b) into a / b if 1 / b has one use. */

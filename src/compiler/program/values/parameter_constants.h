@@ -1,4 +1,4 @@
-/* Prepared values: expressions of parameters alone, computed once when parameters change. */
+/* Parameter constants: expressions of parameters alone, computed once when parameters change. */
 #pragma once
 
 #include "algebra/node_list.h"

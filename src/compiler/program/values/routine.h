@@ -31,7 +31,7 @@ static inline Slot slot_in(enum Space space, size_t index) {
   return (Slot)space << SLOT_BITS | (Slot)index;
 }
 
-/* Returns the place of an element of the array that the function fills. */
+/* Returns the slot of an element of the array that the function fills. */
 static inline Slot target_slot(size_t index) {
   return slot_in(SPACE_TARGET, index);
 }
@@ -71,7 +71,7 @@ const struct OpcodeMetadata *opcode_metadata(enum Opcode opcode);
 /* Returns the arguments of the opcode's Cauchy product for SERIES_MIDDLES of include/series.h; NULL if it has none. */
 const char *opcode_factors(enum Opcode opcode);
 
-/* True if the opcode stores a result in a place. */
+/* True if the opcode stores a result in a slot. */
 bool opcode_has_result(enum Opcode opcode);
 
 int opcode_arity(enum Opcode opcode);

@@ -49,7 +49,10 @@ static enum Comparison parse_comparison(struct Parser *parser) {
   return NO_COMPARISON;
 }
 
-/* Numbers that a motion comes to are equal at an instant alone, which no test in between sees. */
+/*
+ * Reports a comparison by =: along a motion two numbers are equal at an instant only, which no test between steps
+ * finds.
+ */
 static void refuse_equality(struct Parser *parser) {
   skip_space(parser);
   bool is_unequal = strncmp(parser->next, "!=", 2) == 0;

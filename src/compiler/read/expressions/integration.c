@@ -1,8 +1,13 @@
 /*
- * The number of nodes is the smallest for which the integral and its derivatives by what moves agree, to 1e-13 of the
- * integral of their magnitude, with a rule of many nodes: at the start values, and at random states around them. Then
- * it is found how far each variable may go from its start value. Beyond this range the sum has no finite value, so that
- * the FMU stops in place of a wrong result.
+ * Quadrature with a chosen number of nodes. The integral of f over s from a to b becomes
+ *
+ *   (b - a) sum over i of w_i f(a + (b - a) s_i),
+ *
+ * with Gauss-Legendre nodes s_i and weights w_i in (0, 1) (algebra/quadrature.h). The number of nodes is the smallest
+ * for which this sum, and its derivatives by the moving symbols, agree to 1e-13 of the integral of their magnitude with
+ * a reference rule of many nodes: at the start values, and at SAMPLES random states around them. The search ends at
+ * CHOICE_LIMIT nodes. Then a search finds how far each variable may move from its start value. Outside of this range
+ * the sum is divided by 0, so that the FMU stops in place of returning a wrong result.
  */
 #include "read/expressions/integration.h"
 
@@ -127,8 +132,8 @@ static bool is_polynomial(const struct Graph *graph, const struct Vertex *vertex
 }
 
 /*
- * Marks the nodes in which the integrand is not a polynomial. For polynomials a rule that holds at a few values holds
- * at all.
+ * Marks the nodes in which the integrand is not a polynomial. For polynomials a rule that is exact at a few values is
+ * exact at all.
  */
 static bool *mark_curved(const struct Graph *graph, Node integrand) {
   bool *is_curved = allocate(graph->count, sizeof *is_curved);
@@ -262,7 +267,7 @@ static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value)
   return multiply(graph, length, sum);
 }
 
-/* True if the node is a polynomial of second degree in what moves, whose second derivatives are constants. */
+/* True if the node is a polynomial of second degree in the moving symbols, whose second derivatives are constants. */
 static bool is_quadratic(struct Graph *graph, const struct Gradient *slopes, struct Gradient *curvatures) {
   for (size_t i = 0; i < slopes->count; i++) {
     curvatures[i] = gradient_by_kinds(graph, slopes->values[i], moving);

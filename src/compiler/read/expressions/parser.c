@@ -169,7 +169,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
   }
 }
 
-/* In <set> pieces of a definition that no event waits for are values. */
+/* Returns the form of a definition that <set> reads: piecewise functions for which no event waits are plain values. */
 static struct Quantity as_read_there(const struct Parser *parser, struct Quantity quantity) {
   if ((parser->location.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
   quantity.node = parser->scope->keeps_whole ? quantity.whole : quantity.at_instant;
@@ -520,7 +520,10 @@ static struct Quantity condition_as_quantity(struct Parser *parser) {
   return (struct Quantity){.node = parse_condition(parser)};
 }
 
-/* True if a node that is constant between events holds or not: a mode, what rests on contacts and frictions, or if(...). */
+/*
+ * True if a node is a truth value that is constant between events: a mode, a state of contacts or frictions, or
+ * if(...).
+ */
 static bool is_truth(const struct Scope *scope, const char *text, Node node) {
   if (!graph_is_constant_in_time(scope->graph, node)) return false;
   bool is_choice = strncmp(text + strspn(text, " \t\r\n"), "if", 2) == 0 && graph_depends_on(scope->graph, node, MODE);

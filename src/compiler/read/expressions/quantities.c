@@ -193,7 +193,7 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
   return result;
 }
 
-/* A number, or a parameter at its start, that is rounded without a word if it is no whole number. */
+/* Reports a number, or the start value of a parameter, that is not whole and would be rounded silently. */
 static void require_whole(struct Parser *parser, const char *name, const char *what, Node node) {
   const struct Graph *graph = parser->graph;
   bool is_known = graph_is_constant(graph, node) || parser->scope->model != NULL;

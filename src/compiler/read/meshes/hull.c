@@ -181,7 +181,7 @@ static const struct Site *choose_farthest(const struct Site **sites, size_t coun
 
 /*
  * Inserts sites until none is farther than `nearest`, or the hull is full. Returns false if all sites lie in a plane.
- * *lack: largest distance of a site from the hull's faces, in steps.
+ * *residual: largest distance of a site from the hull's faces, in steps.
  */
 static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count, double nearest, double *residual) {
   if (!begin_hull(hull, sites, count, nearest)) return false;

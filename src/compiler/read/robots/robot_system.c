@@ -1,16 +1,17 @@
 /*
  * Conversion of a robot to a system.
  *
- * 1. urdf_read() or mjcf_read() reads the file into a struct Robot: links, joints, tendons, actuators and loops. 2.
- * robot_connect() makes a kinematic tree of it. Links that are fixed to each other become one body. 3. Each movable
- * joint becomes one or more <coordinate>s with inputs, friction, springs and limits. 4. Each link becomes a <frame> in
- * the frame of the link that carries its parent. Its pose is the constant placement of the joint followed by the
- * joint's motion. A movable link also gets a <body> with the inertia of all links fixed to it. 5. Tendons, actuators,
- * loops and the tool follow as forces, constraints and outputs.
+ *  1. urdf_read() or mjcf_read() reads the file into a struct Robot: links, joints, tendons, actuators and loops.
+ *  2. robot_connect() makes a kinematic tree of it. Links that are fixed to each other become one body.
+ *  3. Each movable joint becomes one or more <coordinate>s with inputs, friction, springs and limits.
+ *  4. Each link becomes a <frame> in the frame of the link that carries its parent. Its pose is the constant placement
+ * of the joint followed by the joint's motion. A movable link also gets a <body> with the inertia of all links fixed to
+ * it.
+ *  5. Tendons, actuators, loops and the tool follow as forces, constraints and outputs.
  *
  * The result is validated against the schema and read like any system. Its elements have the lines of the robot file,
  * so that messages refer to that. In joint coordinates only loops, quaternions and coupled tendons need constraints.
- * The cost is linear in the numbers of links and joints, but for pairs of geoms and some searches by name in MJCF.
+ * The cost is linear in the numbers of links and joints, except for pairs of geoms and some searches by name in MJCF.
  *
  * R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 4.
  */

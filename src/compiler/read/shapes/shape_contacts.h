@@ -1,7 +1,7 @@
 /*
  * <contact between="a" and="b">: contacts of shapes. With a stiffness they are compliant: a normal force after Hunt and
- * Crossley (ASME J. Appl. Mech. 42, 1975, equation 1 with n = 1) and regularized Coulomb friction. Otherwise they are
- * rigid, see switching_reader.h.
+ * Crossley (ASME J. Appl. Mech. 42, 1975), here linear in the depth, and regularized Coulomb friction. Otherwise they
+ * are rigid, see switching_reader.h.
  */
 #pragma once
 

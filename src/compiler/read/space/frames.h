@@ -53,5 +53,5 @@ const struct ReferenceFrame *find_frame(const struct Reader *reader, const char 
  */
 const struct ReferenceFrame *frame_of_attribute(struct Reader *reader, xmlNodePtr node, const char *name);
 
-/* Adds the regularizing inertia of a quaternion's norm, see struct Stillness; called when all bodies are known. */
+/* Adds the regularizing inertia of a quaternion's norm, see struct Regularization; called when all bodies are known. */
 void add_regularization_of_norm(struct Reader *reader, xmlNodePtr node);

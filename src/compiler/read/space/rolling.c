@@ -84,7 +84,10 @@ static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node 
   return vector_scale(graph, divide(graph, radius, tilt.sine), across);
 }
 
-/* Returns the velocity along the base's axes of the point at `lever` from the end, which rotates with it. */
+/*
+ * Returns the velocity, along the base's axes, of the point that is fixed to the end at the vector jacobian_row from
+ * it.
+ */
 static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side,
                                  struct Vector jacobian_row) {
   struct Graph *graph = reader->model->graph;
