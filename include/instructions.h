@@ -29,10 +29,10 @@ enum Space {
   SPACE_SEED_ACCELERATION,
   SPACE_SEED_RESULT,
   SPACE_LOCAL,
-  SPACE_MASS,   /* elements of the blocks of M that are factored at run time, later their factors */
-  SPACE_SIDE,   /* right sides of these blocks, later their solutions */
-  SPACE_TARGET, /* the result array of the function */
-  SPACE_ROW,    /* the workspace of series; as a value, coefficient 0 */
+  SPACE_MASS,       /* elements of the blocks of M that are factored at run time, later their factors */
+  SPACE_RIGHT_SIDE, /* right sides of these blocks, later their solutions */
+  SPACE_TARGET,     /* the result array of the function */
+  SPACE_ROW,        /* the workspace of series; as a value, coefficient 0 */
   SPACE_STATE_ROW,
   SPACE_INPUT_ROW,
   SPACE_TIME_ROW,
@@ -118,7 +118,7 @@ enum Opcode {
  * in ldlt.h.
  */
 struct BlockTable {
-  size_t count, first_mass, first_side;
+  size_t count, first_mass, first_right_side;
   const size_t *start, *column; /* NULL for a full pattern */
   const int *coordinate;        /* of each row: 1 + the index of the coordinate; -1 - that of a constraint */
   /* saddle_factor(), saddle_solve() and saddle_least_forces() for a block with constraints; else NULL */
@@ -137,7 +137,8 @@ struct InstructionTables {
   Real (*const *functions)(Real);
   Real (*const *functions_of_two)(Real, Real);
   const struct BlockTable *blocks;
-  size_t local_count, mass_count, side_count; /* sizes of the spaces in the workspace, which the accelerations follow */
+  size_t local_count, mass_count,
+      right_side_count; /* sizes of the spaces in the workspace, which the accelerations follow */
 };
 
 /* Base addresses of the spaces while a function runs. */

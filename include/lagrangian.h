@@ -146,7 +146,7 @@ struct BranchMetadata {
   const char *function; /* name of the piecewise function, for messages */
   const char *file;     /* the file of the expression, without its folder */
   long line;            /* 0 if unknown */
-  bool is_side;         /* of an event's expression: at 0 the mode keeps its last nonzero sign */
+  bool is_last_sign;    /* of an event's expression: at 0 the mode keeps its last nonzero sign */
   bool holds_energy;    /* the state determines it, and energies depend on it: they must not jump there */
 };
 
@@ -184,7 +184,7 @@ struct AssignmentMetadata {
 
 struct EventMetadata {
   enum Passage passage;
-  size_t side;         /* the mode that keeps the last nonzero sign; unused with PASSAGE_HOLDS */
+  size_t last_sign;    /* the mode that keeps the last nonzero sign; unused with PASSAGE_HOLDS */
   bool is_of_contacts; /* its condition depends on contacts, frictions or constraint forces */
   size_t first_assignment, assignment_count;
   const char *when; /* the condition as written; for a sample, its period */
@@ -207,7 +207,7 @@ struct SwitchTable {
   size_t energy_count;  /* energies and momenta in value[]; 0 unless a branch has holds_energy */
   bool feels_forces;    /* a branch depends on a constraint force */
   bool friction_varies; /* a friction force varies between events */
-  bool has_sides;       /* some branches have is_side */
+  bool has_last_signs;  /* some branches have is_last_sign */
   const struct BranchMetadata *branches;
   const struct ContactMetadata *contacts;
   const struct FrictionMetadata *frictions;

@@ -7,7 +7,7 @@
  *
  * K is stored as in ldlt.h. With e elements and c constraints, m holds SADDLE_MASS(e, n, c) numbers: the factors, K
  * itself, the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
- * saddle_least_forces(). Right sides are arrays of SADDLE_SIDE(n) numbers, of which the first n are given and solved
+ * saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given and solved
  * for.
  */
 #ifndef SADDLE_H
@@ -21,7 +21,7 @@
 
 /* Numbers of storage for a block and for a right side, see above. */
 #define SADDLE_MASS(elements, n, constraints) (2 * (elements) + 1 + 2 * (n) + (constraints) * ((constraints) + 1) / 2)
-#define SADDLE_SIDE(n) (4 * (n))
+#define SADDLE_RIGHT_SIDE(n) (4 * (n))
 
 /*
  * Replaces K by L (below the diagonal) and D (on it). coordinate: positive numbers for rows of M, negative ones for

@@ -66,7 +66,8 @@ static double turn(struct Spot a, struct Spot b, struct Spot c) {
  * left are removed. O(n log n) with the sort. A. M. Andrew: Another efficient algorithm for convex hulls in two
  * dimensions, 1979.
  */
-static size_t append_side(const struct Spot *points, size_t count, bool backwards, struct Spot *hull, size_t length) {
+static size_t append_half_hull(const struct Spot *points, size_t count, bool backwards, struct Spot *hull,
+                               size_t length) {
   size_t first = length;
   for (size_t i = 0; i < count; i++) {
     struct Spot point = points[backwards ? count - 1 - i : i];
@@ -78,5 +79,5 @@ static size_t append_side(const struct Spot *points, size_t count, bool backward
 
 size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull) {
   qsort(points, count, sizeof *points, compare_spots);
-  return append_side(points, count, true, hull, append_side(points, count, false, hull, 0));
+  return append_half_hull(points, count, true, hull, append_half_hull(points, count, false, hull, 0));
 }

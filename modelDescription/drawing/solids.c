@@ -40,7 +40,7 @@ static int axis_of_revolution(const double moment[3]) {
  * Finds the size from the moments of inertia: m r^2/2 and m (3 r^2 + h^2)/12 of a cylinder of radius r and length h
  * about its axis and across, m (b^2 + c^2)/12 of a box.
  */
-static void set_sides(struct Solid *solid, const double moment[3], double mass, int axis) {
+static void set_edges(struct Solid *solid, const double moment[3], double mass, int axis) {
   for (int i = 0; i < 3; i++) {
     double across = moment[(i + 1) % 3] + moment[(i + 2) % 3] - moment[i];
     solid->half[i] = sqrt(fmax(1.5 * across / mass, 0.0));
@@ -107,7 +107,7 @@ void append_solid(struct Drawing *drawing, const struct View *view, const struct
     return;
   }
   int axis = axis_of_revolution(moment);
-  set_sides(&solid, moment, mass, axis);
+  set_edges(&solid, moment, mass, axis);
   if (axis >= 0) append_cylinder(drawing, view, &solid, axis);
   else append_box(drawing, view, &solid);
 }

@@ -122,12 +122,12 @@ static bool is_particle(const struct Thing *thing) {
 }
 
 /* True if a rod or a joint connects the object, or if it is not a particle. */
-static bool is_held(const struct Sight *sight, size_t thing) {
+static bool is_attached(const struct Sight *sight, size_t thing) {
   const struct Links *links = &sight->links;
-  bool held = !is_particle(&sight->samples.things[thing]);
-  for (size_t k = 0; k < links->rod_count; k++) held |= links->rods[k].from == thing || links->rods[k].to == thing;
-  for (size_t k = 0; k < links->joint_count; k++) held |= links->joints[k].with == thing;
-  return held;
+  bool attached = !is_particle(&sight->samples.things[thing]);
+  for (size_t k = 0; k < links->rod_count; k++) attached |= links->rods[k].from == thing || links->rods[k].to == thing;
+  for (size_t k = 0; k < links->joint_count; k++) attached |= links->joints[k].with == thing;
+  return attached;
 }
 
 /* Appends the base's axes, and lines from the origin to unconnected objects. */
@@ -139,7 +139,7 @@ static void append_axes(struct Drawing *drawing, const struct Sight *sight, doub
     append_line(drawing, AXIS, origin, seen(&sight->view, tip));
   }
   for (size_t i = 1; i < sight->samples.thing_count && sight->samples.thing_count <= MOST_WAYS; i++)
-    if (!is_held(sight, i)) append_line(drawing, AXIS, origin, spot_of(sight, i));
+    if (!is_attached(sight, i)) append_line(drawing, AXIS, origin, spot_of(sight, i));
 }
 
 /* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */

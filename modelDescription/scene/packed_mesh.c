@@ -113,7 +113,7 @@ static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, si
 
 struct PackedMesh pack_mesh(const struct Mesh *mesh) {
   struct PackedMesh packed = {.points = NULL};
-  packed.step = mesh_side(mesh, packed.least) / STEPS;
+  packed.step = mesh_size(mesh, packed.least) / STEPS;
   if (!(packed.step > 0.0)) packed.step = 1.0;
   size_t *merged = allocate(mesh->point_count, sizeof *merged);
   struct Cell *sorted = allocate(mesh->point_count, sizeof *sorted);

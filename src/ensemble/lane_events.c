@@ -156,7 +156,7 @@ Mask lane_events_find(struct LaneEvents *events, Mask active) {
 /* --- Constraints ------------------------------------------------------------------------------------------------------ */
 
 /* Returns the lanes in which a constraint is closed. */
-static Mask are_held(const struct LaneSteps *steps) {
+static Mask have_active_constraints(const struct LaneSteps *steps) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t of_switches = switches != NULL ? switches->contact_count + switches->friction_count : 0;
   return lagrangian.constraints.count > of_switches ? ~(Mask){0} : are_touched(steps);
@@ -171,22 +171,22 @@ Mask lane_events_go_on(struct LaneEvents *events, Mask active) {
     single_run_go_on(events->run, &view);
   }
   steps->origin = lanes_select(happens, events->time, steps->origin);
-  Mask held = are_held(steps) & active;
+  Mask constrained = have_active_constraints(steps) & active;
   if (any_lane(happens)) lagrangian.prepare(steps->parameter, steps->parameter_constants);
   for (int i = 0; i < LANES; i++) {
-    if (!held[i]) continue;
+    if (!constrained[i]) continue;
     struct LaneView view = view_of(steps, i);
     lost[i] = single_run_keep_constraints(events->run, &view) ? 0 : -1;
   }
-  if (any_lane(happens | held)) lost |= lane_steps_start(steps);
+  if (any_lane(happens | constrained)) lost |= lane_steps_start(steps);
   return lost & active;
 }
 
 Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes) {
   struct LaneSteps *steps = events->steps;
-  Mask lost = {0}, held = are_held(steps) & lanes;
+  Mask lost = {0}, constrained = have_active_constraints(steps) & lanes;
   for (int i = 0; i < LANES; i++) {
-    if (!held[i]) continue;
+    if (!constrained[i]) continue;
     struct LaneView view = view_of(steps, i);
     lost[i] = single_run_project(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
   }

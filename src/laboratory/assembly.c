@@ -67,7 +67,7 @@ static const struct BlockTable *blocks_of(const struct Program *program) {
     struct BlockTable *table = &tables[i];
     *table = (struct BlockTable){.count = block->count,
                                  .first_mass = looped->first_mass,
-                                 .first_side = looped->first_side,
+                                 .first_right_side = looped->first_right_side,
                                  .coordinate = block_numbers_of(block, program->equations->count).items};
     if (!block_is_full(block)) {
       table->start = block->start;
@@ -103,7 +103,7 @@ static void add_shared_tables(const struct Encoding *encoding) {
                                                   blocks_of(program),
                                                   encoding->local_count,
                                                   program->blocks.mass_count,
-                                                  program->blocks.side_count};
+                                                  program->blocks.right_side_count};
 }
 
 static void add_results(const struct Encoding *encoding) {

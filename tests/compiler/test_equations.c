@@ -285,9 +285,9 @@ static void test_symbolic_solution_of_larger_systems(void **state) {
 /* Without masses the ring as a whole moves freely, without kinetic energy. */
 static void test_mass_matrices_that_are_singular_everywhere(void **state) {
   (void)state;
-  struct Derived free_ring = derive(RING(9, ""), NULL), held_ring = derive(RING(9, " + 1e-3*v[1]^2"), NULL);
+  struct Derived free_ring = derive(RING(9, ""), NULL), damped_ring = derive(RING(9, " + 1e-3*v[1]^2"), NULL);
   assert_true(free_ring.equations == NULL && free_ring.diagnostics.errors == 1);
-  assert_true(held_ring.equations != NULL && held_ring.diagnostics.errors == 0);
+  assert_true(damped_ring.equations != NULL && damped_ring.diagnostics.errors == 0);
 }
 
 int main(void) {

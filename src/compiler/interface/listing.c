@@ -245,14 +245,15 @@ static int output_derivative_order(const struct Model *model, const struct Equat
 }
 
 /* True if a constraint of the block is permanent. Contacts are open at the start, and change nothing then. */
-static bool is_held_at_start(const struct Model *model, const struct InertiaBlock *block) {
-  bool is_held = false;
+static bool is_constrained_at_start(const struct Model *model, const struct InertiaBlock *block) {
+  bool has_constraint = false;
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     if (row < model->coordinates.count) continue;
-    is_held |= !graph_depends_on(model->graph, model->constraints.items[row - model->coordinates.count].node, MODE);
+    has_constraint |=
+        !graph_depends_on(model->graph, model->constraints.items[row - model->coordinates.count].node, MODE);
   }
-  return is_held;
+  return has_constraint;
 }
 
 /* Marks the states of coordinates in permanent constraints, unless they are fixed. */
@@ -261,7 +262,7 @@ static void mark_moved_states(struct Interface *interface, const struct Model *m
   size_t n = equations->count;
   for (size_t i = 0; i < 2 * n && equations->constraints->count > 0; i++) {
     struct InterfaceVariable *state = &interface->variables[interface_find(interface, VARIABLE_STATE, i)];
-    state->is_moved_at_start = is_held_at_start(model, inertia_block_of(equations->inertia, i % n)) &&
+    state->is_moved_at_start = is_constrained_at_start(model, inertia_block_of(equations->inertia, i % n)) &&
                                !model->coordinates.items[i % n].is_fixed;
   }
 }

@@ -66,8 +66,8 @@ static Node *product_of_trees(const struct Model *model, const struct Equations 
 }
 
 /* Returns row i of M a + J^T F, or the acceleration itself. */
-static Node inertial_side(const struct Model *model, const struct Equations *equations, const struct NodeNames *names,
-                          const Node *product, size_t i) {
+static Node inertial_right_side(const struct Model *model, const struct Equations *equations,
+                                const struct NodeNames *names, const Node *product, size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
@@ -102,7 +102,7 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   summary->outputs = allocate(summary->output_count, sizeof(Node));
   const Node *product = product_of_trees(model, equations);
   for (size_t i = 0; i < summary->motion_count; i++) {
-    summary->inertial[i] = inertial_side(model, equations, &names, product, i);
+    summary->inertial[i] = inertial_right_side(model, equations, &names, product, i);
     summary->right_side[i] = readable(model, &names, equations->right_side[i]);
   }
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));

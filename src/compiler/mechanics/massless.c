@@ -18,8 +18,8 @@ struct Matrices {
   size_t count; /* number of coordinates */
   struct Elements mass;
   struct Constraints *constraints;
-  double *values; /* of all nodes at a generic point, where expressions vanish only if they vanish identically */
-  bool *is_held;  /* of each constraint: it is regularized */
+  double *values;       /* of all nodes at a generic point, where expressions vanish only if they vanish identically */
+  bool *is_regularized; /* of each constraint: it is regularized */
 };
 
 static struct Elements mass_elements(const struct Model *model) {
@@ -49,7 +49,7 @@ static struct Components couplings(const struct Matrices *matrices) {
     elements_append(&all, matrices->mass.positions[k].row, matrices->mass.positions[k].column, ZERO);
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t constraint = jacobian->positions[k].row, coordinate = jacobian->positions[k].column;
-    if (!matrices->is_held[constraint]) continue;
+    if (!matrices->is_regularized[constraint]) continue;
     if (first[constraint] > 0) elements_append(&all, coordinate, first[constraint] - 1, ZERO);
     first[constraint] = coordinate + 1;
   }
@@ -74,7 +74,7 @@ static void fill(const struct Matrices *matrices, const struct Components *compo
   }
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t row = jacobian->positions[k].row, i = jacobian->positions[k].column, component = components->of[i];
-    for (size_t l = k; matrices->is_held[row] && l < jacobian->count && jacobian->positions[l].row == row; l++) {
+    for (size_t l = k; matrices->is_regularized[row] && l < jacobian->count && jacobian->positions[l].row == row; l++) {
       size_t j = jacobian->positions[l].column, size = sizes[component];
       double product = matrices->values[jacobian->nodes[k]] * matrices->values[jacobian->nodes[l]];
       dense[component][indices[i] * size + indices[j]] += product;
@@ -120,8 +120,8 @@ static bool hold_motion(struct Matrices *matrices, const double *z) {
       sum += term;
       size += fabs(term);
     }
-    if (matrices->is_held[row] || !(fabs(sum) > rounding * size)) continue;
-    matrices->is_held[row] = has_changed = true;
+    if (matrices->is_regularized[row] || !(fabs(sum) > rounding * size)) continue;
+    matrices->is_regularized[row] = has_changed = true;
   }
   return has_changed;
 }
@@ -200,7 +200,7 @@ static void append_stillnesses(const struct Matrices *matrices, struct Model *mo
   double *symbols = start_values(model), *at_start = graph_evaluate(graph, symbols);
   Node *inertias = inertias_of(matrices, at_start);
   for (size_t j = 0; j < model->constraints.count; j++) {
-    if (!matrices->is_held[j]) continue;
+    if (!matrices->is_regularized[j]) continue;
     Node inertia = harmonic_inertia(matrices, j, inertias);
     model->mechanism.stillnesses = make_room(model->mechanism.stillnesses, model->mechanism.regularization_count,
                                              sizeof *model->mechanism.stillnesses);
@@ -231,7 +231,7 @@ void hold_massless_coordinates(struct Model *model) {
                               .count = model->coordinates.count,
                               .mass = mass_elements(model),
                               .constraints = constraints_derive(model),
-                              .is_held = allocate(model->constraints.count, sizeof(bool))};
+                              .is_regularized = allocate(model->constraints.count, sizeof(bool))};
   matrices.values = values_somewhere(&matrices, model->graph);
   bool any = false;
   while (hold_motions(&matrices)) any = true;

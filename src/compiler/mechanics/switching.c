@@ -329,7 +329,7 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
   bool *rests = allocate(switches->friction_count * switches->contact_count, sizeof *rests), any = false;
   for (size_t i = 0; i < switching->branch_count; i++) {
     switching->feels_forces |= graph_depends_on(model->graph, switching->branches[i]->indicator, ACCELERATION);
-    switching->has_sides |= switching->branches[i]->is_side;
+    switching->has_last_signs |= switching->branches[i]->is_last_sign;
   }
   for (size_t i = 0; i < switches->friction_count; i++) {
     switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding) ||

@@ -23,7 +23,7 @@ struct SwitchingExpressions {
   Node *values; /* value[] of struct SwitchTable */
   size_t value_count;
   bool feels_forces;    /* a branch depends on a constraint force */
-  bool has_sides;       /* some branches are those of events' expressions */
+  bool has_last_signs;  /* some branches are those of events' expressions */
   bool friction_varies; /* the sliding force of a friction is not constant */
   size_t *timed;        /* branches that switch at known times: affine in time, and otherwise of parameters and modes */
   size_t timed_count;

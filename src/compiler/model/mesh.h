@@ -21,4 +21,4 @@ struct Mesh {
 };
 
 /* Returns the longest side of the bounding box, and its least corner, in m. */
-double mesh_side(const struct Mesh *mesh, double least[3]);
+double mesh_size(const struct Mesh *mesh, double least[3]);

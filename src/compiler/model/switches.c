@@ -59,6 +59,6 @@ Node friction_sticks(struct Graph *graph, const struct Friction *friction) {
 
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
   if (friction->is_given) return sliding_push(graph, friction);
-  Node held = function(graph, GUARD, friction_sticks(graph, friction), force);
-  return add(graph, held, sliding_push(graph, friction));
+  Node static_force = function(graph, GUARD, friction_sticks(graph, friction), force);
+  return add(graph, static_force, sliding_push(graph, friction));
 }

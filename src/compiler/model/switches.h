@@ -9,7 +9,7 @@
 /* A piecewise expression's branch. The mode is the sign of the indicator, -1, 0 or 1. */
 struct Branch {
   Node mode, indicator;
-  bool is_side; /* of an event's expression: while the indicator rests at 0, the mode keeps its last nonzero sign */
+  bool is_last_sign;    /* of an event's expression: while the indicator rests at 0, the mode keeps its sign */
   bool is_of_friction;  /* the mode of a friction with a prescribed velocity; results keep the mode itself */
   unsigned kinds;       /* of the symbols on which the mode depends, also through other modes */
   const char *function; /* name of the piecewise function, and its line, for messages */
@@ -33,7 +33,7 @@ struct Contact {
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
-struct PlaneSide {
+struct FrictionPlane {
   enum PlaneAxis axis;
   Node heading;      /* a mode: its component of the unit vector, or of the share */
   Node lower, upper; /* modes: speeds; upper < 0 is a bound on the velocity along the heading */
@@ -51,7 +51,7 @@ struct Friction {
   size_t constraint; /* index among the model's constraints */
   Node mode, reported, velocity, sliding, stiction, sliding_back, stiction_back;
   bool is_given;
-  struct PlaneSide plane;
+  struct FrictionPlane plane;
 };
 
 /* An assignment of an event, to a coordinate, a velocity or a mode. */
@@ -71,7 +71,7 @@ struct Event {
   struct Sample sample; /* with PASSAGE_SAMPLES */
   Node condition;       /* of modes alone: positive if the condition holds; for an expression, its sign */
   Node expression;      /* whose zero crossing is the event; ZERO for conditions and samples */
-  Node side;            /* of an expression, the mode with its last nonzero sign; else ZERO */
+  Node last_sign;       /* of an expression, the mode with its last nonzero sign; else ZERO */
   long line;            /* of the sample, or of when, for messages */
   bool is_of_contacts;  /* the condition depends on contacts, frictions or constraint forces */
   struct Assignment *assignments;

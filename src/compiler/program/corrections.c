@@ -41,44 +41,45 @@ static void leave_nonsymmetric_out(struct Values *values, const struct LoopedBlo
 }
 
 /* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */
-static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *side,
+static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *right_side,
                           bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   append_masses(values, looped);
   leave_nonsymmetric_out(values, looped);
   if (starting) weigh_fixed(program, values, looped);
   append_factor(values, &program->blocks, number);
-  append_solution(values, &program->blocks, number, side);
+  append_solution(values, &program->blocks, number, right_side);
 }
 
 /*
  * Appends the correction of one block: solves for side, then copies the changes of its coordinates and the last pivots
  * of its constraints to the targets.
  */
-static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *side,
+static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *right_side,
                          bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   const struct InertiaBlock *block = looped->block;
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
-  append_solved(program, values, number, side, starting);
+  append_solved(program, values, number, right_side, starting);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     Slot pivot = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n) routine_copy(values->routine, target_slot(row), slot_in(SPACE_SIDE, looped->first_side + i));
+    if (row < n)
+      routine_copy(values->routine, target_slot(row), slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
     else routine_copy(values->routine, target_slot(row + constraints), pivot);
   }
 }
 
 /* Computes the elements and right sides of all constrained blocks, and the further nodes. */
-static void compute_blocks(const struct Program *program, struct Values *values, const Node *side, const Node *further,
-                           size_t further_count) {
+static void compute_blocks(const struct Program *program, struct Values *values, const Node *right_side,
+                           const Node *further, size_t further_count) {
   struct NodeList targets = {0};
   append_nodes(&targets, further, further_count);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct InertiaBlock *block = program->blocks.items[b].block;
     if (block->constraint_count == 0) continue;
     append_elements(&targets, block);
-    for (size_t i = 0; i < block->count; i++) append_node(&targets, side[block->coordinates[i]]);
+    for (size_t i = 0; i < block->count; i++) append_node(&targets, right_side[block->coordinates[i]]);
   }
   values_compute(values, targets.nodes, targets.count, false);
 }
@@ -99,33 +100,33 @@ static void append_trees(const struct Program *program, struct Values *values, c
 }
 
 /* Returns the nodes of a correction outside blocks that are factored: slopes, pivots, right sides in trees. */
-static struct NodeList nodes_of_correction(const struct Program *program, const Node *side) {
+static struct NodeList nodes_of_correction(const struct Program *program, const Node *right_side) {
   const struct Corrections *corrections = &program->expressions->corrections;
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
   struct NodeList nodes = {0};
   append_nodes(&nodes, corrections->slope, constraints);
   append_nodes(&nodes, corrections->pivot, constraints);
   for (size_t i = 0; i < n + constraints; i++)
-    if (is_in_tree(program, i)) append_node(&nodes, side[i]);
+    if (is_in_tree(program, i)) append_node(&nodes, right_side[i]);
   return nodes;
 }
 
 /* Builds a correction for side, which has an element for each row of K. starting: fixed coordinates stay. */
-static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *side,
+static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *right_side,
                                           bool starting) {
   struct Routine *routine = values_begin(values);
   const struct Equations *equations = program->equations;
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
-  const struct NodeList further = nodes_of_correction(program, side);
-  compute_blocks(program, values, side, further.nodes, further.count);
-  append_trees(program, values, side);
+  const struct NodeList further = nodes_of_correction(program, right_side);
+  compute_blocks(program, values, right_side, further.nodes, further.count);
+  append_trees(program, values, right_side);
   for (size_t j = 0; j < constraints; j++) {
-    values_copy(values, target_slot(n + j), side[n + j]);
+    values_copy(values, target_slot(n + j), right_side[n + j]);
     values_copy(values, target_slot(n + 2 * constraints + j), slope[j]);
   }
   for (size_t b = 0; b < program->blocks.count; b++)
-    if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, side, starting);
+    if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, right_side, starting);
   return routine;
 }
 
@@ -159,7 +160,8 @@ struct Routine *responses_routine(const struct Program *program, struct Values *
     append_solved(program, values, b, push, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
-        routine_copy(values->routine, target_slot(block->coordinates[i]), slot_in(SPACE_SIDE, looped->first_side + i));
+        routine_copy(values->routine, target_slot(block->coordinates[i]),
+                     slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
   return routine;
 }

@@ -48,7 +48,7 @@ static void append_needed_accelerations(const struct Program *program, struct Va
 /* The location of each row of K in the blocks that are factored at run time. */
 struct BlockRows {
   size_t *number;
-  Slot *side;
+  Slot *right_side;
   size_t *solved; /* of each block: 1 + the column of the Jacobian whose solution its right side holds; 0 for none */
 };
 
@@ -59,7 +59,7 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++) {
       rows.number[looped->block->coordinates[i]] = b + 1;
-      rows.side[looped->block->coordinates[i]] = slot_in(SPACE_SIDE, looped->first_side + i);
+      rows.right_side[looped->block->coordinates[i]] = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i);
     }
   }
   return rows;
@@ -86,7 +86,7 @@ static void append_along(const struct Program *program, struct Values *values, s
   for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)
     routine_copy(values->routine, target_slot(first + i),
-                 rows.number[i] > 0 ? rows.side[i] : values_slot(values, along[i]));
+                 rows.number[i] > 0 ? rows.right_side[i] : values_slot(values, along[i]));
 }
 
 static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
@@ -108,10 +108,12 @@ static void append_multipliers(const struct Program *program, struct Values *val
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
-    for (size_t i = 0; i < block->count; i++) values_compute(values, &gradient->side[block->coordinates[i]], 1, false);
-    append_solution(values, &program->blocks, b, gradient->side);
     for (size_t i = 0; i < block->count; i++)
-      values_hold(values, gradient->multiplier[block->coordinates[i]], slot_in(SPACE_SIDE, looped->first_side + i));
+      values_compute(values, &gradient->right_side[block->coordinates[i]], 1, false);
+    append_solution(values, &program->blocks, b, gradient->right_side);
+    for (size_t i = 0; i < block->count; i++)
+      values_hold(values, gradient->multiplier[block->coordinates[i]],
+                  slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 
@@ -136,24 +138,24 @@ static void append_jacobian_column(const struct Program *program, struct Values 
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e];
     bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
-    values_copy(values, in_block ? rows->side[row - n] : target_slot(e), jacobian->value[e]);
+    values_copy(values, in_block ? rows->right_side[row - n] : target_slot(e), jacobian->value[e]);
   }
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
     if (number == 0) continue;
     if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Slot)(number - 1), 0, 0, 0);
     rows->solved[number - 1] = column + 1;
-    routine_copy(values->routine, target_slot(e), rows->side[row - n]);
+    routine_copy(values->routine, target_slot(e), rows->right_side[row - n]);
   }
 }
 
 /* Copies the right sides of the constraints in this column; *next runs through the list, which is sorted by columns. */
-static void append_constraint_sides(const struct Program *program, struct Values *values, size_t column,
-                                    const struct BlockRows *rows, size_t *next) {
+static void append_constraint_right_sides(const struct Program *program, struct Values *values, size_t column,
+                                          const struct BlockRows *rows, size_t *next) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
-  for (; *next < jacobian->side_count && jacobian->sides[*next].column == column; (*next)++) {
-    const struct ConstraintSide *side = &jacobian->sides[*next];
-    values_copy(values, rows->side[program->equations->count + side->constraint], side->value);
+  for (; *next < jacobian->right_side_count && jacobian->right_sides[*next].column == column; (*next)++) {
+    const struct ConstraintRightSide *right_side = &jacobian->right_sides[*next];
+    values_copy(values, rows->right_side[program->equations->count + right_side->constraint], right_side->value);
   }
 }
 
@@ -162,13 +164,13 @@ static struct Routine *jacobian_routine(const struct Program *program, struct Va
   struct Routine *routine = values_begin(values);
   struct BlockRows rows = block_rows_create(&program->blocks, row_count(program->equations));
   struct NodeList targets = {0};
-  size_t next_side = 0;
+  size_t next_right_side = 0;
   append_nodes(&targets, jacobian->value, jacobian->count);
-  for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+  for (size_t i = 0; i < jacobian->right_side_count; i++) append_node(&targets, jacobian->right_sides[i].value);
   append_needed_accelerations(program, values, targets.nodes, targets.count);
   values_compute(values, targets.nodes, targets.count, false);
   for (size_t column = 0; column < program->interface->state_count; column++) {
-    append_constraint_sides(program, values, column, &rows, &next_side);
+    append_constraint_right_sides(program, values, column, &rows, &next_right_side);
     append_jacobian_column(program, values, column, &rows);
   }
   return routine;

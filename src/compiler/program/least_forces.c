@@ -16,7 +16,7 @@
 
 /* A constraint, with the slots of its numbers in the block that is factored at run time. */
 struct Row {
-  Slot side, target, force;
+  Slot right_side, target, force;
   Slot turn;      /* its element of dJ w, if turns */
   bool turns;     /* it has a nonzero element of dJ w */
   bool is_looped; /* in a block that is factored at run time; no other constraint is redundant */
@@ -30,7 +30,7 @@ static struct Row *rows_create(const struct Program *program) {
     for (size_t i = 0; i < looped->block->count; i++) {
       size_t row = looped->block->coordinates[i];
       if (row >= n)
-        rows[row - n] = (struct Row){.side = slot_in(SPACE_SIDE, looped->first_side + i),
+        rows[row - n] = (struct Row){.right_side = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
                                      .target = target_slot(row),
                                      .is_looped = true,
                                      .force = slot_in(SPACE_ACCELERATION, row)};
@@ -46,18 +46,18 @@ static void append_origins(const struct Program *program, struct Values *values,
   size_t n = program->equations->count;
   for (size_t i = 0; i < looped->block->count; i++) {
     size_t row = looped->block->coordinates[i];
-    Slot side = slot_in(SPACE_SIDE, looped->first_side + i);
-    if (row < n) values_copy(values, side, ZERO);
-    else routine_copy(values->routine, side, rows[row - n].force);
+    Slot right_side = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i);
+    if (row < n) values_copy(values, right_side, ZERO);
+    else routine_copy(values->routine, right_side, rows[row - n].force);
   }
   routine_append(values->routine, SOLVE, (Slot)number, 0, 0, 0);
 }
 
-static Slot side_of(const struct Program *program, size_t coordinate) {
+static Slot right_side_of(const struct Program *program, size_t coordinate) {
   const struct Inertia *inertia = program->equations->inertia;
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block == inertia_block_of(inertia, coordinate))
-      return slot_in(SPACE_SIDE, program->blocks.items[b].first_side + inertia->index_in_block[coordinate]);
+      return slot_in(SPACE_RIGHT_SIDE, program->blocks.items[b].first_right_side + inertia->index_in_block[coordinate]);
   return 0;
 }
 
@@ -70,8 +70,8 @@ static void append_turns(const struct Program *program, struct Values *values, s
     if (along[k] == ZERO) continue;
     struct Row *row = &rows[jacobian->positions[k].row];
     if (!row->is_looped) continue;
-    Slot term = routine_local(values->routine), side = side_of(program, jacobian->positions[k].column);
-    routine_append(values->routine, PRODUCT, term, values_slot(values, along[k]), side, 0);
+    Slot term = routine_local(values->routine), right_side = right_side_of(program, jacobian->positions[k].column);
+    routine_append(values->routine, PRODUCT, term, values_slot(values, along[k]), right_side, 0);
     Slot sum = row->turns ? routine_local(values->routine) : term;
     if (row->turns) routine_append(values->routine, SUM, sum, row->turn, term, 0);
     row->turn = sum;
@@ -96,14 +96,14 @@ void append_least_forces_along(const struct Program *program, struct Values *val
   append_turns(program, values, rows);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].side, rows[j].target, rows[j].turn, 0);
-    else routine_copy(values->routine, rows[j].side, rows[j].target);
+    if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].right_side, rows[j].target, rows[j].turn, 0);
+    else routine_copy(values->routine, rows[j].right_side, rows[j].target);
   }
   for (size_t b = 0; b < blocks->count; b++)
     if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Slot)b, 0, 0, 0);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].side, rows[j].turn, 0);
-    else routine_copy(values->routine, rows[j].target, rows[j].side);
+    if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].right_side, rows[j].turn, 0);
+    else routine_copy(values->routine, rows[j].target, rows[j].right_side);
   }
 }

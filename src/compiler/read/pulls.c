@@ -10,7 +10,7 @@ enum { MOST_PULLED = 30 };
 
 struct Pointer {
   struct Vector position; /* m, position of the pointer */
-  struct Vector held;     /* m, grabbed point relative to the body's position, along the body's axes */
+  struct Vector grabbed;  /* m, grabbed point relative to the body's position, along the body's axes */
   Node time;              /* s, ratio of damping to stiffness */
 };
 
@@ -29,20 +29,20 @@ static struct Vector append_vector(struct Reader *reader, const char *const name
 }
 
 /* Returns the vector from the body's position to the grabbed point; zero for a body without orientation. */
-static struct Vector jacobian_row_of(const struct Model *model, const struct Body *body, struct Vector held) {
+static struct Vector jacobian_row_of(const struct Model *model, const struct Body *body, struct Vector grabbed) {
   struct Graph *graph = model->graph;
-  if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, held);
+  if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, grabbed);
   if (!body->has_angle || !body->has_position[0] || !body->has_position[1]) return (struct Vector){{ZERO, ZERO, ZERO}};
   Node sine = function(graph, SINE, body->displaced[3], ZERO),
        cosine = function(graph, COSINE, body->displaced[3], ZERO);
-  Node across = multiply(graph, cosine, held.along[0]), along = multiply(graph, sine, held.along[0]);
-  across = subtract(graph, across, multiply(graph, sine, held.along[1]));
-  along = add(graph, along, multiply(graph, cosine, held.along[1]));
+  Node across = multiply(graph, cosine, grabbed.along[0]), along = multiply(graph, sine, grabbed.along[0]);
+  across = subtract(graph, across, multiply(graph, sine, grabbed.along[1]));
+  along = add(graph, along, multiply(graph, cosine, grabbed.along[1]));
   return (struct Vector){{across, along, ZERO}};
 }
 
-static struct Vector held_point(const struct Model *model, const struct Body *body, struct Vector held) {
-  struct Vector point, jacobian_row = jacobian_row_of(model, body, held);
+static struct Vector grabbed_point(const struct Model *model, const struct Body *body, struct Vector grabbed) {
+  struct Vector point, jacobian_row = jacobian_row_of(model, body, grabbed);
   for (int axis = 0; axis < 3; axis++)
     point.along[axis] =
         body->has_position[axis] ? add(model->graph, body->displaced[axis], jacobian_row.along[axis]) : ZERO;
@@ -58,22 +58,22 @@ static bool moves(const struct Graph *graph, const struct Vector *point) {
 /* Adds the force stiffness (pointer - point - time d point/dt) at the grabbed point. */
 static void pull_body(struct Reader *reader, const struct Body *body, const struct Pointer *pointer) {
   struct Graph *graph = reader->model->graph;
-  struct Vector held = held_point(reader->model, body, pointer->held);
-  if (!moves(graph, &held)) return;
+  struct Vector grabbed = grabbed_point(reader->model, body, pointer->grabbed);
+  if (!moves(graph, &grabbed)) return;
   Node stiffness = append_pull(reader, format_text("of.%s", body->name), "N/m");
   for (int axis = 0; axis < 3; axis++) {
-    Node point = without_displacements(reader, body->line, body->name, held.along[axis]);
+    Node point = without_displacements(reader, body->line, body->name, grabbed.along[axis]);
     Node behind = multiply(graph, pointer->time, total_time_derivative(reader->scope, point));
     Node away = subtract(graph, subtract(graph, pointer->position.along[axis], point), behind);
-    add_force_along(reader, body->line, body->name, held.along[axis], multiply(graph, stiffness, away));
+    add_force_along(reader, body->line, body->name, grabbed.along[axis], multiply(graph, stiffness, away));
   }
 }
 
 void add_pulls(struct Reader *reader) {
-  static const char *const position[] = {"x", "y", "z"}, *const held[] = {"u", "v", "w"};
+  static const char *const position[] = {"x", "y", "z"}, *const grabbed[] = {"u", "v", "w"};
   struct Model *model = reader->model;
   size_t count = model->mechanism.body_count, every = count / MOST_PULLED + 1;
-  struct Pointer pointer = {.position = append_vector(reader, position), .held = append_vector(reader, held)};
+  struct Pointer pointer = {.position = append_vector(reader, position), .grabbed = append_vector(reader, grabbed)};
   pointer.time = append_pull(reader, "time", "s");
   model->forces.any = true;
   /* Includes the last body: the end of a chain is the natural part to pull. */

@@ -18,7 +18,7 @@
 
 #include "base/memory.h"
 #include "model/given_frictions.h"
-#include "model/held_velocities.h"
+#include "model/sticking_velocities.h"
 #include "read/checks.h"
 #include "read/context/attributes.h"
 #include "read/context/includes.h"
@@ -143,7 +143,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
     add_pushes_in_planes(reader);
   }
   complete_friction_forces(reader);
-  if (reader->diagnostics->errors == 0) hold_velocities(reader->model);
+  if (reader->diagnostics->errors == 0) replace_sticking_velocities(reader->model);
   reader->model->forces.any |= reader->model->given.inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)

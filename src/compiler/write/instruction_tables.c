@@ -18,7 +18,7 @@ static void write_blocks(FILE *file, const struct Program *program) {
   fputs("static const struct BlockTable blocks[] = {\n", file);
   for (size_t i = 0; i < program->blocks.count; i++) {
     const struct LoopedBlock *looped = &program->blocks.items[i];
-    fprintf(file, "    {%zu, %zu, %zu, ", looped->block->count, looped->first_mass, looped->first_side);
+    fprintf(file, "    {%zu, %zu, %zu, ", looped->block->count, looped->first_mass, looped->first_right_side);
     if (block_is_full(looped->block)) fputs("NULL, NULL, ", file);
     else fprintf(file, "start%zu, column%zu, ", i, i);
     fprintf(file, "coordinate%zu, %s},\n", i,
@@ -44,7 +44,7 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding) {
   fprintf(file,
           "static const struct InstructionTables tables = {numbers, functions, functions_of_two, blocks, %zu, %zu, "
           "%zu};\n\n",
-          encoding->local_count, program->blocks.mass_count, program->blocks.side_count);
+          encoding->local_count, program->blocks.mass_count, program->blocks.right_side_count);
 }
 
 static void write_words(FILE *file, const char *name, const struct Words *words) {

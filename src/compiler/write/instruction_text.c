@@ -9,7 +9,7 @@
 static const char *const arrays[SPACE_COUNT] = {
     [SPACE_PARAMETER] = "p",    [SPACE_PARAMETER_CONSTANTS] = "c", [SPACE_INPUT] = "u",
     [SPACE_ACCELERATION] = "a", [SPACE_SEED_PARAMETER] = "dp",     [SPACE_SEED_INPUT] = "du",
-    [SPACE_MASS] = "mass",      [SPACE_SEED_ACCELERATION] = "da",  [SPACE_SIDE] = "side",
+    [SPACE_MASS] = "mass",      [SPACE_SEED_ACCELERATION] = "da",  [SPACE_RIGHT_SIDE] = "side",
     [SPACE_ROW] = "w",          [SPACE_STATE_ROW] = "x",           [SPACE_INPUT_ROW] = "input",
     [SPACE_TARGET_ROW] = "y",   [SPACE_SEED_RESULT] = "dy",
 };
@@ -111,12 +111,12 @@ static void write_block_statement(FILE *file, const struct Program *program, con
     bool is_least = instruction->opcode == LEAST_FORCES;
     if (!is_least && program_solves_by_statements(program, number)) {
       const struct LoopedBlock *looped = &program->blocks.items[number];
-      fprintf(file, "solve%u(mass + %zu, side + %zu)", number, looped->first_mass, looped->first_side);
+      fprintf(file, "solve%u(mass + %zu, side + %zu)", number, looped->first_mass, looped->first_right_side);
       return;
     }
     const char *solve = is_nonsymmetric ? "nonsymmetric_solve" : has_constraints ? "saddle_solve" : "ldlt_solve";
     write_block_call(file, program, is_least ? "saddle_least_forces" : solve, is_least || is_nonsymmetric, number);
-    fprintf(file, ", side + %zu)", program->blocks.items[number].first_side);
+    fprintf(file, ", side + %zu)", program->blocks.items[number].first_right_side);
   }
 }
 

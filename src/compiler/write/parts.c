@@ -93,7 +93,7 @@ static struct Routine *with_steady_first(const struct Routine *routine, size_t *
 
 struct Parts parts_of(struct Routine *routine, size_t accelerations) {
   struct Parts parts = {.items = allocate(2 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
-  bool has_blocks = routine_uses(routine, SPACE_SIDE) || routine_uses(routine, SPACE_MASS);
+  bool has_blocks = routine_uses(routine, SPACE_RIGHT_SIDE) || routine_uses(routine, SPACE_MASS);
   if (has_blocks || routine->count <= 2 * (size_t)PART_LENGTH) {
     parts.items[parts.count++] = routine;
     return parts;

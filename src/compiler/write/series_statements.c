@@ -27,7 +27,7 @@ static void write_series(FILE *file, const struct Program *program) {
   statements_declare_point(file, program, order);
   if (program->blocks.count > 0)
     fprintf(file, "  const Real *mass = w[%zu];\n  Real side[%zu];\n", program->series->mass_row,
-            program->blocks.side_count);
+            program->blocks.right_side_count);
   begin_orders(file, program, products);
   if (program->products == PRODUCTS_APART) write_statements(file, program, order, NULL);
   else write_statements_around(file, program, order);

@@ -38,7 +38,7 @@ void statements_declare_point(FILE *file, const struct Program *program, const s
 
 /* Declares the arrays of the blocks; functions of series keep the factors in w. */
 static void declare_block_spaces(FILE *file, const struct Program *program, const struct Routine *routine) {
-  if (routine_uses(routine, SPACE_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.side_count);
+  if (routine_uses(routine, SPACE_RIGHT_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.right_side_count);
   if (!routine_uses(routine, SPACE_MASS)) return;
   if (routine_uses(routine, SPACE_ROW)) fprintf(file, "  Real *mass = w[%zu];\n", program->series->mass_row);
   else fprintf(file, "  Real mass[%zu];\n", program->blocks.mass_count);

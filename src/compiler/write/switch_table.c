@@ -24,7 +24,7 @@ static void write_branches(FILE *file, const struct SwitchTable *metadata) {
     write_c_string(file, branch->function);
     fputs(", ", file);
     write_c_string(file, branch->file);
-    fprintf(file, ", %ld, %s, %s}, ", branch->line, name_of(branch->is_side), name_of(branch->holds_energy));
+    fprintf(file, ", %ld, %s, %s}, ", branch->line, name_of(branch->is_last_sign), name_of(branch->holds_energy));
   }
   fputs("};\n\n", file);
 }
@@ -82,7 +82,7 @@ static void write_event(FILE *file, const struct EventMetadata *event) {
                                          [PASSAGE_FALLS] = "PASSAGE_FALLS",
                                          [PASSAGE_BOTH] = "PASSAGE_BOTH",
                                          [PASSAGE_SAMPLES] = "PASSAGE_SAMPLES"};
-  fprintf(file, "{%s, %zu, %s, %zu, %zu, ", passages[event->passage], event->side, name_of(event->is_of_contacts),
+  fprintf(file, "{%s, %zu, %s, %zu, %zu, ", passages[event->passage], event->last_sign, name_of(event->is_of_contacts),
           event->first_assignment, event->assignment_count);
   write_name(file, event->when);
 }
@@ -134,7 +134,7 @@ static void write_table(FILE *file, const struct Program *program, const struct 
             metadata->watched_rows, metadata->watched_acceleration_row, metadata->watched_acceleration_count);
   write_flag(file, "friction_varies", metadata->friction_varies);
   write_flag(file, "feels_forces", metadata->feels_forces);
-  write_flag(file, "has_sides", metadata->has_sides);
+  write_flag(file, "has_last_signs", metadata->has_last_signs);
   if (metadata->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
   if (metadata->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
   if (metadata->friction_count > 0)

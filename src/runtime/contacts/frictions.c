@@ -29,7 +29,7 @@ static const double shortest_slip = 1e-4;
 /* In rounding error bounds: the sign of a smaller force is not determined. */
 static const double least_certainty = 4.0;
 
-const double friction_held_share = 1e-6;
+const double sticking_rate_share = 1e-6;
 
 /* Relative to the largest constraint force: smaller forces may be left by cancellation. */
 static const double negligible_force = 1e-12;
@@ -119,7 +119,7 @@ static double mode_without_force(const struct FrictionState *state) {
  * others.
  */
 static double mode_without_hold(const struct FrictionState *state) {
-  bool goes_on = fabs(state->rate) > friction_held_share * state->largest_rate,
+  bool goes_on = fabs(state->rate) > sticking_rate_share * state->largest_rate,
        is_told = fabs(state->rate) > state->error_bound_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
   double most = goes_on ? state->error_bound_of_force : state->force;
@@ -241,7 +241,7 @@ static size_t count_redundant(struct Resolution *resolution) {
   return count;
 }
 
-bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *held) {
+bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   double *mode = &resolution->instance->parameter[metadata->mode], kept = *mode;
   size_t without = count_redundant(resolution);
@@ -251,7 +251,7 @@ bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *h
   if (is_in_plane(resolution->switches, friction)) velocities += resolution_moves(resolution, metadata[1].constraint);
   *mode = kept;
   resolution->instance->parameter_constants_are_stale = true;
-  *held = with >= without + velocities;
+  *is_constrained = with >= without + velocities;
   /* Later steps, such as projections, need the values for the restored modes. */
   bool is_restored = evaluate_prepare(resolution->instance) == STATUS_DONE;
   return is_restored && with != SIZE_MAX && without != SIZE_MAX;
@@ -260,7 +260,7 @@ bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *h
 /* True if the velocity of a sliding friction only passes through 0. */
 static bool leaves_rest(const struct Resolution *resolution, size_t friction) {
   size_t rate = friction_slot(resolution->switches, friction, FRICTION_RATE);
-  double least = fmax(resolution->error_bound[rate], friction_held_share * resolution->largest[rate]);
+  double least = fmax(resolution->error_bound[rate], sticking_rate_share * resolution->largest[rate]);
   return fabs(resolution->value[rate]) > least;
 }
 
@@ -278,12 +278,12 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
     double mode = is_planar ? fabs(mode_of(resolution, metadata->mode)) : mode_of(resolution, metadata->mode);
     double velocity =
         is_planar ? speed_in_plane(resolution, i) : resolution->value[friction_slot(switches, i, FRICTION_VELOCITY)];
-    bool held = false,
+    bool is_constrained = false,
          may_rest = mode != 0.0 && !metadata->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
     if (!is_planar) may_rest &= !leaves_rest(resolution, i);
-    if (may_rest && !frictions_find_held(resolution, i, &held)) return false;
+    if (may_rest && !frictions_find_constrained(resolution, i, &is_constrained)) return false;
     if (is_planar) i++; /* the friction across has the same mode */
-    if (held) mode = 0.0;
+    if (is_constrained) mode = 0.0;
     if (mode == mode_of(resolution, metadata->reported)) continue;
     resolution_set_mode(resolution, metadata->reported, mode);
     *again = true;

@@ -12,7 +12,7 @@ const char *frictions_check(struct Resolution *resolution);
  * Sets *held if others constrain the velocity, in a plane both, of a friction that counts as sliding. False if that
  * cannot be determined.
  */
-bool frictions_find_held(struct Resolution *resolution, size_t friction, bool *held);
+bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained);
 
 /* Logs a friction without a consistent mode; returns the reason why the motion cannot go on. */
 const char *frictions_refuse(const struct Resolution *resolution, size_t friction);
@@ -30,7 +30,7 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch);
 void frictions_release(struct Resolution *resolution);
 
 /* Largest rate of a velocity that friction holds, relative to its largest rate in the event. */
-extern const double friction_held_share;
+extern const double sticking_rate_share;
 
 /* Switches of one friction in an event resolution before they count as endless. */
 enum { FRICTION_FLIP_LIMIT = 500 };

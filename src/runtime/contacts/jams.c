@@ -57,7 +57,7 @@ static size_t turn_moving(struct Resolution *resolution) {
 }
 
 static bool is_tried_branch(const struct Resolution *resolution, size_t branch) {
-  return !resolution->switches->branches[branch].is_side && resolution->flips[branch] > 0.0;
+  return !resolution->switches->branches[branch].is_last_sign && resolution->flips[branch] > 0.0;
 }
 
 /* Counts a switch of each branch whose indicator depends on forces or accelerations, so that it is tried. */

@@ -22,7 +22,7 @@ static double narrowest(const struct Resolution *resolution) {
 }
 
 /* True if no friction on the contact slides. */
-static bool is_held_aside(const struct Resolution *resolution, size_t contact, double slowest) {
+static bool sticks_sideways(const struct Resolution *resolution, size_t contact, double slowest) {
   const struct SwitchTable *switches = resolution->switches;
   bool slides = false;
   for (size_t i = 0; i < switches->friction_count; i++)
@@ -33,17 +33,17 @@ static bool is_held_aside(const struct Resolution *resolution, size_t contact, d
 /* Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any beside a closed contact. */
 static bool find_idle(struct Resolution *resolution) {
   double narrow = narrowest(resolution), slowest = resting_speed(resolution);
-  bool is_held = false, is_idle = false;
+  bool has_closed = false, is_idle = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     bool is_closed = contact_is_closed(resolution, i);
     bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= narrow;
     bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= slowest;
-    bool rests = !is_closed && touches && is_still && is_held_aside(resolution, i, slowest);
+    bool rests = !is_closed && touches && is_still && sticks_sideways(resolution, i, slowest);
     resolution->takes_part[i] = rests ? 1.0 : 0.0;
-    is_held |= is_closed;
+    has_closed |= is_closed;
     is_idle |= rests;
   }
-  return is_held && is_idle;
+  return has_closed && is_idle;
 }
 
 static void close_idle(struct Resolution *resolution) {

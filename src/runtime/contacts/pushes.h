@@ -6,7 +6,7 @@
 #define PUSHES_H
 
 #include "events/resolution.h"
-#include "instance/held.h"
+#include "instance/active_constraints.h"
 
 struct Pushes {
   size_t contact_count, friction_count, count; /* count: the sum of both */

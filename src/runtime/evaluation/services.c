@@ -6,7 +6,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/inputs.h"
-#include "instance/held.h"
+#include "instance/active_constraints.h"
 #include "instance/projection.h"
 
 const char solver_resting[] = "the step size fell below the resolution of time, as at a singularity";
@@ -76,7 +76,7 @@ bool solver_take_state(struct Instance *instance, double time) {
   return are_finite(instance->state, lagrangian.state_count);
 }
 
-bool solver_is_held(const struct Instance *instance) {
+bool solver_has_constraints(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (lagrangian.constraints.projection == NULL) return false;
   bool has_others = switches == NULL || switches->plane_count > 0 ||
@@ -92,7 +92,7 @@ bool solver_is_held(const struct Instance *instance) {
 /* A step errs by about the tolerance. If the projection moves the state by 1000 times that, the step is wrong. */
 const char *solver_project(struct Instance *instance, double time, double *state) {
   static const char problem[] = "a constraint cannot be fulfilled";
-  if (!solver_is_held(instance)) return NULL;
+  if (!solver_has_constraints(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
   bool is_kept = moved <= 1000.0 * fmax(instance->fmu_state->tolerance, 1e-10);
   instance->unkept = is_kept ? 0 : 1 + lagrangian.constraints.projection->unkept(instance, time);

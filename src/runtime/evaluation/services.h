@@ -24,7 +24,7 @@ bool solver_interpolate(const struct Solver *solver, struct Instance *instance, 
 bool solver_take_state(struct Instance *instance, double time);
 
 /* True if a constraint is active: those of open contacts and of sliding frictions are not. */
-bool solver_is_held(const struct Instance *instance);
+bool solver_has_constraints(const struct Instance *instance);
 
 /* Projects a state at the end of a step onto the active constraints. Returns NULL, or the reason why that fails. */
 const char *solver_project(struct Instance *instance, double time, double *state);

@@ -5,7 +5,7 @@
 #include "evaluation/evaluate.h"
 #include "events/continuity.h"
 #include "events/indicators.h"
-#include "instance/held.h"
+#include "instance/active_constraints.h"
 #include "instance/time_laws.h"
 
 /* Switches of one branch in an event resolution before it counts as endless. */
@@ -52,7 +52,7 @@ static bool comes_back(const struct Resolution *resolution, size_t branch, doubl
 
 /* True if a branch at a located zero crosses it. The sign of an event's expression stays after other changes. */
 static bool passes(const struct Resolution *resolution, size_t branch) {
-  bool rests = resolution->switches->branches[branch].is_side && resolution->changed;
+  bool rests = resolution->switches->branches[branch].is_last_sign && resolution->changed;
   return is_hit(resolution, branch) && resolution->flips[branch] == 0.0 && !resolution->jumped && !rests;
 }
 
@@ -63,7 +63,7 @@ static bool passes(const struct Resolution *resolution, size_t branch) {
 static bool stays_at_zero(const struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
   bool rests = is_driven(resolution, branch);
-  for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_side; i++)
+  for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_last_sign; i++)
     rests |= resolution->began[i] != 0.0 && friction_holds(resolution->instance, i);
   return rests;
 }
@@ -102,11 +102,11 @@ static const char *refuse_branch(struct Resolution *resolution, size_t branch) {
   return without_end;
 }
 
-const char *branches_switch(struct Resolution *resolution, bool sides, bool *switched) {
+const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
   *switched = false;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    if (switches->branches[i].is_side != sides) continue;
+    if (switches->branches[i].is_last_sign != last_signs) continue;
     double mode = branch_mode(resolution, i);
     if (mode == mode_of(resolution, switches->branches[i].mode)) continue;
     if (++resolution->flips[i] > FLIP_LIMIT) {
@@ -143,7 +143,7 @@ static double sign_at_start(const struct Resolution *resolution, size_t branch) 
   const struct SwitchTable *switches = resolution->switches;
   size_t rate = branch_rate_slot(switches, branch);
   double sign = sign_with_error_bound(resolution->value[branch], resolution_error_bound(resolution, branch, rate));
-  if (sign != 0.0 || switches->branches[branch].is_side || switches->contact_laws == NULL) return sign;
+  if (sign != 0.0 || switches->branches[branch].is_last_sign || switches->contact_laws == NULL) return sign;
   return sign_with_error_bound(resolution->value[rate], resolution->error_bound[rate]);
 }
 

@@ -8,7 +8,7 @@
  * Switches the pieces, or, with sides, the signs of events' expressions; sets *switched if any changed. Returns NULL,
  * or the reason why one cannot.
  */
-const char *branches_switch(struct Resolution *resolution, bool sides, bool *switched);
+const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched);
 
 /* Returns NULL, or the reason why an importer would come back to a zero again and again: both signs lead back to it. */
 const char *branches_check(struct Resolution *resolution);

@@ -4,7 +4,7 @@
 #include "instance/time_laws.h"
 
 /* True if the event waits for zero crossings of an expression. */
-static bool has_side(const struct EventMetadata *event) {
+static bool has_last_sign(const struct EventMetadata *event) {
   return event->passage != PASSAGE_HOLDS && event->passage != PASSAGE_SAMPLES;
 }
 
@@ -30,7 +30,7 @@ static void note_conditions(struct Resolution *resolution, bool all) {
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventMetadata *event = &switches->events[i];
     double condition = resolution->value[condition_slot(switches, i)];
-    bool stays = has_side(event) && condition == 0.0;
+    bool stays = has_last_sign(event) && condition == 0.0;
     if (!stays && (all || event->is_of_contacts)) resolution->condition[i] = condition;
   }
 }
@@ -40,18 +40,18 @@ void conditions_begin(struct Resolution *resolution) {
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventMetadata *event = &switches->events[i];
     double condition = resolution->value[condition_slot(switches, i)];
-    bool was_at_side = has_side(event) && mode_of(resolution, event->side) != 0.0;
-    resolution->condition[i] = was_at_side ? mode_of(resolution, event->side) : condition;
+    bool had_sign = has_last_sign(event) && mode_of(resolution, event->last_sign) != 0.0;
+    resolution->condition[i] = had_sign ? mode_of(resolution, event->last_sign) : condition;
   }
 }
 
 /* Stores the last nonzero signs of expressions. A sign stays if an event turned its expression back before 0. */
-static void keep_sides(const struct Resolution *resolution) {
+static void keep_last_signs(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->event_count; i++) {
     const struct EventMetadata *event = &switches->events[i];
     double sign = resolution->value[condition_slot(switches, i)];
-    if (has_side(event) && sign != 0.0) resolution->instance->parameter[event->side] = sign;
+    if (has_last_sign(event) && sign != 0.0) resolution->instance->parameter[event->last_sign] = sign;
   }
 }
 
@@ -107,7 +107,7 @@ static bool find_rivals(const struct Resolution *resolution, size_t event) {
 static bool is_at_zero(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   bool is_located = resolution->occasion == AT_EVENT && resolution->indicator < switches->branch_count;
-  return is_located && switches->branches[resolution->indicator].is_side && !resolution->moved;
+  return is_located && switches->branches[resolution->indicator].is_last_sign && !resolution->moved;
 }
 
 /* Lets the next crossing of events that happened at 0 begin there. */
@@ -149,7 +149,7 @@ const char *conditions_happen(struct Resolution *resolution, bool *again) {
     *again = true;
   }
   note_conditions(resolution, true);
-  if (!*again) keep_sides(resolution);
+  if (!*again) keep_last_signs(resolution);
   if (at_zero) begin_at_zero(resolution);
   return NULL;
 }

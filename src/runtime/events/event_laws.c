@@ -9,10 +9,12 @@
 
 static bool holds_at_times(const char *constraint) {
   const struct SwitchTable *switches = lagrangian.switches;
-  bool is_held = false;
-  for (size_t i = 0; i < switches->contact_count; i++) is_held |= strcmp(switches->contacts[i].name, constraint) == 0;
-  for (size_t i = 0; i < switches->friction_count; i++) is_held |= strcmp(switches->frictions[i].name, constraint) == 0;
-  return is_held;
+  bool is_switched = false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    is_switched |= strcmp(switches->contacts[i].name, constraint) == 0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    is_switched |= strcmp(switches->frictions[i].name, constraint) == 0;
+  return is_switched;
 }
 
 const struct EventLaws event_laws = {.work_count = resolution_work_count,

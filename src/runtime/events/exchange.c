@@ -128,15 +128,15 @@ static bool may_turn_back(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool looks_both_ways = false;
   for (size_t i = 0; i < switches->event_count; i++) looks_both_ways |= switches->events[i].passage == PASSAGE_BOTH;
-  return looks_both_ways && switches->has_sides && instance->fmu_state->changed != CHANGED_VALUES;
+  return looks_both_ways && switches->has_last_signs && instance->fmu_state->changed != CHANGED_VALUES;
 }
 
 /* Returns the time in s since an expression crossed 0; 0 if it has not. */
 static double lateness_of(const struct Resolution *resolution, size_t branch) {
   const struct BranchMetadata *metadata = &resolution->switches->branches[branch];
-  double side = mode_of(resolution, metadata->mode), value = resolution->value[branch];
+  double last_sign = mode_of(resolution, metadata->mode), value = resolution->value[branch];
   double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
-  return metadata->is_side && side * value < 0.0 && side * rate < 0.0 ? value / rate : 0.0;
+  return metadata->is_last_sign && last_sign * value < 0.0 && last_sign * rate < 0.0 ? value / rate : 0.0;
 }
 
 /* Returns the expression that crossed first; branch_count for none. */

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "evaluation/services.h"
-#include "instance/held.h"
+#include "instance/active_constraints.h"
 
 /* The rounding error of a state is at least that of this fraction of its nominal value. */
 static const double least_share = 0.1;

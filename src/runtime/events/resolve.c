@@ -59,8 +59,8 @@ static const char *report_friction_modes(struct Resolution *resolution, bool *ag
  * Switches the signs of the expressions of events. An importer comes to an event late: velocities that stick from it on
  * are brought to rest first.
  */
-static const char *switch_sides(struct Resolution *resolution, bool *again) {
-  if (!resolution->switches->has_sides) return NULL;
+static const char *switch_last_signs(struct Resolution *resolution, bool *again) {
+  if (!resolution->switches->has_last_signs) return NULL;
   if (!resolution->lags) return branches_switch(resolution, true, again);
   resolution->lags = false;
   *again = true;
@@ -69,8 +69,8 @@ static const char *switch_sides(struct Resolution *resolution, bool *again) {
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
-    act_by_contacts,    switch_pieces,         act_by_frictions, resolve_contact_forces,
-    let_touching_share, report_friction_modes, switch_sides,     conditions_happen};
+    act_by_contacts,    switch_pieces,         act_by_frictions,  resolve_contact_forces,
+    let_touching_share, report_friction_modes, switch_last_signs, conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
 /* Makes one round; sets *again if it changed something. */

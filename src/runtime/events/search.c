@@ -54,12 +54,12 @@ struct Search {
   double *state, *rounded; /* state_count each: workspace */
   double *values;          /* one for each indicator */
   double *samples;         /* CHEBYSHEV_NODES rows of values */
-  double *held;            /* the same at projected states, if has_held */
+  double *projected;       /* the same at projected states, if has_projected */
   double *exact;           /* one for each indicator: values at the start */
   double *error_bound;     /* rounding error bounds of the indicators */
   int windows;             /* number that may still be looked at */
   bool is_exact;           /* times are found to rounding; else times before them */
-  bool has_held;
+  bool has_projected;
   bool projects;    /* project states, so that indicators held at 0 by constraints stay 0 */
   double departure; /* sign of the last indicator that left 0 */
   double floor;     /* value to which the present indicator may fall without an event */
@@ -80,7 +80,7 @@ static struct Search search_of(struct Instance *instance) {
   search.samples = search.values + count;
   search.error_bound = search.samples + CHEBYSHEV_NODES * count;
   search.exact = search.error_bound + count;
-  search.held = search.exact + count;
+  search.projected = search.exact + count;
   return search;
 }
 
@@ -351,21 +351,21 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
  * True for a velocity that is 0 within rounding while constraints are active: they may keep it at 0. In a long step,
  * rounding of the accelerations would show in it. A gap is left at once.
  */
-static bool may_be_held(const struct Search *search, size_t indicator) {
+static bool may_be_constrained(const struct Search *search, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_gap = indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
   return !is_gap && fabs(search->exact[indicator]) <= search->error_bound[indicator] &&
-         solver_is_held(search->instance);
+         solver_has_constraints(search->instance);
 }
 
 /* Sets the samples of one indicator to those at projected states, which are computed for all at once. */
-static void hold_nodes(struct Search *search, size_t indicator, double from, double to) {
+static void project_samples(struct Search *search, size_t indicator, double from, double to) {
   size_t count = indicator_count(lagrangian.switches);
-  for (size_t k = 0; k < CHEBYSHEV_NODES && !search->has_held; k++)
-    sample(search, chebyshev_time(from, to, (int)k), search->held + k * count);
-  search->has_held = true;
+  for (size_t k = 0; k < CHEBYSHEV_NODES && !search->has_projected; k++)
+    sample(search, chebyshev_time(from, to, (int)k), search->projected + k * count);
+  search->has_projected = true;
   for (size_t k = 0; k < CHEBYSHEV_NODES; k++)
-    search->samples[k * count + indicator] = search->held[k * count + indicator];
+    search->samples[k * count + indicator] = search->projected[k * count + indicator];
 }
 
 /*
@@ -401,8 +401,8 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
     if (!knows_error_bound) measure_error_bound(&search, from);
     knows_error_bound = true;
-    search.projects = may_be_held(&search, i);
-    if (search.projects) hold_nodes(&search, i, from, to);
+    search.projects = may_be_constrained(&search, i);
+    if (search.projects) project_samples(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
     search.floor = floor_of(&search, i, start, lifted);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;

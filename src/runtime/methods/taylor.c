@@ -109,7 +109,7 @@ static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
 
 /* Projects the state at the origin onto the constraints. Returns NULL, or the reason for a failure. */
 static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
-  if (!solver_is_held(instance)) return NULL;
+  if (!solver_has_constraints(instance)) return NULL;
   for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
   const char *problem = solver_project(instance, taylor->span->start, taylor->term);
   for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];

@@ -130,11 +130,11 @@ static bool let_weak_push(const struct PlaneLoads *loads) {
   bool is_told = true;
   for (size_t i = 0; i < resolution->switches->plane_count && is_told; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    bool is_held = false, is_weak = state.stiction < weak_share * most && plane_has_part(resolution, &state);
+    bool is_constrained = false, is_weak = state.stiction < weak_share * most && plane_has_part(resolution, &state);
     if (loads->member[i] == 0.0 || !is_weak) continue;
     plane_push(resolution, &state);
-    is_told = frictions_find_held(resolution, state.metadata->along, &is_held);
-    if (!is_held) plane_hold(resolution, &state);
+    is_told = frictions_find_constrained(resolution, state.metadata->along, &is_constrained);
+    if (!is_constrained) plane_hold(resolution, &state);
   }
   return is_told;
 }

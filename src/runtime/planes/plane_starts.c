@@ -106,9 +106,9 @@ static double nearest_heading(struct Heading *heading, double first) {
 
 /* True if the friction needs a slip direction. If other constraints hold its velocity, it keeps its direction. */
 static bool turns(struct Resolution *resolution, const struct PlaneState *state) {
-  bool is_held = false;
+  bool is_constrained = false;
   if (state->mode != PLANE_HEADS || state->is_given || state->speed > state->upper) return false;
-  return !frictions_find_held(resolution, state->metadata->along, &is_held) || !is_held;
+  return !frictions_find_constrained(resolution, state->metadata->along, &is_constrained) || !is_constrained;
 }
 
 /*

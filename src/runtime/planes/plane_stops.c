@@ -39,7 +39,7 @@ static bool goes_on(const struct Resolution *resolution, const struct PlaneState
     size_t slot = friction_slot(resolution->switches, state->metadata->along + i, FRICTION_RATE);
     largest = fmax(largest, resolution->largest[slot]);
   }
-  return hypot(state->rate[0], state->rate[1]) > friction_held_share * largest;
+  return hypot(state->rate[0], state->rate[1]) > sticking_rate_share * largest;
 }
 
 /* Returns the tried friction that exceeds its stiction most; plane_count for none. */

@@ -17,8 +17,8 @@ struct Frame instructions_frame(const struct InstructionTables *tables, const st
   if (point->work == NULL) return frame;
   frame.base[SPACE_LOCAL] = point->work;
   frame.base[SPACE_MASS] = frame.base[SPACE_LOCAL] + tables->local_count;
-  frame.base[SPACE_SIDE] = frame.base[SPACE_MASS] + tables->mass_count;
-  frame.base[SPACE_ACCELERATION] = frame.base[SPACE_SIDE] + tables->side_count;
+  frame.base[SPACE_RIGHT_SIDE] = frame.base[SPACE_MASS] + tables->mass_count;
+  frame.base[SPACE_ACCELERATION] = frame.base[SPACE_RIGHT_SIDE] + tables->right_side_count;
   return frame;
 }
 
@@ -46,17 +46,19 @@ static int factor(const struct Frame *frame, size_t number) {
 
 static void solve(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
-  Real *mass = frame->base[SPACE_MASS] + block->first_mass, *side = frame->base[SPACE_SIDE] + block->first_side;
+  Real *mass = frame->base[SPACE_MASS] + block->first_mass,
+       *right_side = frame->base[SPACE_RIGHT_SIDE] + block->first_right_side;
   if (block->solve_obliquely != NULL)
-    block->solve_obliquely(block->count, block->start, block->column, block->coordinate, mass, side);
-  else if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, side);
-  else ldlt_solve(block->count, block->start, block->column, mass, side);
+    block->solve_obliquely(block->count, block->start, block->column, block->coordinate, mass, right_side);
+  else if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, right_side);
+  else ldlt_solve(block->count, block->start, block->column, mass, right_side);
 }
 
 static void take_least_forces(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
   block->least_forces(block->count, block->start, block->column, block->coordinate,
-                      frame->base[SPACE_MASS] + block->first_mass, frame->base[SPACE_SIDE] + block->first_side);
+                      frame->base[SPACE_MASS] + block->first_mass,
+                      frame->base[SPACE_RIGHT_SIDE] + block->first_right_side);
 }
 
 enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };

@@ -11,13 +11,13 @@ static const double smallest_locking_pivot = 1e-12;
 
 /* Offsets of the parts of m after those of the symmetric matrix. */
 struct Nonsymmetric {
-  size_t count;     /* r */
-  const int *force; /* rows of the forces from which others follow */
-  size_t c;         /* C */
-  size_t response;  /* S C */
-  size_t factor;    /* 1 + E^T S C, later its factors L U, by rows */
-  size_t pivot;     /* pivot row of each column */
-  size_t side;      /* SADDLE_SIDE(n) */
+  size_t count;      /* r */
+  const int *force;  /* rows of the forces from which others follow */
+  size_t c;          /* C */
+  size_t response;   /* S C */
+  size_t factor;     /* 1 + E^T S C, later its factors L U, by rows */
+  size_t pivot;      /* pivot row of each column */
+  size_t right_side; /* SADDLE_RIGHT_SIDE(n) */
 };
 
 static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const int *coordinate) {
@@ -28,7 +28,7 @@ static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const 
   nonsymmetric.response = nonsymmetric.c + n * nonsymmetric.count;
   nonsymmetric.factor = nonsymmetric.response + n * nonsymmetric.count;
   nonsymmetric.pivot = nonsymmetric.factor + nonsymmetric.count * nonsymmetric.count;
-  nonsymmetric.side = nonsymmetric.pivot + nonsymmetric.count;
+  nonsymmetric.right_side = nonsymmetric.pivot + nonsymmetric.count;
   return nonsymmetric;
 }
 
@@ -85,13 +85,13 @@ size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, 
   size_t singular = saddle_factor(n, start, column, coordinate, m);
   if (singular != 0) return singular;
   struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
-  double *side = m + nonsymmetric.side, *factor = m + nonsymmetric.factor;
+  double *right_side = m + nonsymmetric.right_side, *factor = m + nonsymmetric.factor;
   for (size_t k = 0; k < nonsymmetric.count; k++) {
-    memcpy(side, m + nonsymmetric.c + k * n, n * sizeof *side);
-    if (has_part(n, side)) solve_symmetric(n, start, column, coordinate, m, side);
-    memcpy(m + nonsymmetric.response + k * n, side, n * sizeof *side);
+    memcpy(right_side, m + nonsymmetric.c + k * n, n * sizeof *right_side);
+    if (has_part(n, right_side)) solve_symmetric(n, start, column, coordinate, m, right_side);
+    memcpy(m + nonsymmetric.response + k * n, right_side, n * sizeof *right_side);
     for (size_t i = 0; i < nonsymmetric.count; i++)
-      factor[i * nonsymmetric.count + k] = (i == k ? 1.0 : 0.0) + side[nonsymmetric.force[i]];
+      factor[i * nonsymmetric.count + k] = (i == k ? 1.0 : 0.0) + right_side[nonsymmetric.force[i]];
   }
   bool is_regular = eliminate_small(nonsymmetric.count, factor, m + nonsymmetric.pivot);
   return is_regular ? 0 : 1;

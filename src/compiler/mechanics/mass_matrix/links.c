@@ -216,10 +216,10 @@ static void mark_columns(struct Builder *builder, const struct Elements *element
 
 /* Excludes constraints that share a link: they may depend on each other, which saddle.h alone detects. */
 static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
-  size_t *held = allocate(builder->links->count, sizeof *held);
+  size_t *counts = allocate(builder->links->count, sizeof *counts);
   for (size_t j = 0; j < count; j++)
-    if (is_local[j]) held[link[j]]++;
-  for (size_t j = 0; j < count; j++) is_local[j] = is_local[j] && held[link[j]] == 1;
+    if (is_local[j]) counts[link[j]]++;
+  for (size_t j = 0; j < count; j++) is_local[j] = is_local[j] && counts[link[j]] == 1;
 }
 
 /*

@@ -30,9 +30,9 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
     if (block->is_unrolled) continue;
     bool is_saddle = block->constraint_count > 0;
     size_t count = mass_count_of(block);
-    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.side_count, count};
+    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.right_side_count, count};
     blocks.mass_count += count;
-    blocks.side_count += is_saddle ? SADDLE_SIDE(block->count) : block->count;
+    blocks.right_side_count += is_saddle ? SADDLE_RIGHT_SIDE(block->count) : block->count;
   }
   return blocks;
 }
@@ -73,10 +73,11 @@ void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
   if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
 }
 
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *side) {
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *right_side) {
   const struct LoopedBlock *looped = &blocks->items[number];
   for (size_t i = 0; i < looped->block->count; i++)
-    values_copy(values, slot_in(SPACE_SIDE, looped->first_side + i), side[looped->block->coordinates[i]]);
+    values_copy(values, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
+                right_side[looped->block->coordinates[i]]);
   routine_append(values->routine, SOLVE, (Slot)number, 0, 0, 0);
 }
 
@@ -131,14 +132,15 @@ static void append_block(struct Values *values, const struct Equations *equation
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
       routine_copy(values->routine, slot_in(SPACE_ACCELERATION, block->coordinates[i]),
-                   slot_in(SPACE_SIDE, looped->first_side + i));
+                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
 }
 
 void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      values_hold(values, symbol[looped->block->coordinates[i]], slot_in(SPACE_SIDE, looped->first_side + i));
+      values_hold(values, symbol[looped->block->coordinates[i]],
+                  slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 

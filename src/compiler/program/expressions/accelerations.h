@@ -4,17 +4,17 @@
 #include "mechanics/equations.h"
 #include "program/values/values.h"
 
-/* A block of K that is factored at run time, and its ranges in SPACE_MASS and SPACE_SIDE. */
+/* A block of K that is factored at run time, and its ranges in SPACE_MASS and SPACE_RIGHT_SIDE. */
 struct LoopedBlock {
   const struct InertiaBlock *block;
-  size_t first_mass, first_side;
+  size_t first_mass, first_right_side;
   size_t mass_count; /* length of its range in SPACE_MASS */
 };
 
 struct LoopedBlocks {
   struct LoopedBlock *items;
   size_t count;
-  size_t mass_count, side_count; /* lengths of both spaces, for all blocks */
+  size_t mass_count, right_side_count; /* lengths of both spaces, for all blocks */
 };
 
 /* Returns the blocks that are factored at run time; none for explicit accelerations. */
@@ -59,4 +59,4 @@ void append_factor(struct Values *values, const struct LoopedBlocks *blocks, siz
 void append_factors(struct Values *values, const struct LoopedBlocks *blocks);
 
 /* Solves a factored block in place of its right side. side: an element for each row of K, computed. */
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *side);
+void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *right_side);

@@ -49,12 +49,12 @@ static void accelerations_along(struct Graph *graph, const struct Equations *equ
 
 /* Solves a kinematic tree; replaces the right sides of its coordinates by the solution. */
 static void solve_tree(struct Graph *graph, const struct Equations *equations, const struct InertiaBlock *block,
-                       Node *side) {
+                       Node *right_side) {
   Node *x = allocate(block->count, sizeof *x);
-  for (size_t i = 0; i < block->count; i++) x[i] = side[block->coordinates[i]];
+  for (size_t i = 0; i < block->count; i++) x[i] = right_side[block->coordinates[i]];
   block_solve(graph, block, x);
   for (size_t i = 0; i < block->count; i++)
-    if (block->coordinates[i] < equations->count) side[block->coordinates[i]] = x[i];
+    if (block->coordinates[i] < equations->count) right_side[block->coordinates[i]] = x[i];
 }
 
 static void solve_trees(struct Graph *graph, const struct Equations *equations, struct Corrections *corrections) {
@@ -290,7 +290,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   if (expressions->jacobian != NULL && expressions->jacobian->value != NULL) {
     const struct JacobianExpressions *jacobian = expressions->jacobian;
     append_nodes(&targets, jacobian->value, jacobian->count);
-    for (size_t i = 0; i < jacobian->side_count; i++) append_node(&targets, jacobian->sides[i].value);
+    for (size_t i = 0; i < jacobian->right_side_count; i++) append_node(&targets, jacobian->right_sides[i].value);
   }
   if (expressions->linear != NULL) {
     const struct LinearSystem *linear = expressions->linear;
@@ -301,7 +301,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
   if (expressions->weighted_gradient != NULL) {
     const struct WeightedGradient *gradient = expressions->weighted_gradient;
     append_nodes(&targets, gradient->elements, gradient->count);
-    append_nodes(&targets, gradient->side, row_count(equations));
+    append_nodes(&targets, gradient->right_side, row_count(equations));
   }
   append_nodes(&targets, expressions->result, expressions->interface->result_count);
   append_nodes(&targets, expressions->result_along, expressions->interface->result_count);

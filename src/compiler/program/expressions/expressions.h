@@ -19,13 +19,13 @@ struct JacobianExpressions {
   size_t *start, *row;
   Node *value; /* NULL: directional derivatives along each state give the columns */
   size_t count;
-  struct ConstraintSide *sides; /* ascending by columns */
-  size_t side_count;
+  struct ConstraintRightSide *right_sides; /* ascending by columns */
+  size_t right_side_count;
   struct Elimination *factors; /* of a method that factors; NULL: full matrices are cheaper, or nothing is factored */
 };
 
 /* The right side of a constraint row in a column of the Jacobian. */
-struct ConstraintSide {
+struct ConstraintRightSide {
   size_t column, constraint;
   Node value;
 };

@@ -82,12 +82,12 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   jacobian->start = allocate(columns + 1, sizeof *jacobian->start);
   jacobian->row = allocate(list->count, sizeof *jacobian->row);
   jacobian->value = allocate(list->count, sizeof *jacobian->value);
-  jacobian->sides = allocate(list->count, sizeof *jacobian->sides);
+  jacobian->right_sides = allocate(list->count, sizeof *jacobian->right_sides);
   for (size_t i = 0; i < list->count; i++) {
     const struct Element *element = &list->items[i];
     if (element->at.row >= columns) {
-      struct ConstraintSide side = {element->at.column, element->at.row - columns, element->value};
-      jacobian->sides[jacobian->side_count++] = side;
+      struct ConstraintRightSide right_side = {element->at.column, element->at.row - columns, element->value};
+      jacobian->right_sides[jacobian->right_side_count++] = right_side;
       continue;
     }
     jacobian->start[element->at.column + 1]++;

@@ -59,9 +59,9 @@ static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, c
                                  struct WeightedGradient *gradient) {
   size_t n = equations->count, rows = row_count(equations);
   for (size_t i = 0; i < n && equations->explicit_form; i++)
-    append_term(sum, equations->acceleration[i], gradient->side[i]);
+    append_term(sum, equations->acceleration[i], gradient->right_side[i]);
   if (equations->explicit_form) return;
-  inertia_solve(graph, equations->inertia, gradient->side, gradient->multiplier);
+  inertia_solve(graph, equations->inertia, gradient->right_side, gradient->multiplier);
   for (size_t i = 0; i < rows; i++) {
     Node symbol = i < n ? model->unknowns.accelerations[i] : model->unknowns.forces[i - n];
     if (is_looped(equations, i)) gradient->multiplier[i] = replacement_of(graph, seeds, symbol);
@@ -105,13 +105,14 @@ struct WeightedGradient *weighted_gradient_create(const struct Model *model, con
   size_t rows = row_count(equations);
   if (!is_symmetric(equations->inertia)) return NULL;
   struct WeightedGradient *gradient = allocate(1, sizeof *gradient);
-  gradient->side = allocate(rows, sizeof(Node));
+  gradient->right_side = allocate(rows, sizeof(Node));
   gradient->multiplier = allocate(rows, sizeof(Node));
   struct WeightedSum sum = what_is_read(graph, equations, interface, result);
   weighted_gradient_of(graph, sum.targets.nodes, sum.weights.nodes, sum.targets.count, ACCELERATION, rows,
-                       gradient->side);
+                       gradient->right_side);
   for (size_t i = 0; i < equations->count; i++)
-    gradient->side[i] = add(graph, gradient->side[i], replacement_of(graph, seeds, model->velocities.items[i].node));
+    gradient->right_side[i] =
+        add(graph, gradient->right_side[i], replacement_of(graph, seeds, model->velocities.items[i].node));
   append_accelerations(&sum, graph, model, equations, seeds, gradient);
   fill_elements(graph, model, interface, &sum, seeds, gradient);
   return gradient;

@@ -5,7 +5,7 @@
 #include "mechanics/equations.h"
 
 struct WeightedGradient {
-  Node *side; /* of each row of K: the partial derivative of the sum by its acceleration or force */
+  Node *right_side; /* of each row of K: the partial derivative of the sum by its acceleration or force */
   /* of each row: the solution of K multiplier = side; symbols in blocks that are solved at run time */
   Node *multiplier;
   Node *elements; /* by state, inputs, parameters and modes, and time, in this order */

@@ -18,7 +18,7 @@ static const struct BranchMetadata *branches_of(const struct Program *program) {
     const struct Branch *branch = switching->branches[i];
     struct FileLine slot = noted_line(program->model->lines, branch->line);
     metadata[i] = (struct BranchMetadata){
-        mode_index(program, branch->mode), branch->function, file_name(slot.file), slot.line, branch->is_side,
+        mode_index(program, branch->mode), branch->function, file_name(slot.file), slot.line, branch->is_last_sign,
         switching->holds_energy[i]};
   }
   return metadata;
@@ -52,7 +52,7 @@ static void add_planes(struct SwitchTable *metadata, const struct Program *progr
   const struct Switches *switches = &program->model->switches;
   struct PlaneMetadata *planes = allocate(switches->friction_count, sizeof *planes);
   for (size_t i = 0; i < switches->friction_count; i++) {
-    const struct PlaneSide *along = &switches->frictions[i].plane;
+    const struct FrictionPlane *along = &switches->frictions[i].plane;
     if (along->axis != ALONG) continue;
     planes[metadata->plane_count++] = (struct PlaneMetadata){
         .along = i,
@@ -77,12 +77,13 @@ static void add_events(struct SwitchTable *metadata, const struct Program *progr
   size_t assignment = 0;
   for (size_t i = 0; i < metadata->event_count; i++) {
     const struct Event *event = &switches->events[i];
-    events[i] = (struct EventMetadata){.passage = event->passage,
-                                       .side = event->side != ZERO ? mode_index(program, event->side) : 0,
-                                       .is_of_contacts = event->is_of_contacts,
-                                       .first_assignment = assignment,
-                                       .assignment_count = event->assignment_count,
-                                       .when = event->text};
+    events[i] =
+        (struct EventMetadata){.passage = event->passage,
+                               .last_sign = event->last_sign != ZERO ? mode_index(program, event->last_sign) : 0,
+                               .is_of_contacts = event->is_of_contacts,
+                               .first_assignment = assignment,
+                               .assignment_count = event->assignment_count,
+                               .when = event->text};
     for (size_t k = 0; k < event->assignment_count; k++)
       assignments[assignment++] = assignment_of(program, event->assignments[k].symbol);
   }
@@ -124,7 +125,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
                                  .energy_count = switching->energy_count,
                                  .feels_forces = switching->feels_forces,
                                  .friction_varies = switching->friction_varies,
-                                 .has_sides = switching->has_sides,
+                                 .has_last_signs = switching->has_last_signs,
                                  .rests_on = switching->rests,
                                  .timed = switching->timed,
                                  .timed_count = switching->timed_count,

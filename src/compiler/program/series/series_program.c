@@ -142,12 +142,12 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
       if (!is_constant_series(builder, nonsymmetric))
         sum = append_rest(builder, sum, nonsymmetric, block->coordinates[block->forces[k]]);
     }
-    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_SIDE, looped->first_side + i), sum, 0, 0);
+    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), sum, 0, 0);
   }
   routine_append(builder->order, SERIES_SOLVE, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
-                   slot_in(SPACE_SIDE, looped->first_side + i), 0, 0);
+                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), 0, 0);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Slot derivative) {
@@ -318,7 +318,7 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
       routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
-                   slot_in(SPACE_SIDE, looped->first_side + i));
+                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
     values_copy(values, target_slot(2 * n + i), equations->rates.nodes[i]);

@@ -70,7 +70,7 @@ struct Encoding *encoding_create(const struct Program *program) {
 
 size_t encoding_work_count(const struct Encoding *encoding) {
   const struct Program *program = encoding->program;
-  return encoding->local_count + program->blocks.mass_count + program->blocks.side_count +
+  return encoding->local_count + program->blocks.mass_count + program->blocks.right_side_count +
          row_count(program->equations);
 }
 

@@ -33,7 +33,8 @@ static struct Accesses accesses_create(const struct Routine *routine, const stru
     for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(&accesses, instruction->operands[j]);
   }
   if (blocks->mass_count > accesses.count[SPACE_MASS]) accesses.count[SPACE_MASS] = blocks->mass_count;
-  if (blocks->side_count > accesses.count[SPACE_SIDE]) accesses.count[SPACE_SIDE] = blocks->side_count;
+  if (blocks->right_side_count > accesses.count[SPACE_RIGHT_SIDE])
+    accesses.count[SPACE_RIGHT_SIDE] = blocks->right_side_count;
   for (int space = 0; space < SPACE_COUNT; space++)
     accesses.of[space] = allocate(accesses.count[space], sizeof(struct Access));
   return accesses;
@@ -47,18 +48,18 @@ static struct Access *access_of(const struct Accesses *accesses, Slot slot) {
 static size_t level_of_block(const struct Accesses *accesses, const struct LoopedBlock *looped, bool factors,
                              size_t level) {
   struct Access *mass = accesses->of[SPACE_MASS] + looped->first_mass;
-  struct Access *side = accesses->of[SPACE_SIDE] + looped->first_side;
+  struct Access *right_side = accesses->of[SPACE_RIGHT_SIDE] + looped->first_right_side;
   size_t elements = looped->mass_count;
   for (size_t i = 0; i < elements; i++)
     level = larger(level, factors ? larger(mass[i].written, mass[i].read) : mass[i].written);
   for (size_t i = 0; i < looped->block->count && !factors; i++)
-    level = larger(level, larger(side[i].written, side[i].read));
+    level = larger(level, larger(right_side[i].written, right_side[i].read));
   level++;
   for (size_t i = 0; i < elements; i++) {
     if (factors) mass[i].written = level;
     else mass[i].read = larger(mass[i].read, level);
   }
-  for (size_t i = 0; i < looped->block->count && !factors; i++) side[i].written = level;
+  for (size_t i = 0; i < looped->block->count && !factors; i++) right_side[i].written = level;
   return level;
 }
 

@@ -130,8 +130,8 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
                 "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
                 "no direction");
   } else if (value != ZERO) {
-    event->condition = side_of(reader->scope, value, location.line);
-    event->side = new_mode(reader, "side", when);
+    event->condition = last_sign_of(reader->scope, value, location.line);
+    event->last_sign = new_mode(reader, "side", when);
     event->expression = value;
     bool rises = direction != NULL && strcmp(direction, "rising") == 0;
     bool is_both = direction != NULL && strcmp(direction, "both") == 0;

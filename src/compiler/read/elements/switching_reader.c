@@ -43,7 +43,7 @@ void declare_mode(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* Appends a constraint that applies while a mode is on. Returns its index. */
-static size_t declare_held(struct Reader *reader, struct Variable constraint) {
+static size_t declare_switched_constraint(struct Reader *reader, struct Variable constraint) {
   struct VariableList *constraints = &reader->model->constraints;
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, constraint.name, word, constraint.line);
@@ -57,7 +57,7 @@ static void append_contact(struct Reader *reader, struct Variable constraint) {
   switches->contacts = make_room(switches->contacts, switches->contact_count, sizeof *switches->contacts);
   switches->contacts[switches->contact_count++] =
       (struct Contact){.mode = new_reported_mode(reader, &constraint, "closed")};
-  switches->contacts[switches->contact_count - 1].constraint = declare_held(reader, constraint);
+  switches->contacts[switches->contact_count - 1].constraint = declare_switched_constraint(reader, constraint);
 }
 
 /* Returns the constraint of one end of a stop, named x.min or x.max. */
@@ -95,7 +95,7 @@ static void declare_plane(struct Reader *reader, struct Friction *along, struct 
   along->plane.upper = across.plane.upper = new_mode(reader, name, "upper");
   constraint.name = format_text("%s.across", name);
   if (constraint.description != NULL) constraint.description = format_text("%s, across", constraint.description);
-  across.constraint = declare_held(reader, constraint);
+  across.constraint = declare_switched_constraint(reader, constraint);
   append_friction(reader, across);
 }
 
@@ -103,7 +103,7 @@ static void declare_friction_of(struct Reader *reader, struct Variable constrain
   Node mode = new_mode(reader, constraint.name, "sliding"),
        reported = new_reported_mode(reader, &constraint, "sliding");
   struct Friction *friction = append_friction(reader, (struct Friction){.mode = mode, .reported = reported});
-  friction->constraint = declare_held(reader, constraint);
+  friction->constraint = declare_switched_constraint(reader, constraint);
   if (is_in_plane) declare_plane(reader, friction, constraint);
   reader->model->forces.any = true;
 }

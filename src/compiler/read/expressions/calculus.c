@@ -105,8 +105,8 @@ static bool is_variable(const struct Graph *graph, Node node) {
 }
 
 /* Copies the local names with dummies for values that depend on the variable. The caller removes the dummies. */
-static struct Local *hold_locals(struct Parser *parser, Node variable) {
-  struct Local *held = NULL, **end = &held;
+static struct Local *copy_locals(struct Parser *parser, Node variable) {
+  struct Local *copies = NULL, **end = &copies;
   for (const struct Local *local = parser->locals; local != NULL && !parser->failed; local = local->outer) {
     *end = allocate(1, sizeof **end);
     **end = (struct Local){local->name, local->value, NULL};
@@ -115,7 +115,7 @@ static struct Local *hold_locals(struct Parser *parser, Node variable) {
     if (depends && !parser->failed) (*end)->value.node = open_dummy(parser, local->value.node, local->value.node);
     end = &(*end)->outer;
   }
-  return held;
+  return copies;
 }
 
 /*
@@ -123,21 +123,21 @@ static struct Local *hold_locals(struct Parser *parser, Node variable) {
  * function are held constant even if their values depend on the variable. So dummies replace such arguments, and the
  * values are substituted after differentiation.
  */
-static Node derivative_with_arguments_held(struct Parser *parser, Node variable, struct Dimension *dimension) {
+static Node derivative_with_constant_arguments(struct Parser *parser, Node variable, struct Dimension *dimension) {
   struct Graph *graph = parser->graph;
   struct Scope *scope = parser->scope;
   size_t first = scope->dummy_count;
-  struct Local *held = hold_locals(parser, variable);
+  struct Local *copies = copy_locals(parser, variable);
   if (parser->failed) return ZERO;
-  bool has_held = scope->dummy_count > first;
-  struct Quantity value = has_held ? parse_kept_whole(parser, held) : parse_sum(parser);
+  bool has_copies = scope->dummy_count > first;
+  struct Quantity value = has_copies ? parse_kept_whole(parser, copies) : parse_sum(parser);
   *dimension = value.dimension;
   Node derivative = parser->failed ? ZERO : derivative_by(graph, value.node, variable);
   while (scope->dummy_count > first) {
     const struct Dummy *dummy = &scope->dummies[--scope->dummy_count];
     derivative = substitute_symbol(graph, derivative, dummy->symbol, dummy->low);
   }
-  return has_held ? with_pieces(scope, derivative, current_line(parser)) : derivative;
+  return has_copies ? with_pieces(scope, derivative, current_line(parser)) : derivative;
 }
 
 /* Returns the words for a name that no derivative can be taken by. */
@@ -157,7 +157,7 @@ static struct Quantity derivative_by_variable(struct Parser *parser, const char 
          "argument of a <function>",
          parser->location.what, name, words_for(graph, variable.node));
   struct Dimension dimension = graph_depends_on(graph, variable.node, TIME) ? unit_of("s") : variable.dimension, unit;
-  Node derivative = parser->failed ? ZERO : derivative_with_arguments_held(parser, variable.node, &unit);
+  Node derivative = parser->failed ? ZERO : derivative_with_constant_arguments(parser, variable.node, &unit);
   if (parser->failed) return nothing;
   return (struct Quantity){.node = derivative, .dimension = dimension_multiply(unit, dimension, -1.0)};
 }

@@ -228,8 +228,8 @@ static int compare_sites(const void *first, const void *second) {
 
 /* Rounds the points to the grid and removes duplicates. Returns the number of sites and sets the grid's step in m. */
 static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *step) {
-  double least[3], side = mesh_side(mesh, least);
-  *step = side > 0.0 ? side / STEPS : 1.0;
+  double least[3], size = mesh_size(mesh, least);
+  *step = size > 0.0 ? size / STEPS : 1.0;
   for (size_t i = 0; i < mesh->point_count; i++) {
     sites[i].point = i;
     for (int axis = 0; axis < 3; axis++) sites[i].at[axis] = llround((mesh->points[i][axis] - least[axis]) / *step);

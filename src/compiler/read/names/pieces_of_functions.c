@@ -32,18 +32,18 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
 }
 
 /* Returns the mode of the switching function of this kind; adds it if there is none. */
-static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_side) {
+static Node mode_of(struct Scope *scope, Node indicator, const char *function, long line, bool is_last_sign) {
   struct Switches *switches = scope->switches;
   graph_work(scope->graph, switches->branch_count / COMPARISONS);
   for (size_t i = switches->branch_count; i-- > 0;)
-    if (switches->branches[i].indicator == indicator && switches->branches[i].is_side == is_side)
+    if (switches->branches[i].indicator == indicator && switches->branches[i].is_last_sign == is_last_sign)
       return switches->branches[i].mode;
   char *name = format_text("%s in line %ld", function, line);
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   append_branch(switches, (struct Branch){.mode = mode,
                                           .indicator = indicator,
                                           .kinds = kinds_that_decide(scope, indicator),
-                                          .is_side = is_side,
+                                          .is_last_sign = is_last_sign,
                                           .function = function,
                                           .line = scope_line(scope, line)});
   return mode;
@@ -53,14 +53,14 @@ static bool keeps_whole(const struct Scope *scope) {
   return scope->switches == NULL || scope->keeps_whole;
 }
 
-static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_side) {
+static Node sign_of(struct Scope *scope, Node node, const char *function_name, long line, bool is_last_sign) {
   struct Graph *graph = scope->graph;
   bool may_jump = graph_depends_on(graph, node, PARAMETER) || graph_depends_on(graph, node, MODE);
-  bool is_fixed = graph_is_constant_in_time(graph, node) && !(is_side && may_jump);
+  bool is_fixed = graph_is_constant_in_time(graph, node) && !(is_last_sign && may_jump);
   if (keeps_whole(scope) || is_fixed) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
-  Node mode = mode_of(scope, base, function_name, line, is_side);
+  Node mode = mode_of(scope, base, function_name, line, is_last_sign);
   return factor < 0.0 ? negate(graph, mode) : mode;
 }
 
@@ -70,7 +70,7 @@ Node branch_of(struct Scope *scope, Node node, const char *function_name, long l
 
 static const char of_event[] = "the event";
 
-Node side_of(struct Scope *scope, Node node, long line) {
+Node last_sign_of(struct Scope *scope, Node node, long line) {
   return sign_of(scope, node, of_event, line, true);
 }
 

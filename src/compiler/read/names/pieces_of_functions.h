@@ -10,8 +10,8 @@
 /* Returns the sign of a node: -1, 0 or 1, as a mode if it may change along the motion. function, line: for messages. */
 Node branch_of(struct Scope *scope, Node node, const char *function, long line);
 
-/* Returns the last nonzero sign of an event's expression, as a mode: see struct Branch.is_side. */
-Node side_of(struct Scope *scope, Node node, long line);
+/* Returns the last nonzero sign of an event's expression, as a mode: see struct Branch.is_last_sign. */
+Node last_sign_of(struct Scope *scope, Node node, long line);
 
 /*
  * Returns a mode with the sign of a condition on parameters. By it an event detects that setting parameters changed the

@@ -17,7 +17,7 @@ struct Law {
 };
 
 struct ShapeContact {
-  struct Side first, second;
+  struct ContactSide first, second;
   struct Touches touches;
 };
 
@@ -89,7 +89,7 @@ size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
-static struct Vector velocity_of_point(struct Graph *graph, const struct Side *side, struct Vector point) {
+static struct Vector velocity_of_point(struct Graph *graph, const struct ContactSide *side, struct Vector point) {
   struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
   struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, jacobian_row);
   return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
@@ -142,8 +142,8 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   const struct ContactShape *shapes[2];
   long line = line_of(node);
   if (reader->diagnostics->errors > 0 || !find_shapes(reader, node, shapes)) return false;
-  contact->first = side_of_contact(reader, line, shapes[0]);
-  contact->second = side_of_contact(reader, line, shapes[1]);
+  contact->first = contact_side_of(reader, line, shapes[0]);
+  contact->second = contact_side_of(reader, line, shapes[1]);
   contact->touches = touches_of(reader, line, &contact->first, &contact->second);
   return check_motion(reader, node, contact);
 }
@@ -206,7 +206,7 @@ static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, 
 }
 
 /* Adds a force at a point of a shape to its frame or particle. */
-static void add_force_on(struct Reader *reader, long line, const struct Side *side, struct Vector point,
+static void add_force_on(struct Reader *reader, long line, const struct ContactSide *side, struct Vector point,
                          struct Vector force) {
   struct Graph *graph = reader->model->graph;
   const struct Mechanism *mechanism = &reader->model->mechanism;

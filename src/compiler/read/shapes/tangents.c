@@ -10,7 +10,7 @@ static const double nonsymmetric[3][3] = {
     {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
-static struct Vector velocity_of_material(struct Reader *reader, const struct Side *side, struct Vector point) {
+static struct Vector velocity_of_material(struct Reader *reader, const struct ContactSide *side, struct Vector point) {
   struct Graph *graph = reader->model->graph;
   struct Vector spin = matrix_apply(graph, &side->pose.rotation, side->pose.angular_velocity), velocity;
   for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->pose.origin.along[i]);
@@ -25,7 +25,7 @@ static struct Vector oblique_axis(struct Graph *graph, int which) {
 }
 
 /* Returns the two axes of the plane along the base's axes. */
-static void tangents_of_plane(struct Graph *graph, const struct Side *plane, struct Vector tangents[2]) {
+static void tangents_of_plane(struct Graph *graph, const struct ContactSide *plane, struct Vector tangents[2]) {
   for (int i = 0; i < 2; i++) {
     struct Vector axis = {{ZERO, ZERO, ZERO}};
     axis.along[(plane->shape->axis + 1 + i) % 3] = ONE;
@@ -63,7 +63,7 @@ static void tangents_of_normal(struct Graph *graph, struct Vector normal, struct
   }
 }
 
-struct Slip slip_of_touch(struct Reader *reader, const struct Side *first, const struct Side *second,
+struct Slip slip_of_touch(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
                           const struct Touch *touch) {
   struct Graph *graph = reader->model->graph;
   struct Vector tangents[2];

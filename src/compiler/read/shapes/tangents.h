@@ -12,5 +12,5 @@ struct Slip {
   Node along, across;
 };
 
-struct Slip slip_of_touch(struct Reader *reader, const struct Side *first, const struct Side *second,
+struct Slip slip_of_touch(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
                           const struct Touch *touch);

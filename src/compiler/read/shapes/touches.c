@@ -21,7 +21,7 @@ struct Pair {
   struct Scope *scope;
   struct Graph *graph;
   long line;
-  const struct Side *first, *second;
+  const struct ContactSide *first, *second;
 };
 
 /* Centres of balls of a common radius; the touches of a shape with a plane are on these balls. */
@@ -31,7 +31,7 @@ struct Points {
   Node radius;
 };
 
-struct Side side_of_contact(struct Reader *reader, long line, const struct ContactShape *shape) {
+struct ContactSide contact_side_of(struct Reader *reader, long line, const struct ContactShape *shape) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
   const char *name = shape->name;
   struct Pose pose = mechanism->frames[shape->frame].pose;
@@ -44,7 +44,7 @@ struct Side side_of_contact(struct Reader *reader, long line, const struct Conta
   pose.origin = vector_without_displacements(reader, line, name, pose.origin);
   pose.velocity = vector_without_displacements(reader, line, name, pose.velocity);
   pose.angular_velocity = vector_without_displacements(reader, line, name, pose.angular_velocity);
-  return (struct Side){shape, pose};
+  return (struct ContactSide){shape, pose};
 }
 
 static struct Vector along_axis(const struct ContactShape *shape, Node length) {
@@ -116,16 +116,16 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
 }
 
 /* Rotates a vector along the axes of the shape to the base's axes. */
-static struct Vector turned_by(const struct Pair *pair, const struct Side *side, struct Vector vector) {
+static struct Vector turned_by(const struct Pair *pair, const struct ContactSide *side, struct Vector vector) {
   vector = matrix_apply(pair->graph, &side->shape->turn, vector);
   return matrix_apply(pair->graph, &side->pose.rotation, vector);
 }
 
-static struct Vector axis_of(const struct Pair *pair, const struct Side *side) {
+static struct Vector axis_of(const struct Pair *pair, const struct ContactSide *side) {
   return turned_by(pair, side, along_axis(side->shape, ONE));
 }
 
-static struct Vector middle_of(const struct Pair *pair, const struct Side *side) {
+static struct Vector middle_of(const struct Pair *pair, const struct ContactSide *side) {
   return position_at(pair->graph, &side->pose, side->shape->offset);
 }
 
@@ -287,7 +287,8 @@ size_t count_touches(const struct ContactShape *first, const struct ContactShape
   return 0;
 }
 
-struct Touches touches_of(struct Reader *reader, long line, const struct Side *first, const struct Side *second) {
+struct Touches touches_of(struct Reader *reader, long line, const struct ContactSide *first,
+                          const struct ContactSide *second) {
   struct Graph *graph = reader->model->graph;
   TouchFunction *touch = functions[first->shape->type][second->shape->type];
   bool is_exchanged = touch == NULL;

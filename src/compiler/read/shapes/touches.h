@@ -16,12 +16,12 @@ struct Touches {
 };
 
 /* A shape with its pose, at zero displacements. */
-struct Side {
+struct ContactSide {
   const struct ContactShape *shape;
   struct Pose pose; /* of the shape's frame or particle */
 };
 
-struct Side side_of_contact(struct Reader *reader, long line, const struct ContactShape *shape);
+struct ContactSide contact_side_of(struct Reader *reader, long line, const struct ContactShape *shape);
 
 /*
  * Returns the number of touches of two shapes, 0 if there is no closed form. May be called before the shapes are
@@ -30,4 +30,5 @@ struct Side side_of_contact(struct Reader *reader, long line, const struct Conta
 size_t count_touches(const struct ContactShape *first, const struct ContactShape *second);
 
 /* Returns the touches, count_touches() of them. */
-struct Touches touches_of(struct Reader *reader, long line, const struct Side *first, const struct Side *second);
+struct Touches touches_of(struct Reader *reader, long line, const struct ContactSide *first,
+                          const struct ContactSide *second);

@@ -4,7 +4,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/space/sides.h"
+#include "read/space/joint_ends.h"
 
 enum { X, Y, Z };
 
@@ -43,7 +43,7 @@ static Node half_of_squares(struct Graph *graph, struct Vector factors, struct V
   return sum;
 }
 
-static struct Vector stretch_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+static struct Vector stretch_of(struct Graph *graph, const struct JointEnd *from, const struct JointEnd *to) {
   struct Vector stretch;
   for (int i = 0; i < 3; i++) stretch.along[i] = offset_along(graph, from, to, i);
   return stretch;
@@ -53,7 +53,7 @@ static struct Vector stretch_of(struct Graph *graph, const struct Side *from, co
  * Returns 2 sin(angle/2) times the unit axis of the relative rotation R: twice the vector part of its unit quaternion,
  * (R[k][j] - R[j][k]) / sqrt(1 + trace R) for cyclic i, j, k. It is smooth but for half turns.
  */
-static struct Vector twist_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+static struct Vector twist_of(struct Graph *graph, const struct JointEnd *from, const struct JointEnd *to) {
   struct Vector twist;
   Node trace = ONE;
   for (int i = 0; i < 3; i++) trace = add(graph, trace, product_of_axes(graph, from, i, to, i));
@@ -67,7 +67,7 @@ static struct Vector twist_of(struct Graph *graph, const struct Side *from, cons
 }
 
 /* Returns the angular velocity of `to` relative to `from`, along the axes of `from`. */
-static struct Vector spin_of(struct Reader *reader, const struct Side *from, const struct Side *to) {
+static struct Vector spin_of(struct Reader *reader, const struct JointEnd *from, const struct JointEnd *to) {
   struct Graph *graph = reader->model->graph;
   const struct ReferenceFrame *frames = reader->model->mechanism.frames;
   struct Vector ours = matrix_apply(graph, &to->rotation, frames[to->frame].pose.angular_velocity);
@@ -97,13 +97,13 @@ static void add_dampers(struct Reader *reader, xmlNodePtr node, struct Vector fa
 
 void read_bushing(struct Reader *reader, xmlNodePtr node) {
   struct Graph *graph = reader->model->graph;
-  struct Side from, to;
+  struct JointEnd from, to;
   struct Vector stiffness = read_factors(reader, node, "stiffness", "N/m");
   struct Vector damping = read_factors(reader, node, "damping", "N.s/m");
   struct Vector torsion = read_factors(reader, node, "torsion", "N.m/rad");
   struct Vector torsion_damping = read_factors(reader, node, "torsionDamping", "N.m.s/rad");
-  bool is_right = read_displaced_side(reader, node, "from", &from);
-  is_right &= read_displaced_side(reader, node, "to", &to);
+  bool is_right = read_displaced_joint_end(reader, node, "from", &from);
+  is_right &= read_displaced_joint_end(reader, node, "to", &to);
   if (!is_right || reader->diagnostics->errors > 0) return;
   if (is_zero(stiffness) && is_zero(damping) && is_zero(torsion) && is_zero(torsion_damping))
     report_at(reader, node, "<bushing> has neither stiffness nor damping, torsion nor torsionDamping; expected one");

@@ -10,18 +10,31 @@
 #include "read/context/variables.h"
 #include "read/names/definitions.h"
 #include "read/space/rolling.h"
-#include "read/space/sides.h"
+#include "read/space/joint_ends.h"
 #include "read/space/vanishing.h"
 
 /*
  * Quantities that a joint constrains: the position of `to` along the axes of `from`; the directions of its axes; for a
  * screw the thread; for rolling the velocity of the lowest point, and its height.
  */
-enum Held { ALONG_X, ALONG_Y, ALONG_Z, ABOUT_X, ABOUT_Y, ABOUT_Z, CROSS, THREAD, SLIP_X, SLIP_Y, HEIGHT, NOTHING };
+enum ConstrainedQuantity {
+  ALONG_X,
+  ALONG_Y,
+  ALONG_Z,
+  ABOUT_X,
+  ABOUT_Y,
+  ABOUT_Z,
+  CROSS,
+  THREAD,
+  SLIP_X,
+  SLIP_Y,
+  HEIGHT,
+  NOTHING
+};
 
 struct JointType {
   const char *name;
-  enum Held held[7]; /* ended by NOTHING */
+  enum ConstrainedQuantity quantities[7]; /* ended by NOTHING */
 };
 
 static const struct JointType types[] = {
@@ -38,7 +51,7 @@ static const struct JointType types[] = {
 };
 
 /* Per quantity: prefixes of its name and its force's name, its unit, and its axis, whose letter ends the names. */
-static const struct HeldWords {
+static const struct QuantityWords {
   const char *name, *force, *unit;
   int axis;
 } words[] = {
@@ -50,16 +63,16 @@ static const struct HeldWords {
     [HEIGHT] = {"", "force", "m", 2},
 };
 
-static bool is_of_force(enum Held held) {
-  return words[held].force[0] == 'f';
+static bool is_of_force(enum ConstrainedQuantity quantity) {
+  return words[quantity].force[0] == 'f';
 }
 
 /* True if the constraint's force is along or about an axis of `from` only up to a factor, see share_of(). */
-static bool has_share(enum Held held) {
-  return !is_of_force(held) || held == THREAD;
+static bool has_share(enum ConstrainedQuantity quantity) {
+  return !is_of_force(quantity) || quantity == THREAD;
 }
 
-static const char *const sides[] = {"from", "to"};
+static const char *const end_attributes[] = {"from", "to"};
 
 /* Returns the cyclic shift of the axes that moves z, the axis of the types above, to the axis that the joint names. */
 static int shift_of(xmlNodePtr node) {
@@ -68,32 +81,32 @@ static int shift_of(xmlNodePtr node) {
 }
 
 /* Returns the axis of `from` that the quantity is along or about. */
-static int axis_of(xmlNodePtr node, enum Held held) {
-  return (words[held].axis + shift_of(node)) % 3;
+static int axis_of(xmlNodePtr node, enum ConstrainedQuantity quantity) {
+  return (words[quantity].axis + shift_of(node)) % 3;
 }
 
-static char *name_of(xmlNodePtr node, enum Held held) {
-  const char *name = words[held].name;
-  int axis = axis_of(node, held);
-  if (held == THREAD) return copy_text(name);
+static char *name_of(xmlNodePtr node, enum ConstrainedQuantity quantity) {
+  const char *name = words[quantity].name;
+  int axis = axis_of(node, quantity);
+  if (quantity == THREAD) return copy_text(name);
   return *name == '\0' ? copy_text(axes[axis]) : format_text("%s%c", name, "XYZ"[axis]);
 }
 
-static char *force_name_of(const char *joint, xmlNodePtr node, enum Held held) {
-  return format_text("%s.%s%c", joint, words[held].force, "XYZ"[axis_of(node, held)]);
+static char *force_name_of(const char *joint, xmlNodePtr node, enum ConstrainedQuantity quantity) {
+  return format_text("%s.%s%c", joint, words[quantity].force, "XYZ"[axis_of(node, quantity)]);
 }
 
 /* Shifts the axes of an end cyclically. */
-static void exchange_axes(struct Side *side, int shift) {
-  const struct Matrix given = side->rotation;
+static void exchange_axes(struct JointEnd *ends, int shift) {
+  const struct Matrix given = ends->rotation;
   for (int row = 0; row < 3; row++)
-    for (int axis = 0; axis < 3; axis++) side->rotation.row[row].along[axis] = given.row[row].along[(axis + shift) % 3];
+    for (int axis = 0; axis < 3; axis++) ends->rotation.row[row].along[axis] = given.row[row].along[(axis + shift) % 3];
 }
 
 /* True unless the attribute `holds` leaves out the axis. Rolling joints may leave axes to their coordinates. */
-static bool is_held(xmlNodePtr node, enum Held held) {
-  char *axes_held = attribute(node, "holds");
-  return axes_held == NULL || strchr(axes_held, *axes[words[held].axis]) != NULL;
+static bool is_constrained(xmlNodePtr node, enum ConstrainedQuantity quantity) {
+  char *named_axes = attribute(node, "holds");
+  return named_axes == NULL || strchr(named_axes, *axes[words[quantity].axis]) != NULL;
 }
 
 static const struct JointType *type_of(xmlNodePtr node) {
@@ -102,12 +115,12 @@ static const struct JointType *type_of(xmlNodePtr node) {
   return NULL; /* rejected by the schema */
 }
 
-static char *description_of(xmlNodePtr node, const char *joint, enum Held held) {
+static char *description_of(xmlNodePtr node, const char *joint, enum ConstrainedQuantity quantity) {
   const char *from = attribute(node, "from");
-  char *what =
-      format_text("%s of %s on %s at %s", is_of_force(held) ? "force" : "torque", attribute(node, "to"), from, joint);
-  return format_text("%s, %s the %s axis of %s", what, is_of_force(held) ? "along" : "about", axes[axis_of(node, held)],
-                     from);
+  char *what = format_text("%s of %s on %s at %s", is_of_force(quantity) ? "force" : "torque", attribute(node, "to"),
+                           from, joint);
+  return format_text("%s, %s the %s axis of %s", what, is_of_force(quantity) ? "along" : "about",
+                     axes[axis_of(node, quantity)], from);
 }
 
 /* Reports an axis for a type that has none. */
@@ -142,15 +155,17 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
   struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
   scope_define(reader->scope, joint.name, word, joint.line);
   reader->present->number = reader->model->constraints.count;
-  for (const enum Held *held = type != NULL ? type->held : &(enum Held){NOTHING}; *held != NOTHING; held++) {
-    if (!is_held(node, *held)) continue;
+  for (const enum ConstrainedQuantity *quantity = type != NULL ? type->quantities
+                                                               : &(enum ConstrainedQuantity){NOTHING};
+       *quantity != NOTHING; quantity++) {
+    if (!is_constrained(node, *quantity)) continue;
     struct Variable constraint =
-        variable_create(format_text("%s.%s", joint.name, name_of(node, *held)), description_of(node, joint.name, *held),
-                        scope_line(reader->scope, joint.line));
-    constraint.force_name = force_name_of(joint.name, node, *held);
-    constraint.is_of_velocities = *held == SLIP_X || *held == SLIP_Y;
-    if (has_share(*held)) constraint.force_share = ONE; /* until it is read */
-    constraint.unit = copy_text(words[*held].unit);
+        variable_create(format_text("%s.%s", joint.name, name_of(node, *quantity)),
+                        description_of(node, joint.name, *quantity), scope_line(reader->scope, joint.line));
+    constraint.force_name = force_name_of(joint.name, node, *quantity);
+    constraint.is_of_velocities = *quantity == SLIP_X || *quantity == SLIP_Y;
+    if (has_share(*quantity)) constraint.force_share = ONE; /* until it is read */
+    constraint.unit = copy_text(words[*quantity].unit);
     constraint.dimension = unit_of(constraint.unit);
     append_variable(&reader->model->constraints, constraint);
   }
@@ -160,11 +175,11 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
  * Returns the expression that the constraint keeps at 0. It grows as `to` moves along, or rotates about, the axis of
  * `from`. So its force is the one that `to` exerts on `from`.
  */
-static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
-                          const struct Side *to) {
+static Node expression_of(struct Reader *reader, xmlNodePtr node, enum ConstrainedQuantity quantity,
+                          const struct JointEnd *from, const struct JointEnd *to) {
   enum { X, Y, Z };
   struct Graph *graph = reader->model->graph;
-  switch (held) {
+  switch (quantity) {
   case THREAD: return thread_of(reader, node, from, to);
   case SLIP_X: return slip_of(reader, node, from, to, X);
   case SLIP_Y: return slip_of(reader, node, from, to, Y);
@@ -175,18 +190,18 @@ static Node expression_of(struct Reader *reader, xmlNodePtr node, enum Held held
   case CROSS: return negate(graph, product_of_axes(graph, from, X, to, Y));
   default: break;
   }
-  return offset_along(graph, from, to, (int)held);
+  return offset_along(graph, from, to, (int)quantity);
 }
 
 /*
  * Returns the fraction of the constraint's force along or about the axis of `from`. Antiparallel axes change its sign;
  * the torque of a universal joint is perpendicular to both of its axes.
  */
-static Node share_of(struct Reader *reader, xmlNodePtr node, enum Held held, const struct Side *from,
-                     const struct Side *to) {
+static Node share_of(struct Reader *reader, xmlNodePtr node, enum ConstrainedQuantity quantity,
+                     const struct JointEnd *from, const struct JointEnd *to) {
   enum { X, Y, Z };
   struct Graph *graph = reader->model->graph;
-  switch (held) {
+  switch (quantity) {
   case THREAD: return slope_of_thread(reader, node, from, to);
   case ABOUT_Z: return product_of_axes(graph, from, X, to, X);
   case CROSS: return product_of_axes(graph, from, Y, to, Y);
@@ -198,38 +213,38 @@ void collect_joint(struct Reader *reader, xmlNodePtr node) {
   const struct JointType *type = type_of(node);
   char *name = name_attribute(reader, node, "name");
   if (type == NULL || name == NULL) return;
-  for (const enum Held *held = type->held; *held != NOTHING; held++)
-    if (has_share(*held))
-      definitions_add(reader->definitions, force_name_of(name, node, *held),
+  for (const enum ConstrainedQuantity *quantity = type->quantities; *quantity != NOTHING; quantity++)
+    if (has_share(*quantity))
+      definitions_add(reader->definitions, force_name_of(name, node, *quantity),
                       &(struct NamedExpression){node, "force", reader->source, NULL});
 }
 
 /* Returns the quantity whose force has this name. */
-static enum Held held_by(xmlNodePtr node, const char *force_name) {
+static enum ConstrainedQuantity held_by(xmlNodePtr node, const char *force_name) {
   char *joint = format_text("%.*s", (int)(strrchr(force_name, '.') - force_name), force_name);
-  const enum Held *held = type_of(node)->held;
-  while (strcmp(force_name_of(joint, node, *held), force_name) != 0) held++;
-  return *held;
+  const enum ConstrainedQuantity *quantity = type_of(node)->quantities;
+  while (strcmp(force_name_of(joint, node, *quantity), force_name) != 0) quantity++;
+  return *quantity;
 }
 
 struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct Model *model = reader->model;
-  struct Side side[2];
+  struct JointEnd ends[2];
   size_t i = 0;
   bool is_right = true;
-  for (int end = 0; end < 2; end++) is_right &= read_side_early(reader, node, sides[end], &side[end]);
+  for (int end = 0; end < 2; end++) is_right &= read_joint_end_early(reader, node, end_attributes[end], &ends[end]);
   if (!is_right) return (struct Quantity){.node = ZERO};
-  for (int end = 0; end < 2; end++) exchange_axes(&side[end], shift_of(node));
+  for (int end = 0; end < 2; end++) exchange_axes(&ends[end], shift_of(node));
   while (strcmp(constraint_force_name(&model->constraints.items[i]), name) != 0) i++;
   struct Variable *constraint = &model->constraints.items[i];
-  constraint->force_share = share_of(reader, node, held_by(node, name), &side[0], &side[1]);
+  constraint->force_share = share_of(reader, node, held_by(node, name), &ends[0], &ends[1]);
   return (struct Quantity){.node = multiply(model->graph, constraint->force_share, model->unknowns.forces[i]),
                            .dimension = constraint_force_dimension(constraint)};
 }
 
 /* True if the constraint is satisfied identically, so that it constrains nothing. */
-static bool is_idle(const struct Graph *graph, const struct Variable *constraint, const struct Side *from,
-                    const struct Side *to) {
+static bool is_idle(const struct Graph *graph, const struct Variable *constraint, const struct JointEnd *from,
+                    const struct JointEnd *to) {
   const struct Vector positions[] = {from->position, to->position};
   bool is_length = strcmp(constraint->unit, "m") == 0;
   return vanishes(graph, constraint->node, positions, is_length ? sizeof positions / sizeof *positions : 0);
@@ -241,24 +256,24 @@ static bool is_idle(const struct Graph *graph, const struct Variable *constraint
  * whose load coordinates would carry unnoticed.
  */
 static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variable *first, size_t count,
-                           const struct Side *from, const struct Side *to) {
+                           const struct JointEnd *from, const struct JointEnd *to) {
   const struct Graph *graph = reader->model->graph;
   const char *joint = attribute(node, "name");
   size_t idle_count = 0;
   for (size_t i = 0; i < count; i++) {
-    const char *held = strrchr(first[i].name, '.') + 1;
+    const char *quantity = strrchr(first[i].name, '.') + 1;
     bool is_idle_here = is_idle(graph, &first[i], from, to);
     idle_count += is_idle_here;
     if (is_idle_here && attribute_is(node, "type", "rolling"))
       report_at(reader, node,
                 "the joint '%s' holds %s, which nothing moves; expected the axes along which something moves, such as "
                 "holds=\"x y\"",
-                joint, held);
+                joint, quantity);
     else if (is_idle_here) first[i].node = ZERO;
     else if (graph_is_constant(graph, first[i].node))
       report_at(reader, node,
                 "the joint '%s' holds %s, which nothing moves: it is %g at all times; expected 0, where it fits", joint,
-                held, graph_value(graph, first[i].node));
+                quantity, graph_value(graph, first[i].node));
   }
   if (idle_count == count && reader->diagnostics->errors == 0)
     report_at(reader, node,
@@ -272,7 +287,8 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
  * axis i. There the real part of the relative quaternion is smaller than its i-th part: 2 (q0^2 - qi^2) = R[j][j] +
  * R[k][k] < 0.
  */
-static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from,
+                        const struct JointEnd *to) {
   struct Graph *graph = reader->model->graph;
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -287,17 +303,17 @@ static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Sid
 void read_joint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   const struct JointType *type = type_of(node);
-  struct Side from, to;
-  bool is_right = read_side(reader, node, sides[0], &from);
-  is_right &= read_side(reader, node, sides[1], &to);
+  struct JointEnd from, to;
+  bool is_right = read_joint_end(reader, node, end_attributes[0], &from);
+  is_right &= read_joint_end(reader, node, end_attributes[1], &to);
   if (is_right && attribute_is(node, "type", "rolling")) is_right = can_roll(reader, node, &to);
   if (type == NULL || !is_right) return;
   exchange_axes(&from, shift_of(node));
   exchange_axes(&to, shift_of(node));
   struct Variable *first = &model->constraints.items[reader->present->number];
   size_t count = 0;
-  for (const enum Held *held = type->held; *held != NOTHING; held++)
-    if (is_held(node, *held)) first[count++].node = expression_of(reader, node, *held, &from, &to);
+  for (const enum ConstrainedQuantity *quantity = type->quantities; *quantity != NOTHING; quantity++)
+    if (is_constrained(node, *quantity)) first[count++].node = expression_of(reader, node, *quantity, &from, &to);
   if (attribute_is(node, "type", "fixed")) expect_pose(reader, node, &from, &to);
   if (reader->diagnostics->errors == 0) leave_out_idle(reader, node, first, count, &from, &to);
   for (size_t i = 0; i < count && reader->diagnostics->errors == 0; i++)

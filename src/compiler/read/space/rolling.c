@@ -21,8 +21,8 @@ struct Thread {
   Node lead, sine, cosine;
 };
 
-static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const struct Side *from,
-                                 const struct Side *to) {
+static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from,
+                                 const struct JointEnd *to) {
   struct Graph *graph = reader->model->graph;
   Node lead = scale(graph, 0.5 / M_PI, read_length(reader, node, "pitch"));
   Node fitting = divide(graph, offset_along(graph, from, to, Z), lead);
@@ -36,16 +36,16 @@ static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const s
 }
 
 /* Returns lead sin(2 pi z/pitch - angle), which is smooth, unlike the angle itself. */
-Node thread_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+Node thread_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to) {
   struct Thread thread = read_thread(reader, node, from, to);
   return multiply(reader->model->graph, thread.lead, thread.sine);
 }
 
-Node slope_of_thread(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+Node slope_of_thread(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to) {
   return read_thread(reader, node, from, to).cosine;
 }
 
-bool can_roll(struct Reader *reader, xmlNodePtr node, const struct Side *to) {
+bool can_roll(struct Reader *reader, xmlNodePtr node, const struct JointEnd *to) {
   if (!to->has_axes)
     report_at(reader, node, "'%s' has no axes and cannot roll; expected a <frame> or <body>", attribute(node, "to"));
   return to->has_axes;
@@ -60,13 +60,13 @@ struct Tilt {
   Node cosine, sine;
 };
 
-static struct Tilt tilt_of(struct Graph *graph, const struct Side *from, const struct Side *to) {
+static struct Tilt tilt_of(struct Graph *graph, const struct JointEnd *from, const struct JointEnd *to) {
   Node cosine = product_of_axes(graph, from, Z, to, Z);
   Node square = subtract(graph, ONE, power_number(graph, cosine, 2.0));
   return (struct Tilt){cosine, power_number(graph, square, 0.5)};
 }
 
-Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to) {
+Node height_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to) {
   struct Graph *graph = reader->model->graph;
   Node radius = read_length(reader, node, "radius"), centre = offset_along(graph, from, to, Z);
   if (is_sphere(node)) return subtract(graph, centre, radius);
@@ -74,12 +74,12 @@ Node height_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, 
 }
 
 /* Returns the vector from the centre to the lowest point: downward, and for a wheel perpendicular to its axis. */
-static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct Side *from,
-                                     const struct Side *to) {
-  struct Vector up = axis_of_side(from, Z);
+static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct JointEnd *from,
+                                     const struct JointEnd *to) {
+  struct Vector up = axis_of_end(from, Z);
   if (is_sphere(node)) return vector_scale(graph, negate(graph, radius), up);
   struct Tilt tilt = tilt_of(graph, from, to);
-  struct Vector axle = vector_scale(graph, tilt.cosine, axis_of_side(to, Z));
+  struct Vector axle = vector_scale(graph, tilt.cosine, axis_of_end(to, Z));
   struct Vector across = vector_subtract(graph, axle, up);
   return vector_scale(graph, divide(graph, radius, tilt.sine), across);
 }
@@ -88,20 +88,20 @@ static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node 
  * Returns the velocity, along the base's axes, of the point that is fixed to the end at the vector jacobian_row from
  * it.
  */
-static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct Side *side,
+static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *end,
                                  struct Vector jacobian_row) {
   struct Graph *graph = reader->model->graph;
-  struct Vector spin = angular_velocity_of_side(reader, node, side), velocity;
-  for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->position.along[i]);
+  struct Vector spin = angular_velocity_of_end(reader, node, end), velocity;
+  for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, end->position.along[i]);
   return vector_add(graph, velocity, vector_cross(graph, spin, jacobian_row));
 }
 
-Node slip_of(struct Reader *reader, xmlNodePtr node, const struct Side *from, const struct Side *to, int axis) {
+Node slip_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to, int axis) {
   struct Graph *graph = reader->model->graph;
   Node radius = read_length(reader, node, "radius"), minus = graph_constant(graph, -1.0);
   struct Vector jacobian_row = jacobian_row_of(graph, node, radius, from, to);
   struct Vector between = vector_add(graph, to->position, vector_scale(graph, minus, from->position));
   struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, jacobian_row));
   struct Vector rim = velocity_of(reader, node, to, jacobian_row);
-  return vector_dot(graph, axis_of_side(from, axis), vector_add(graph, rim, vector_scale(graph, minus, ground)));
+  return vector_dot(graph, axis_of_end(from, axis), vector_add(graph, rim, vector_scale(graph, minus, ground)));
 }

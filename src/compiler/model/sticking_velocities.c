@@ -1,4 +1,4 @@
-#include "model/held_velocities.h"
+#include "model/sticking_velocities.h"
 
 #include <stdbool.h>
 
@@ -86,21 +86,21 @@ static struct Gear *read_gears(const struct Model *model, size_t *count) {
 }
 
 /*
- * Replaces a velocity by 0 while friction keeps it at 0, and those coupled to it by gears. is_held has an element for
+ * Replaces a velocity by 0 while friction keeps it at 0, and those coupled to it by gears. is_replaced has an element for
  * each coordinate, which ends the recursion.
  */
-static void hold_coordinate(const struct Model *model, const struct Gear *gears, size_t gear_count, size_t coordinate,
-                            Node is_free, bool *is_held, Node *replacements) {
+static void replace_velocity(const struct Model *model, const struct Gear *gears, size_t gear_count, size_t coordinate,
+                             Node is_free, bool *is_replaced, Node *replacements) {
   struct Graph *graph = model->graph;
   Node *shown = &replacements[graph->vertices[model->velocities.items[coordinate].node].left];
   *shown = function(graph, GUARD, is_free, *shown);
-  is_held[coordinate] = true;
+  is_replaced[coordinate] = true;
   for (size_t i = 0; i < gear_count; i++)
     for (int side = 0; side < 2; side++) {
       size_t other = gears[i].coordinate[1 - side];
-      if (gears[i].coordinate[side] != coordinate || is_held[other]) continue;
+      if (gears[i].coordinate[side] != coordinate || is_replaced[other]) continue;
       Node is_other_free = is_free_beside(graph, is_free, gears[i].coefficient[1 - side]);
-      hold_coordinate(model, gears, gear_count, other, is_other_free, is_held, replacements);
+      replace_velocity(model, gears, gear_count, other, is_other_free, is_replaced, replacements);
     }
 }
 
@@ -113,8 +113,8 @@ static void hold_coordinates(struct Model *model) {
     size_t coordinate = coordinate_of(model, &switches->frictions[i], &coefficient);
     if (coordinate == n) continue;
     Node is_unheld = is_free_beside(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
-    bool *is_held = allocate(n, sizeof *is_held);
-    hold_coordinate(model, gears, gear_count, coordinate, is_unheld, is_held, replacements);
+    bool *is_replaced = allocate(n, sizeof *is_replaced);
+    replace_velocity(model, gears, gear_count, coordinate, is_unheld, is_replaced, replacements);
   }
   substitute_in_observers(model, replacements);
 }
@@ -148,7 +148,7 @@ static void hold_indicators(struct Model *model) {
   }
 }
 
-void hold_velocities(struct Model *model) {
+void replace_sticking_velocities(struct Model *model) {
   if (model->switches.friction_count == 0) return;
   hold_indicators(model);
   hold_coordinates(model);

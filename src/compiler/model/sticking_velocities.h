@@ -8,7 +8,7 @@
  * events, in outputs and in rates of states. The constraint keeps the velocity at 0 up to rounding, and the sign of a
  * rounding error must decide nothing.
  */
-void hold_velocities(struct Model *model);
+void replace_sticking_velocities(struct Model *model);
 
 /*
  * Replaces symbols in the indicators of branches, in assignments of events, in outputs and in rates of states.

@@ -1,6 +1,6 @@
 /* Predicates: the constraint of a closed contact or a sticking friction is active. */
-#ifndef HELD_H
-#define HELD_H
+#ifndef ACTIVE_CONSTRAINTS_H
+#define ACTIVE_CONSTRAINTS_H
 
 #include "instance/instance.h"
 
