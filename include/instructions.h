@@ -14,6 +14,11 @@
 
 #include "lagrangian.h"
 
+/*
+ * Arrays that instructions read and write; instructions_frame() and instructions_seed() set their addresses. SEED
+ * spaces hold the direction of a directional derivative, ROW spaces rows of Taylor coefficients. SPACE_LOCAL holds
+ * local variables.
+ */
 enum Space {
   SPACE_NUMBER,
   SPACE_PARAMETER,
@@ -177,6 +182,7 @@ enum LimitRule {
   LIMIT_RULE_COUNT
 };
 
+/* A rule with its arguments: the row of the argument; for some rules a second row, a share or an exponent. */
 struct LimitCheck {
   enum LimitRule rule;
   Slot row, other_row;

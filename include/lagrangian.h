@@ -40,6 +40,7 @@ struct Seed {
   bool repeats;       /* the point equals that of the previous call, and its workspace has not changed since */
 };
 
+/* Kinds of variables. The table of variables has them in this order; time comes last if nothing depends on it. */
 enum VariableKind {
   VARIABLE_TIME,
   VARIABLE_STATE,
@@ -53,6 +54,10 @@ enum VariableKind {
   VARIABLE_INDICATOR  /* of events; computed when read */
 };
 
+/*
+ * Counters since the start: steps of the solver, evaluations of the derivatives and of the Jacobian, handovers between
+ * methods, events.
+ */
 enum Statistic {
   STATISTIC_STEPS,
   STATISTIC_DERIVATIVES,
@@ -150,12 +155,14 @@ struct BranchMetadata {
   bool holds_energy;    /* the state determines it, and energies depend on it: they must not jump there */
 };
 
+/* A contact: the indices of its mode among the parameters, and of its constraint. */
 struct ContactMetadata {
   size_t mode;       /* 1 while it is closed, else 0 */
   size_t constraint; /* active while the contact is closed */
   const char *name;
 };
 
+/* Dry friction along a velocity: the indices of its modes among the parameters, and of its constraint. */
 struct FrictionMetadata {
   size_t mode;       /* sign of the velocity while it slides, 0 while it sticks */
   size_t reported;   /* the reported mode: also 0 while other constraints keep the velocity at 0 */
@@ -182,6 +189,7 @@ struct AssignmentMetadata {
   size_t index;
 };
 
+/* An <event> or <sample>. Its assignments are consecutive in struct SwitchTable, and take effect together. */
 struct EventMetadata {
   enum Passage passage;
   size_t last_sign;    /* the mode that keeps the last nonzero sign; unused with PASSAGE_HOLDS */
@@ -201,6 +209,10 @@ struct ContactLaws;
 struct FrictionLaws;
 struct TimeLaws;
 
+/*
+ * The switching elements of a system. Order of indicators: branches, contacts, frictions. The modes are the last
+ * mode_count parameters, and change at events only.
+ */
 struct SwitchTable {
   size_t mode_count; /* number of modes, which are the last parameters */
   size_t branch_count, contact_count, friction_count, event_count, assignment_count;
@@ -263,6 +275,7 @@ enum {
   FRICTION_VALUES
 };
 
+/* Values of each sample in value[]: its period and its first time, in s. */
 enum { SAMPLE_EVERY, SAMPLE_OFFSET, SAMPLE_VALUES };
 
 static inline size_t branch_rate_slot(const struct SwitchTable *switches, size_t branch) {
@@ -429,6 +442,10 @@ struct ConstraintTable {
 
 struct ReverseSweep;
 
+/*
+ * A system: its sizes, tables and functions. It is constant data. Functions are reentrant: all that they change is in
+ * their arguments, and in Point.work of work_count numbers.
+ */
 struct Lagrangian {
   const char *name, *guid;
   size_t coordinate_count, state_count, input_count, parameter_count, parameter_constants_count;

@@ -2,6 +2,7 @@
 #ifndef PASSAGE_H
 #define PASSAGE_H
 
+/* The change that triggers an event. */
 enum Passage {
   PASSAGE_HOLDS, /* its condition becomes true */
   PASSAGE_RISES, /* its expression crosses 0 upwards */

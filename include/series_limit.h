@@ -24,6 +24,7 @@
 
 #include "arithmetic.h"
 
+/* A bound on the step that the functions below reduce, and never increase. */
 struct SeriesLimit {
   int order;            /* of the polynomials */
   double step;          /* the bound, in s; the functions below reduce it */

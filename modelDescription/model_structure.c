@@ -26,6 +26,7 @@ const struct StructureForm structure_of_fmi3 = {
     .first_key = FIRST_REFERENCE,
     .has_arrays = true};
 
+/* State while ModelStructure is written. Indices are those of the interface's variables. */
 struct Structure {
   const struct StructureForm *form;
   xmlTextWriterPtr writer;

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* The looks of shapes, by what they show; each has a row in the table of struct LookStyle. */
 enum Look { GROUND, AXIS, SOLID, EDGE, LINK, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
 
 /*
@@ -23,6 +24,7 @@ enum { PICTURE_SIZE = 160 };
 
 extern const struct LookStyle looks[LOOK_COUNT];
 
+/* A point of the picture, in m before fit_drawing(), in pixels after it. */
 struct Spot {
   double right, up;
 };
@@ -35,6 +37,7 @@ struct Shape {
   size_t count;
 };
 
+/* Shapes from the back to the front. */
 struct Drawing {
   struct Shape *shapes;
   size_t count;

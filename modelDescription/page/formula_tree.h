@@ -7,6 +7,7 @@
 
 enum FormulaKind { NUMBER, NAME, ELLIPSIS, APPLICATION, CONDITION, SUM, NEGATIVE, PRODUCT, FRACTION, RAISED };
 
+/* A node of a formula. Sums and products have two parts or more, negatives one, fractions and powers two. */
 struct Formula {
   enum FormulaKind kind;
   char *word; /* the number, the name, or the name of the function */

@@ -8,6 +8,7 @@
 #include "interface/summary.h"
 #include "program/program.h"
 
+/* The page, whose sections are written in order by one writer. */
 struct Page {
   xmlTextWriterPtr writer;
   const struct Program *program;

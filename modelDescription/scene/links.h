@@ -25,6 +25,7 @@ struct SceneJoint {
   double along[FORCES][2];    /* N along x and y for a constraint force of 1 */
 };
 
+/* The rods and joints that were found. The caller owns the lists. */
 struct Links {
   struct Rod *rods;
   size_t rod_count;

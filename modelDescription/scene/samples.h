@@ -16,6 +16,7 @@ struct Thing {
   bool is_planar; /* it is a planar body */
 };
 
+/* Samples of one model. values[0] is the start; indices of objects are those of things. */
 struct Samples {
   const struct Model *model;
   struct Thing *things; /* the first one is the base */

@@ -3,6 +3,7 @@
 
 #include "samples.h"
 
+/* A plane that an object hits. The normal has length 1. */
 struct SceneSurface {
   size_t thing;     /* index of the object that hits it */
   double point[3];  /* m: in the plane; of a stop: the position of the object at the stop */

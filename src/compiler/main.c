@@ -49,6 +49,7 @@ static const char usage[] =
     "  --value VALUE    prints the number that 30deg, 20cm, pi/2, ... is in the UNIT\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 
+/* The arguments of the command line; NULL and 0 for those that are missing. */
 struct Arguments {
   const char *system, *directory, *solver, *value, *unit;
   const char **definitions;

@@ -17,6 +17,7 @@
 #include "page/documentation.h"
 #include "write/code.h"
 
+/* The output files, in the order in which they are written. */
 enum File {
   DESCRIPTION,
   DESCRIPTION_OF_FMI3,

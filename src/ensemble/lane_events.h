@@ -9,6 +9,7 @@
 #include "lane_steps.h"
 #include "single/single_run.h"
 
+/* Events of the runs in lanes. run handles the lanes with events, one after another. */
 struct LaneEvents {
   struct SingleRun *run;
   struct LaneSteps *steps;

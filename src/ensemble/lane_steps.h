@@ -8,6 +8,7 @@
 
 #include "lane_system.h"
 
+/* The runs in lanes. Rows have one vector for each state variable or coefficient; all rows are parts of memory. */
 struct LaneSteps {
   void *memory; /* memory of all rows */
   int order;

@@ -15,6 +15,7 @@ struct Limits {
   size_t count;
 };
 
+/* The tables of a system, and their workspace. */
 struct Interpreter {
   struct InstructionTables tables;
   /* table of each function with one routine; of series: for the coefficients 0 */

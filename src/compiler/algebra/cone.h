@@ -6,6 +6,7 @@
 
 #include "algebra/graph.h"
 
+/* A set of nodes that is closed under operands, except where a visit ended. nodes has no duplicates. */
 struct Cone {
   Node *nodes; /* ascending, so that operands come first */
   size_t count;

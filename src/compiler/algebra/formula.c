@@ -12,6 +12,7 @@ enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
 /* Context of an expression: a sum in a product, and a product in a power, need parentheses. */
 enum Tightness { IN_SUM, IN_PRODUCT, IN_POWER };
 
+/* State while an expression is printed. */
 struct Printer {
   FILE *file;
   const struct Graph *graph;

@@ -6,6 +6,7 @@
 
 #include "algebra/graph.h"
 
+/* f(-x) is f(x) of an even function, -f(x) of an odd one. */
 enum Parity { NEITHER_ODD_NOR_EVEN, ODD, EVEN };
 
 /* Units of arguments, and of the value. */
@@ -18,6 +19,7 @@ enum UnitRule {
 /* Real numbers for which a function has a real value. CLOSED and OPEN: an interval with or without its ends. */
 enum DomainKind { EVERYWHERE, CLOSED, OPEN };
 
+/* The numbers from low to high, unless the kind is EVERYWHERE. */
 struct Domain {
   enum DomainKind kind;
   double low, high;
@@ -38,6 +40,7 @@ enum Recurrence {
   GATED               /* the coefficients of the right operand, or 0 */
 };
 
+/* A row of the table: the properties of one operation. */
 struct Function {
   const char *name;                 /* in formulas and messages, and in the language unless is_internal */
   bool is_internal;                 /* the language has no such function */

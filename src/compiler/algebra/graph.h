@@ -77,6 +77,7 @@ enum SymbolKind {
   SYMBOL_KIND_COUNT
 };
 
+/* A symbol, which is the operand of one SYMBOL node. */
 struct Symbol {
   enum SymbolKind kind;
   int index; /* among the symbols of its kind */
@@ -84,6 +85,7 @@ struct Symbol {
   Node node;
 };
 
+/* A node's operation and operands. Two nodes never have equal vertices. */
 struct Vertex {
   enum Operation operation;
   uint32_t kinds;   /* bit k is set if it depends on a symbol of SymbolKind k */
@@ -93,6 +95,7 @@ struct Vertex {
 
 struct Cone;
 
+/* The expression graph, with the invariants above. Symbols are numbered in the order of their creation. */
 struct Graph {
   struct Vertex *vertices;
   size_t count;

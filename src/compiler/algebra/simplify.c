@@ -211,6 +211,7 @@ int terms_of(const struct Graph *graph, Node node, Node *terms, int limit) {
   return count;
 }
 
+/* A term of a sum: coefficient times factors, which are ascending by base. factor_count is -1 for too many. */
 struct Term {
   Node node;
   double coefficient;

@@ -20,6 +20,10 @@ struct FileLines {
   size_t count;
 };
 
+/*
+ * Where messages about a file go, and how many errors there are. Readers of included files have their own file and
+ * origin.
+ */
 struct Diagnostics {
   const char *file;        /* the file being read, as named by the user */
   const char *origin;      /* says how the file is included, for the end of messages; NULL for the user's own */

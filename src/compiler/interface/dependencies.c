@@ -7,6 +7,7 @@
 /* Steps of graph_work() for a symbol in a list, which is sorted and written. */
 enum { LIST_WORK = 10 };
 
+/* Symbols by their indices in the graph, each once. */
 struct SymbolList {
   size_t *numbers;
   size_t count;

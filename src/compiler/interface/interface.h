@@ -4,6 +4,7 @@
 #include "lagrangian.h"
 #include "mechanics/equations.h"
 
+/* A variable of the FMU, with what only its description needs. */
 struct InterfaceVariable {
   struct ScalarVariable entry;    /* as in the generated table */
   const char *unit, *description; /* NULL if unknown */
@@ -19,6 +20,7 @@ struct InterfaceVariable {
 
 enum { OUTPUT_ORDER = 20 }; /* highest derivative of outputs with Taylor series */
 
+/* The variables, ordered by kind and index. */
 struct Interface {
   struct InterfaceVariable *variables;
   size_t count;

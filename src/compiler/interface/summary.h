@@ -6,6 +6,7 @@
 
 enum { SHOWN_LIMIT = 100 }; /* most equations of motion, outputs and definitions on the page */
 
+/* Expressions for the page, without modes of branches. */
 struct Summary {
   struct NodeNames names;         /* of calculated parameters and definitions that are shown */
   Node lagrangian_kinetic;        /* K of L = K - U */

@@ -10,6 +10,7 @@
 
 #include "mechanics/mass_matrix/mass_elements.h"
 
+/* The constraints of a model in its order; arrays have count elements. */
 struct Constraints {
   size_t count;
   Node *position;           /* ZERO for nonholonomic ones */

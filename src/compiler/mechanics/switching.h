@@ -3,6 +3,7 @@
 
 #include "mechanics/equations.h"
 
+/* The expressions for switching. Lists have the order of struct SwitchTable. */
 struct SwitchingExpressions {
   const struct Branch **branches; /* those on which the motion depends */
   bool *holds_energy;             /* of each branch: the state determines its mode, and energies depend on it */

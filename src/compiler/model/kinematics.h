@@ -10,6 +10,7 @@
 /* "x", "y" and "z". */
 extern const char *const axes[3];
 
+/* Components along x, y and z. */
 struct Vector {
   Node along[3];
 };

@@ -6,6 +6,7 @@
 /* Most corners at which a mesh may touch; each costs a contact. */
 enum { MOST_CORNERS = 32 };
 
+/* A surface. Each of its points belongs to a triangle. */
 struct Mesh {
   double (*points)[3]; /* m, along the mesh's own axes */
   size_t point_count;

@@ -16,6 +16,7 @@ enum SeriesUse {
 
 enum { METHOD_SOURCES = 10 };
 
+/* A row of the table: the properties of a method. */
 struct Method {
   const char *name;          /* in system.xml and on the command line */
   const char *solver;        /* name of its file, and of its struct Solver after "solver_" */

@@ -9,6 +9,7 @@
 #include "model/switches.h"
 #include "variable_type.h"
 
+/* A variable, or another named element of a system. Fields that do not apply are NULL, NAN or ZERO. */
 struct Variable {
   char *name, *description;
   char *unit;         /* as written; NULL if none was given */
@@ -28,6 +29,7 @@ struct Variable {
   long line;
 };
 
+/* A growing list. Appending may move its items. */
 struct VariableList {
   struct Variable *items;
   size_t count;
@@ -162,6 +164,7 @@ struct Energies {
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
 };
 
+/* The nonconservative forces: sums along coordinates, Cartesian forces and torques. */
 struct Forces {
   struct Quantity *along; /* [coordinates]: generalized forces */
   struct PointForce *at_points;
@@ -191,6 +194,7 @@ struct Experiment {
   double start_time, stop_time, step_size;
 };
 
+/* The content of a system. Lists keep the order of declaration. */
 struct Model {
   char *name, *description;
   const struct FileLines *lines; /* lines of included files, see base/diagnostics.h */

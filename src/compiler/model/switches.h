@@ -33,6 +33,7 @@ struct Contact {
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
+/* The part of a friction in a plane; axis is NO_PLANE for a friction along a line. */
 struct FrictionPlane {
   enum PlaneAxis axis;
   Node heading;      /* a mode: its component of the unit vector, or of the share */
@@ -66,6 +67,7 @@ struct Sample {
   Node branch;        /* mode of the branch that switches at the next time */
 };
 
+/* An <event> or <sample>. All values are computed before the first assignment. */
 struct Event {
   enum Passage passage;
   struct Sample sample; /* with PASSAGE_SAMPLES */
@@ -79,6 +81,7 @@ struct Event {
   char *text; /* for messages: the condition, or the period of a sample */
 };
 
+/* All switching elements. Their modes are numbered from first on, after the parameters. */
 struct Switches {
   size_t first;      /* index of the first mode: the number of parameters */
   size_t mode_count; /* modes of all kinds */

@@ -40,6 +40,7 @@ enum FunctionName {
   FUNCTION_COUNT
 };
 
+/* What a function returns: nothing; 0 or 1 + a singular coordinate; a number. */
 enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
 
 /* Where a function reads or leaves the accelerations: its workspace, the array that it fills, or an argument. */
@@ -48,6 +49,7 @@ enum Accelerations { IN_WORKSPACE, IN_TARGET, IN_ARGUMENT };
 /* The struct that has the function's field: struct Lagrangian, a table in it, or struct SwitchTable. */
 enum FunctionGroup { IN_LAGRANGIAN, IN_RESULTS, IN_TAYLOR, IN_IMPLICIT, IN_CONSTRAINTS, IN_SWITCHES };
 
+/* A row of the table: the properties of a generated function. */
 struct GeneratedFunction {
   const char *comment, *name;
   const char *arguments; /* the declared parameter list */

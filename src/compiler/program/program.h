@@ -19,6 +19,7 @@ enum CodeForm { BY_SIZE, STATEMENTS, TABLES, ALL_TABLES };
  */
 enum ProductForm { PRODUCTS_APART, PRODUCTS_TOGETHER, PRODUCTS_LISTED };
 
+/* The program: instruction lists, and the choices between forms of code. */
 struct Program {
   const struct Model *model;
   const struct Equations *equations;

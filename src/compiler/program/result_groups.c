@@ -20,6 +20,7 @@ struct Group {
   size_t shortest; /* the node count of the object that needs the fewest */
 };
 
+/* The groups that can still grow, replaced in turn. */
 struct OpenGroups {
   struct Group groups[OPEN_GROUPS];
   size_t next; /* index of the group that the next new one replaces */

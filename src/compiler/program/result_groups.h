@@ -3,6 +3,7 @@
 
 #include "program/expressions/expressions.h"
 
+/* The groups of all results. The leader of a group is its first result, with the index 0 in it. */
 struct ResultGroups {
   size_t count;          /* number of results */
   size_t *leader, *slot; /* of each result: the first one of its group, and its index in the group */

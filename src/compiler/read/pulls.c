@@ -8,6 +8,7 @@
 /* Largest number of bodies with a force, which bounds the size of the equations of long chains. */
 enum { MOST_PULLED = 30 };
 
+/* The inputs of the pointer. */
 struct Pointer {
   struct Vector position; /* m, position of the pointer */
   struct Vector grabbed;  /* m, grabbed point relative to the body's position, along the body's axes */

@@ -9,6 +9,7 @@
 /* The space of values that several parts use: elements of the array s in point->work. */
 enum { SPACE_SHARED = SPACE_COUNT };
 
+/* The parts of a routine, in the order of their calls. */
 struct Parts {
   struct Routine **items;
   size_t count;

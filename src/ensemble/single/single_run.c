@@ -19,6 +19,7 @@ struct LaneCourse {
   double *state, *parameter; /* after the last event */
 };
 
+/* An instance of the FMU's runtime, into which one lane at a time is loaded. */
 struct SingleRun {
   struct Instance instance;
   struct CommunicationStep step; /* the whole run */

@@ -22,6 +22,7 @@ enum { MOST_COMBINATIONS = 729 };
 /* Accelerations that differ by less than this, relative to the largest, are equal. */
 static const double same_share = 1e-9;
 
+/* A search for the motions that are consistent with Coulomb's law. */
 struct JamSearch {
   struct Resolution *resolution;
   double *kept;        /* accelerations of the motion that was found, in workspace */

@@ -8,6 +8,7 @@
 #include "events/resolution.h"
 #include "instance/active_constraints.h"
 
+/* Rows are the contacts that take part, then the frictions on them. delassus is symmetric and positive semidefinite. */
 struct Pushes {
   size_t contact_count, friction_count, count; /* count: the sum of both */
   size_t *member;                              /* indices of contacts, then of frictions, in the switch table */

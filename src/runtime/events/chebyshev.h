@@ -8,6 +8,7 @@
 
 #include "real.h"
 
+/* Degree of the polynomials, and number of their nodes. */
 enum { CHEBYSHEV_DEGREE = 8, CHEBYSHEV_NODES };
 
 /* Returns the time of a node: node 0 is the end of the window, 8 its start, 4 its middle. */

@@ -4,6 +4,10 @@
 
 #include "instance/event_laws.h"
 
+/*
+ * The state of an event resolution: values and rounding error bounds at the present modes and state, and its history.
+ * The arrays are parts of one workspace; value and error_bound are valid if is_evaluated.
+ */
 struct Resolution {
   struct Instance *instance;
   const struct SwitchTable *switches;

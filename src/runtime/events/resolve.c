@@ -19,6 +19,7 @@
 #include "events/conditions.h"
 #include "events/continuity.h"
 
+/* Rounds after which an event resolution fails. Impacts alone take up to IMPACT_LIMIT rounds (contacts.c). */
 enum { ROUND_LIMIT = 2000 };
 
 static const char no_accelerations[] = "the accelerations do not exist after an event",

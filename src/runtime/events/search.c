@@ -49,6 +49,7 @@ static const double near_zero = 1e-6;
 /* Factor of the step along the slope, so that the next value lies on the other side of the zero. */
 static const double overshoot = 1.1;
 
+/* A search in the solver's last step. The arrays are parts of one workspace. */
 struct Search {
   struct Instance *instance;
   double *state, *rounded; /* state_count each: workspace */

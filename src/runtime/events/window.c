@@ -32,6 +32,7 @@ static const double resolved_motion = 1e-3;
 /* Rounding error of forces relative to the largest one; more if rounding of the state makes more. */
 static const double force_error_bound = 1e-10;
 
+/* A window from time `from` to time `to`, in s, with its samples. */
 struct Window {
   struct Instance *instance;
   double from, to;

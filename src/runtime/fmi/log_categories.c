@@ -4,6 +4,7 @@
 
 #include "fmi/check.h"
 
+/* Bits of the set of categories; CATEGORY_ALL stands for all of them. */
 enum Category { CATEGORY_EVENTS, CATEGORY_WARNING, CATEGORY_DISCARD, CATEGORY_ERROR, CATEGORY_FATAL, CATEGORY_ALL };
 
 static const char *const categories[] = {

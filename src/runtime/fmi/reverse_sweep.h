@@ -4,6 +4,7 @@
 
 #include "instance/instance.h"
 
+/* Derivatives in reverse mode. */
 struct ReverseSweep {
   /*
    * True if the sweep gives the derivatives of these unknowns. It does not before the start, where states may follow

@@ -4,6 +4,7 @@
 
 #include "instance/instance.h"
 
+/* The experiment as the importer defines it; values are valid if the flags say so. */
 struct Experiment {
   double start_time, stop_time; /* in s */
   double tolerance;             /* relative */

@@ -30,6 +30,7 @@ struct EventProgress {
   bool has_lifted;  /* the last event opened a contact as its force vanished */
 };
 
+/* The functions of the room events/, which FMUs without events do not link. */
 struct EventLaws {
   /* Returns the number of doubles of workspace that an instance needs. */
   size_t (*work_count)(void);

@@ -11,6 +11,7 @@
 
 enum { INPUT_ORDER = 3 }; /* highest derivative of an input, which is a polynomial of time over a step */
 
+/* The interface that the importer uses. */
 enum Kind { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
 
 /* States of the FMI state machines (fmi/life_cycle.h). */
@@ -72,6 +73,7 @@ static inline void fmu_state_begin(struct FmuState *fmu_state, double time) {
   fmu_state->searched = time;
 }
 
+/* Functions that allocate and free memory; allocate() returns NULL if there is none. */
 struct Allocator {
   void *(*allocate)(size_t count, size_t size); /* returns zeros */
   void (*free)(void *block);
@@ -79,6 +81,7 @@ struct Allocator {
 
 struct CommunicationStep;
 
+/* An instance. fmu_state is the current snapshot; state, input, parameter and the like point into it. */
 struct Instance {
   struct Allocator memory;
   struct Log log;

@@ -19,6 +19,7 @@ enum Status {
   STATUS_ERROR    /* the instance can only be reset */
 };
 
+/* Bytes of a message, with the terminating zero; longer ones are cut off. */
 enum { MESSAGE_LENGTH = 600 };
 
 /* Receiver of messages. */

@@ -4,6 +4,7 @@
 
 #include "instance/instance.h"
 
+/* The functions of the projection. */
 struct Projection {
   /*
    * Projects a state near the constraints onto them by the least move in the metric of M: first the coordinates, then

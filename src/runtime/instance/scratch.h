@@ -17,6 +17,7 @@ enum ScratchUse {
   SCRATCH_USES
 };
 
+/* A block that grows on demand. It is used by one caller at a time. */
 struct Scratch {
   void *block;
   size_t size;

@@ -17,6 +17,7 @@ static inline bool is_period(double period, double offset, double time) {
   return period > 0.0 && isfinite(period) && isfinite(offset) && time + period > time;
 }
 
+/* The functions of timing/. */
 struct TimeLaws {
   /* Finds the next time, from the present on, at which a branch that depends on time alone switches. False for none. */
   bool (*next)(struct Instance *instance, double *time);

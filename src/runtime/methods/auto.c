@@ -31,6 +31,7 @@
 #include "methods/radau.h"
 #include "methods/stiffness.h"
 
+/* Indices of the two methods. */
 enum AutoMethod { AUTO_TAYLOR, AUTO_RADAU, AUTO_METHODS };
 
 extern const struct Solver solver_taylor, solver_radau;
@@ -70,6 +71,7 @@ struct Choice {
   double taylor_speed, taylor_rate; /* speed and rate of the series when they were left */
 };
 
+/* Memory of this method. choice is in the snapshot; memory holds the solver_memory of both methods. */
 struct Auto {
   struct Choice *choice;
   double *state; /* state_count: workspace */

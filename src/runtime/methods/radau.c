@@ -54,6 +54,7 @@ struct RadauSaved {
   int64_t steps; /* since the last failure of the iterations, at most STEPS_OF_CAUTION */
 };
 
+/* Memory of the method. saved, start and stages are parts of the snapshot. */
 struct Radau {
   struct RadauSaved *saved;
   double *start, *stages; /* in the snapshot: states, STAGE_LIMIT x states */

@@ -4,6 +4,7 @@
 
 #include "instance/solver.h"
 
+/* Most stages of a method, and most linear systems: one real, and one for each conjugate pair. */
 enum { STAGE_LIMIT = 7, SYSTEM_LIMIT = (STAGE_LIMIT + 1) / 2 };
 
 /*

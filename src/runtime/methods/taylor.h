@@ -20,6 +20,10 @@ struct Stagnation {
   double path;
 };
 
+/*
+ * Memory of the method. saved, low and x are in the snapshot; the series is valid from the start of span for
+ * saved->reach seconds.
+ */
 struct Taylor {
   struct TaylorSaved *saved;
   struct Span *span; /* of the last step; its start is the origin of the series */

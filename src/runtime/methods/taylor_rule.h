@@ -7,6 +7,7 @@
 
 #include "lagrangian.h"
 
+/* Orders that a tolerance may select. A series has one coefficient more for the state. */
 enum { LOWEST_ORDER = 4, HIGHEST_ORDER = SERIES_LENGTH - 2 };
 enum {
   STAGNATION_STEPS = 1000

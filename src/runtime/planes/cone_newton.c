@@ -28,6 +28,7 @@ enum { NEWTON_LIMIT = 60 };
  */
 static const double least_gain_of_step = 0.9, least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
 
+/* A Newton iteration for n impulses. Matrices have n x n elements, by rows. */
 struct ConeNewton {
   struct Cones *cones;
   size_t n;

@@ -4,6 +4,7 @@
 
 #include "contacts/pushes.h"
 
+/* The problem, in the rows of pushes: contacts, then frictions, of which those in a plane have two rows. */
 struct Cones {
   const struct Resolution *resolution;
   const struct Pushes *pushes;

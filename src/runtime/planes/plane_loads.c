@@ -24,6 +24,7 @@ static const double share_at_limit = 1e-9;
 /* Relative to the largest limit: frictions with smaller limits are weak. */
 static const double weak_share = 0.01;
 
+/* The distribution of one load among planes. */
 struct PlaneLoads {
   struct Resolution *resolution;
   size_t n;             /* number of coordinates */

@@ -22,6 +22,7 @@ static const double rounding_share = 1e-11;
 /* In rad: directions that differ by less are equal; the width to which a direction is located. */
 static const double same_heading = 1e-9, least_sector = 1e-15;
 
+/* The search for the slip direction of one friction. */
 struct Heading {
   struct Resolution *resolution;
   size_t plane;

@@ -10,6 +10,10 @@
  */
 enum PlaneMode { PLANE_HEADS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
 
+/*
+ * A friction in a plane with its values at the present modes. It is computed from struct Resolution, and changes
+ * nothing there.
+ */
 struct PlaneState {
   const struct PlaneMetadata *metadata;
   int mode;

@@ -34,6 +34,7 @@ static const double near_centre = 0.1, at_centre = 1e-3;
 /* The next level keeps this fraction of the distance from the largest force to the level. */
 static const double part_of_level = 0.25;
 
+/* The iteration towards the analytic centre. All |f_i| are below level. */
 struct Centre {
   struct SharedLoad *load;
   size_t n, free_count;     /* number of forces, and of columns of N */

@@ -4,8 +4,10 @@
 
 #include "instance/instance.h"
 
+/* Nodes of a communication step at which inputs are requested; they determine a polynomial of degree INPUT_ORDER. */
 enum { INPUT_NODES = INPUT_ORDER + 1 };
 
+/* The importer's callbacks within a step, with their workspace. */
 struct Intermediate {
   /*
    * Called at the end of a solver step, at this time. The instance holds the values of that time, for reading alone, in

@@ -20,6 +20,7 @@
 #include "instance/event_laws.h"
 #include "stepping/start.h"
 
+/* The end of a step. */
 enum StepResult {
   STEP_DONE,
   STEP_PARTIAL, /* the state is that of a time before the end */
@@ -229,6 +230,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   return stop(instance, step, problem != NULL ? problem : "the motion grows without bound", ends_at_event, *reached);
 }
 
+/* The arguments and the result of do_advance(), the task of Solver.run(). */
 struct Advance {
   struct Instance *instance;
   struct CommunicationStep *step;

@@ -13,6 +13,7 @@ static inline size_t lu_rows(void) {
   return lagrangian.state_count - lagrangian.coordinate_count;
 }
 
+/* A form of the factorization. width: REAL or COMPLEX of number.h. */
 struct Lu {
   /* Returns the doubles that a matrix, and later its factors, takes. */
   size_t (*size)(size_t width);

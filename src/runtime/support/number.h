@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
+/* Widths: doubles in an element. */
 enum { REAL = 1, COMPLEX = 2 };
 
 static inline double number_size(size_t width, const double *a) {

@@ -15,6 +15,7 @@
 /* Limits of the size of a monomial and of a polynomial: larger ones are no simpler than the expressions. */
 enum { ATOM_LIMIT = 24, MONOMIAL_LIMIT = 400 };
 
+/* coefficient times the product of the atoms to these exponents; the coefficient is not 0. */
 struct Monomial {
   double coefficient;
   uint8_t exponent[ATOM_LIMIT];

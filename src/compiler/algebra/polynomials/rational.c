@@ -9,10 +9,12 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
+/* above / below, reduced; below is not 0. */
 struct Fraction {
   struct Polynomial above, below;
 };
 
+/* The indeterminates of a conversion: atom i of polynomials is the node atoms[i]. */
 struct Converter {
   struct Graph *graph;
   Node atoms[ATOM_LIMIT];

@@ -18,6 +18,7 @@
  */
 enum { DECIDING_LIMIT = 800 };
 
+/* A product, whose factors are replaced by pairs. */
 struct Product {
   Node node;
   struct Factor factors[FACTOR_LIMIT]; /* ascending by base */
@@ -25,6 +26,7 @@ struct Product {
   bool decides; /* its pairs are counted; those of others are only replaced */
 };
 
+/* A product of two bases, with left <= right. */
 struct Pair {
   Node left, right;
 };

@@ -83,6 +83,10 @@ static const struct OtherUnit *find(const char *name, size_t length) {
   return NULL;
 }
 
+/*
+ * The result of a translation: 1 of the unit is factor * pi^pi_power of the SI unit. has_other: some unit in the text
+ * is not an SI unit. is_wrong: the text is not a unit.
+ */
 struct Translation {
   bool has_other, is_wrong;
   double factor;

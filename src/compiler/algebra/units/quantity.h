@@ -13,6 +13,7 @@ struct NumberFactor {
   double power;
 };
 
+/* A value of the reader: its node, its dimension, and what messages about units need. */
 struct Quantity {
   Node node;
   struct Dimension dimension;

@@ -79,6 +79,7 @@ double unit_exponent(const char **text) {
   return exponent;
 }
 
+/* The reading position in a unit, and the first error; NULL for none. */
 struct UnitReader {
   const char *next;
   const char *problem;

@@ -25,6 +25,7 @@ struct ArticulatedLink {
   struct SpatialVector *gain; /* of each row: a column of U D^-1 */
 };
 
+/* A kinematic tree with its factors. Each link follows its parent. */
 struct ArticulatedTree {
   struct ArticulatedLink *items;
   size_t count;

@@ -25,6 +25,7 @@ struct Waiting {
   size_t degree, row;
 };
 
+/* The heap: no item precedes its parent, item (i - 1) / 2. */
 struct Queue {
   struct Waiting *items;
   size_t count;

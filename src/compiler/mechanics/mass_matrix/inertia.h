@@ -38,6 +38,7 @@ struct InertiaBlock {
   const struct ArticulatedTree *tree;
 };
 
+/* K, as the list of its blocks. Each row belongs to one block. */
 struct Inertia {
   size_t count;            /* rows: coordinates and constraints */
   size_t coordinate_count; /* number of coordinates */

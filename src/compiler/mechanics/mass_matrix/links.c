@@ -15,6 +15,7 @@ static const double least_depth = 4.5;
 /* Fewest links with coordinates in a tree; a single free body has two. */
 enum { LEAST_LINKS = 6 };
 
+/* State while the tree of links is built. */
 struct Builder {
   const struct Model *model;
   struct Links *links;

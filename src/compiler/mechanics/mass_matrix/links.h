@@ -7,6 +7,7 @@
 #include "mechanics/mass_matrix/constraint_block.h"
 #include "mechanics/mass_matrix/spatial.h"
 
+/* A link of the tree. Its parent has a smaller index. */
 struct Link {
   size_t parent;    /* index of an earlier link; NO_LINK for the base */
   size_t tree;      /* number of its tree; NO_TREE if nothing moves it, or its coordinates belong to no tree */

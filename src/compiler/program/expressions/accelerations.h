@@ -11,6 +11,7 @@ struct LoopedBlock {
   size_t mass_count; /* length of its range in SPACE_MASS */
 };
 
+/* The blocks of K that are factored at run time. */
 struct LoopedBlocks {
   struct LoopedBlock *items;
   size_t count;

@@ -41,6 +41,9 @@ struct Corrections {
   Node *push; /* of each coordinate: the generalized impulse of the contact and friction impulses in the seeds */
 };
 
+/*
+ * The expressions by what the generated functions compute. Directional derivatives are along the graph's seed symbols.
+ */
 struct Expressions {
   const struct Model *model;
   const struct Equations *equations;

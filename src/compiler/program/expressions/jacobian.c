@@ -22,6 +22,7 @@
 /* The kinds of symbols of the state, as bits. */
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
 
+/* An element of the Jacobian, at a row and column of the state. */
 struct Element {
   struct Position at;
   Node value;

@@ -4,6 +4,7 @@
 #include "interface/interface.h"
 #include "mechanics/equations.h"
 
+/* The solution of the adjoint equations, and the gradient. */
 struct WeightedGradient {
   Node *right_side; /* of each row of K: the partial derivative of the sum by its acceleration or force */
   /* of each row: the solution of K multiplier = side; symbols in blocks that are solved at run time */

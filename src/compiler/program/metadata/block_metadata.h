@@ -3,6 +3,7 @@
 
 #include "program/program.h"
 
+/* The numbers of a block's rows, as coordinate[] of saddle.h and nonsymmetric.h. */
 struct BlockNumbers {
   int *items;
   size_t count;

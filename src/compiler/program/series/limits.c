@@ -53,6 +53,7 @@ struct Check {
   Node guard_condition; /* the guard condition under which it applies; ZERO: always */
 };
 
+/* The checks that were found, with an index by their first rows. */
 struct CheckList {
   const struct SeriesBuilder *builder;
   struct Check *items;

@@ -4,6 +4,7 @@
 #include "instructions.h"
 #include "program/series/series_builder.h"
 
+/* Checks, in the order in which the runtime makes them. */
 struct LimitChecks {
   struct LimitCheck *items; /* the names of functions in them are static strings */
   size_t count;

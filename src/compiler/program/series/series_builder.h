@@ -15,6 +15,7 @@ enum {
   SPACE_OF_FACTORS,             /* local variables without a node */
 };
 
+/* State while the instructions of an order are appended. */
 struct SeriesBuilder {
   const struct Graph *graph;
   const struct SeriesPlan *plan;

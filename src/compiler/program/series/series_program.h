@@ -8,6 +8,7 @@
 #include "program/expressions/expressions.h"
 #include "program/series/limits.h"
 
+/* The instruction lists of a set of series, and their workspace. */
 struct SeriesProgram {
   struct Routine *start; /* of the motion: also computes d state / dt */
   struct Routine *order;

@@ -92,6 +92,7 @@ static bool may_return(enum Opcode opcode) {
   return opcode == FACTOR || opcode_metadata(opcode)->result == NUMBER;
 }
 
+/* An instruction with its level, and its number in the routine, by which equal ones keep their order. */
 struct Turn {
   size_t level, number;
   uint32_t spaces;

@@ -5,6 +5,7 @@
 
 enum FormKind { FORM_SUM, FORM_DIFFERENCE, FORM_PRODUCT, FORM_QUOTIENT, FORM_NEGATION, FORM_POWER, FORM_FUNCTION };
 
+/* An operation with one or two operands, as it is computed. */
 struct Form {
   enum FormKind kind;
   Node left, right;

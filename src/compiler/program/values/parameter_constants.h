@@ -3,6 +3,7 @@
 
 #include "algebra/node_list.h"
 
+/* The nodes that prepare() computes, in the order of its results. */
 struct ParameterConstants {
   Node *nodes; /* ascending */
   size_t count;

@@ -12,6 +12,7 @@
 /* Operands of an instruction. */
 enum { OPERAND_LIMIT = 3 };
 
+/* An instruction; unused operands are 0. */
 struct Instruction {
   enum Opcode opcode;
   enum Operation function; /* of CALL and CALL_OF_TWO */
@@ -19,6 +20,7 @@ struct Instruction {
   Slot operands[OPERAND_LIMIT];
 };
 
+/* The instructions of a function, in an order in which each result precedes its uses. */
 struct Routine {
   struct Instruction *instructions;
   size_t count;

@@ -5,6 +5,7 @@
 #include "program/values/parameter_constants.h"
 #include "program/values/routine.h"
 
+/* State while a routine is built. */
 struct Values {
   const struct Graph *graph;
   const struct ParameterConstants *parameter_constants;

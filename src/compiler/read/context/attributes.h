@@ -10,6 +10,7 @@
 /* The passes over the list of elements, in this order. Each uses names that earlier passes defined. */
 enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
 
+/* The expression of a <dissipation>, with its line for messages. */
 struct Dissipation {
   Node node;
   long line;
@@ -34,6 +35,7 @@ struct Occurrence {
   size_t number;            /* index among its kind of what it declares: coordinates, constraints, contacts, ... */
 };
 
+/* The state of the reader, which all readers of elements share. */
 struct Reader {
   struct Model *model;
   struct Scope *scope;

@@ -8,6 +8,7 @@
 #include "read/robots/robot_system.h"
 #include "read/xml/xml.h"
 
+/* The files of a system, and the overrides by <include>s. */
 struct Includes {
   struct Names *sources;   /* prefix -> struct Source */
   struct Names *documents; /* canonical path and options for robots -> struct Document */

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* The options; zeros for none. */
 struct ReaderOptions {
   const char *const *definitions; /* "name=value", replacing <constant> elements */
   size_t definition_count;

@@ -10,6 +10,7 @@
 /* Largest number of values of a table; the size of its expression is proportional to it. */
 enum { VALUE_LIMIT = 1000 };
 
+/* A table of two arguments while its lines are read. */
 struct Grid {
   struct TableLines lines; /* first member, so that take_line() can cast to struct Grid */
   struct Surface *surface;

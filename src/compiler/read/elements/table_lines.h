@@ -3,6 +3,7 @@
 
 #include "read/context/attributes.h"
 
+/* A reader of lines. `take` gets each line that is not empty, without its comment. */
 struct TableLines {
   struct Reader *reader;
   long line;       /* current line, for messages */

@@ -21,6 +21,7 @@ struct Local {
 
 struct NamedFunction;
 
+/* A parser of one expression. Parsing functions advance `next`. */
 struct Parser {
   struct Scope *scope;
   struct Graph *graph;

@@ -6,6 +6,7 @@
 #include "algebra/quadrature.h"
 #include "read/names/scope.h"
 
+/* A quadrature rule: nodes in (0, 1), ascending, and their weights, whose sum is 1. */
 struct Rule {
   size_t count;
   double nodes[QUADRATURE_LIMIT], weights[QUADRATURE_LIMIT];

@@ -3,6 +3,7 @@
 
 #include "read/expressions/cursor.h"
 
+/* A <function>, whose text is parsed at each call. */
 struct NamedFunction {
   char *name, **arguments;
   size_t argument_count;

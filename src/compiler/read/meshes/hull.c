@@ -46,6 +46,7 @@ struct Face {
   double length;     /* of the normal */
 };
 
+/* A convex polyhedron. Each edge belongs to two faces, in opposite directions. */
 struct Hull {
   struct Face faces[2 * MOST_FACES]; /* with room for new faces during a step */
   size_t face_count;

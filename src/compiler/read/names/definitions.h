@@ -37,6 +37,7 @@ struct Loop {
 /* UNREAD: not yet parsed. ACTIVE: waits for other expressions. READ: parsed, and its value is known. */
 enum DefinitionState { UNREAD, ACTIVE, READ };
 
+/* A named expression, with the loops around it and its state. */
 struct Definition {
   char *name;
   struct NamedExpression expression;
@@ -44,6 +45,7 @@ struct Definition {
   enum DefinitionState state;
 };
 
+/* All named expressions of a system. Names are unique. */
 struct Definitions {
   struct Definition *items;
   size_t count;

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+/* A construct of another language, and the end of the message about it. */
 struct Hint {
   const char *written, *hint;
 };

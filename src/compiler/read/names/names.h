@@ -3,11 +3,13 @@
 
 #include <stddef.h>
 
+/* A slot of the table. */
 struct Name {
   char *text; /* NULL in an empty slot */
   void *meaning;
 };
 
+/* The table. capacity is a power of two, and at least half of the slots are empty. */
 struct Names {
   struct Name *slots;
   size_t capacity, count;

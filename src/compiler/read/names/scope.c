@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "read/names/similar.h"
 
+/* The meaning of a name. */
 struct Entry {
   struct Quantity quantity;
   long line; /* of the definition; 0 for words of the language, compile-time numbers and indices */

@@ -19,6 +19,7 @@ struct Dummy {
 /* Largest depth of nested integrals and derivatives. */
 enum { DUMMY_LIMIT = 20 };
 
+/* The names of a system while its files are read. */
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;

@@ -3,6 +3,7 @@
 
 #include "read/names/names.h"
 
+/* A search for the name that is most similar to the wanted one. */
 struct Similar {
   const char *wanted, *best; /* best: NULL for none */
   size_t distance;           /* between best and wanted */

@@ -21,6 +21,7 @@ struct Entry {
   size_t index;
 };
 
+/* State while the links are connected. */
 struct Connection {
   struct Robot *robot;
   struct Register links, joints;

@@ -12,10 +12,12 @@
 /* m/s: default regularization of friction, which is proportional to the velocity below it. */
 static const double usual_creep = 1e-3;
 
+/* Parameters of a compliant contact: N/m, s/m, a coefficient, m/s. */
 struct Law {
   Node stiffness, damping, friction, creep;
 };
 
+/* Two shapes with their poses, and the points at which they may touch. */
 struct ShapeContact {
   struct ContactSide first, second;
   struct Touches touches;

@@ -15,6 +15,7 @@ bool has_shape_friction(xmlNodePtr node);
 /* Returns the number of rigid contacts; 0 after reporting an error. */
 size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node);
 
+/* A rigid contact at one point; gap in m. */
 struct RigidTouch {
   Node gap;
   struct Slip slip; /* if the contact has friction */

@@ -11,6 +11,7 @@ static const char *const components[] = {"length", "force"};
 static const char *const units[] = {"m", "N"};
 enum { COMPONENT_COUNT = sizeof components / sizeof *components };
 
+/* A spring between its two ends. */
 struct Spring {
   Node stiffness, damping;
   Node stretch; /* elongation from the unstressed length */

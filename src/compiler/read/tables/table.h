@@ -4,6 +4,7 @@
 #include "read/tables/curve.h"
 #include "read/tables/surface.h"
 
+/* A table, with one or two arguments. */
 struct Table {
   bool has_two_arguments;
   struct Curve curve;     /* if there is one argument */

@@ -19,6 +19,7 @@ struct Choices {
   size_t count;
 };
 
+/* A validation in progress. */
 struct SchemaCheck {
   xmlDocPtr schema;
   struct Diagnostics *diagnostics;

@@ -4,6 +4,7 @@
 
 #include "methods/sundials/bdf_support.h"
 
+/* Memory of the method; bdf is its first member. */
 struct SparseBdf {
   struct Bdf bdf;
   /* The pattern of I - gamma J: that of J, and the diagonal. place[k] is the index of J's element k in it. */

@@ -15,6 +15,7 @@
     .advance = bdf_advance, .interpolate = bdf_interpolate                                                             \
   }
 
+/* Memory of the method, for either kind of matrix. */
 struct Bdf {
   struct Sundials sundials;
   void *cvode;

@@ -13,6 +13,7 @@
 /* Fraction of the tolerance for one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static const double safety = 0.1;
 
+/* Memory of the method; sundials is its first member. */
 struct Erk {
   struct Sundials sundials;
   N_Vector before; /* at the start of the step */

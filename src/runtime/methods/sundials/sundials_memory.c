@@ -3,6 +3,7 @@
 #include <setjmp.h>
 #include <string.h>
 
+/* A block in the ring of all blocks of a solver. */
 struct Block {
   struct Block *previous, *next;
   size_t size; /* of content, in bytes */

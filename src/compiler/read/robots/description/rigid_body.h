@@ -3,6 +3,7 @@
 
 #include <stdbool.h>
 
+/* A 3 x 3 matrix by rows. */
 struct Matrix3 {
   double at[3][3];
 };

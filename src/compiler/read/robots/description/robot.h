@@ -21,6 +21,7 @@ struct Collision {
   long line;
 };
 
+/* A link of a robot: a rigid body with shapes. */
 struct Link {
   char *name;   /* as in the file */
   char *symbol; /* the name as an identifier of the language */
@@ -46,6 +47,7 @@ struct JointStart {
   double position[7], velocity[7];
 };
 
+/* A joint between two links. The child has this joint only. */
 struct Joint {
   char *name, *symbol;
   long line;
@@ -143,6 +145,7 @@ struct RobotOptions {
   const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */
 };
 
+/* A robot. After robot_connect() its links form a tree. */
 struct Robot {
   char *name;
   long line;

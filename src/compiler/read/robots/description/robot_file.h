@@ -15,6 +15,7 @@
  */
 enum { LEFT_OUT_LIMIT = 20, UNREAD_LIMIT = 100, NUMBERS_LIMIT = 64 };
 
+/* A robot's file while it is read, with the parts of it that are not read. */
 struct RobotFile {
   struct Robot *robot;
   const struct RobotOptions *options;

@@ -3,6 +3,7 @@
 
 #include "read/robots/mjcf/mjcf_values.h"
 
+/* A mesh of the <asset>. */
 struct MjcfMesh {
   char *path;            /* relative to the robot's file */
   double scale[3];       /* m per unit of the file */

@@ -29,6 +29,7 @@ struct ContactRule {
   bool is_pair;
 };
 
+/* An MJCF file while it is read. */
 struct Mjcf {
   struct RobotFile file;
   xmlNodePtr root;
