@@ -7,10 +7,10 @@
  *  K^-1 = S - S C (1 + E^T S C)^-1 E^T S.
  *
  * The r by r matrix is factored by Gaussian elimination with row pivoting. A factorization costs r solutions with S
- * more than that of saddle.h.
+ * more than that of saddle.h. Reference: G. H. Golub, C. F. Van Loan: Matrix Computations, section 2.1.
  *
- * coordinate[] continues behind the n numbers of saddle.h with r and the r rows of these forces. m continues behind the
- * numbers of saddle.h with NONSYMMETRIC_MASS(n, r) numbers: C by columns, then workspace.
+ * coordinate[] has the n numbers of saddle.h, then r and the r rows of these forces. m has the numbers of saddle.h,
+ * then NONSYMMETRIC_MASS(n, r) numbers: C by columns, and workspace.
  */
 #ifndef NONSYMMETRIC_H
 #define NONSYMMETRIC_H

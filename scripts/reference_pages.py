@@ -95,7 +95,7 @@ class Schema:
 
 
 def documentation(node):
-    """Return the documentation of a declaration; an empty text if it has none."""
+    """Return the documentation of a declaration; an empty text for none."""
     return node.findtext(f"{XS}annotation/{XS}documentation") or ""
 
 

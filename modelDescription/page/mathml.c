@@ -58,7 +58,7 @@ static void write_product_in_pieces(FILE *file, const struct Formula *formula) {
   }
 }
 
-/* Writes a wide numerator behind the fraction, a wide denominator behind a slash. */
+/* Writes a wide numerator after the fraction, a wide denominator after a slash. */
 static void write_fraction_in_pieces(FILE *file, const struct Formula *formula) {
   const struct Formula *above = formula->parts[0], *below = formula->parts[1];
   if (below->width <= narrow) {

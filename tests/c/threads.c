@@ -1,6 +1,6 @@
 /*
  * 8 threads step 8 instances in turn, under ThreadSanitizer: threads LIBRARY GUID. Fails if a call fails, or if
- * instances that were treated alike end in different states.
+ * instances with equal calls end in different states.
  */
 #include <pthread.h>
 #include <stdio.h>

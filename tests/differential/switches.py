@@ -77,7 +77,7 @@ class Switches:
 
     @property
     def reals(self):
-        """The FMU's variables beside the states."""
+        """The FMU's variables in addition to the states."""
         return [*self.modes, *(f"{force.name}.force" for force in [*self.all_contacts, *self.frictions])]
 
     @property

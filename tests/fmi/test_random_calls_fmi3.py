@@ -1,4 +1,6 @@
-"""Random calls of FMI 3.0 (random_calls_fmi3.py): what the tables of the standard allow succeeds, and what they forbid fails with a message."""
+"""
+Random calls of FMI 3.0 (random_calls_fmi3.py): calls that the tables of the standard allow succeed; forbidden ones fail with a message.
+"""
 
 import os
 import subprocess

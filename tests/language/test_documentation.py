@@ -36,7 +36,7 @@ def test_typeset_forms(tmp_path):
 
 
 def test_forms_of_exponentials(tmp_path):
-    """What is computed without overflow is shown as it is written."""
+    """Expressions that are computed without overflow are shown as written."""
     formulas = ["2/(1 + exp(a - b))", "b*exp(a)/(1 + exp(a))", "3/cosh(a + b)^2", "log(1 + exp(-a))*b", "log(cosh(2*a))", "b/(1 + exp(-a)/4)"]
     values = {"a": 0.3, "b": 0.7}
     outputs = "".join(f'<output name="y{i}">{formula}</output>' for i, formula in enumerate(formulas))

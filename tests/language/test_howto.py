@@ -186,7 +186,7 @@ def test_coupled_by_ssp(step, tmp_path):
 
 
 def test_overloaded_gear_and_brake(open_fmu):
-    """What the pages say of other torques and forces."""
+    """The pages' statements on other torques and forces."""
     for torque, direction in [(4.5, 0), (3.01, 0), (2.99, -1)]:
         gear = open_fmu("LossyGear").initialize({"tau": torque})
         gear.step(1)

@@ -80,7 +80,10 @@ def test_messages(tmp_path, constant, message):
     ('<function name="f" arguments="s" unit="N">s + k*x</function><force coordinate="x">f(2)</force>', None),
 ])  # fmt: skip
 def test_units_of_modes_and_functions(tmp_path, content, message):
-    """A mode without a unit is a pure number; a number as an argument takes the unit of what it meets, what a function makes of it does not."""
+    """
+    A mode without a unit is a pure number; a number as an argument takes the unit of the quantity it is added to or compared with, a
+    function of it does not.
+    """
     text = f'<system name="X"><parameter name="k" start="2" unit="N/m"/><parameter name="m" start="1" unit="kg"/><coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/>{content}</system>'
     result = compiled(tmp_path, text)
     assert (result.returncode, result.stderr) == (0, "") if message is None else (result.returncode == 1 and message in result.stderr), result.stderr

@@ -1,4 +1,4 @@
-"""Where systems rest, against closed forms, and what the linearization says of it."""
+"""Equilibria against closed forms, and the report on their linearization."""
 
 import math
 
@@ -121,7 +121,7 @@ def test_what_nothing_moves_stays_at_the_guess(lagrange_fmu):  # noqa: F811
 
 
 def test_contacts_and_friction(lagrange_fmu):  # noqa: F811
-    """What lies on a floor, at x = F/k; what sticks rests where it is."""
+    """A body rests on a floor at x = F/k; a sticking body rests in place."""
     for height in (0, 1):
         found = lagrange_fmu.equilibrium(fmu.archive("Landed"), {"h": height})
     assert found.constraints == ["floor"] and found.point["h"] == 0 and found.point["x"] == pytest.approx(3 / 50, rel=1e-13)

@@ -118,7 +118,7 @@ def test_mistakes(code, message, oscillator, lagrange_fmu):  # noqa: F811
 
 
 def test_without_matplotlib(tmp_path):
-    """The arrays are there, and a plot says what is missing."""
+    """The arrays exist, and plotting names the missing package."""
     (tmp_path / "matplotlib.py").write_text("raise ModuleNotFoundError(name='matplotlib')")
     code = f"import lagrange_fmu\nfound = lagrange_fmu.linearize({str(fmu.archive('Lag'))!r}).step()\nprint(found['y'][0])\nfound.plot()"
     environment = package.environment(package.assemble(tmp_path / "package"))

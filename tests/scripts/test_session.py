@@ -235,7 +235,7 @@ def test_the_environment_for_learning(lagrange_fmu):  # noqa: F811
 
 
 def test_the_examples_of_rest_and_responses(lagrange_fmu, monkeypatch, tmp_path):  # noqa: F811
-    """A cart hangs its pendulum where its bob is at 0.3 m; m x'' is balanced, so x is there as well."""
+    """The pendulum hangs at rest with its bob at 0.3 m, and so the cart, on which no force acts, is at x = 0.3 m."""
     monkeypatch.chdir(tmp_path)
     variables = {"lagrange_fmu": lagrange_fmu}
     exec(example("rest = "), variables)
@@ -247,7 +247,7 @@ def test_the_examples_of_rest_and_responses(lagrange_fmu, monkeypatch, tmp_path)
 
 
 def test_the_example_of_states_in_sympy(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
-    """A cart of m on an actuator with lag: what lagc makes of it has four states."""
+    """A cart of mass m on an actuator with lag: the system that lagc reads has four states."""
     import sympy
     from sympy.physics import mechanics
 

@@ -54,7 +54,7 @@ def test_a_corner_asks_for_two_contacts(open_fmu, corner, method):
 
 @pytest.mark.parametrize("corner", CORNERS)
 def test_a_corner_asks_for_two_contacts_in_model_exchange(corner):
-    """What an integrator leaves of the body's position would take it from one piece to the other, endlessly."""
+    """The integrator's error in the body's position would move it from one piece to the other, endlessly."""
     messages, function = [], CORNERS[corner][2]
     log = lambda *words: messages.append(words[-1].decode())
     with pytest.raises(FMICallException):

@@ -17,7 +17,7 @@ BEYOND = 10.0  # by which default frequencies exceed those of the poles on both 
 DECAYS, PERIODS = 7.0, 6.0  # of the slowest pole in the default time
 LARGEST_RATIO = 1e4  # of a decay to the fastest pole: slower ones do not count for the default time
 TERMS = 18  # of the Taylor series, for a norm of at most 1/2: the rest is below 1e-22
-SMALL = 1e-7  # of the largest pole: what is less is an integrator
+SMALL = 1e-7  # of the largest pole: smaller poles count as integrators
 
 
 @dataclass(frozen=True, eq=False)

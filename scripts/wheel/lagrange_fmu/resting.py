@@ -22,7 +22,7 @@ STEPS, HALVINGS = 200, 25
 LARGEST = 0.5  # step, relative to a value or its nominal value
 SINGULAR = 1e-10  # of the largest singular value: directions without effect
 PRECEDENCE = 1e3  # of held values over balances, in the error that steps lessen
-BALANCED = 1e-9  # of a rate, relative to what the largest terms of its linearization give
+BALANCED = 1e-9  # of a rate, relative to the largest terms of its linearization
 CONVERGED = 1e-13  # relative step
 FURTHEST = 1e9  # relative to nominal values and the guess: beyond, forces only fade
 DOWNHILL, NUDGE = 20, 0.1  # moves along accelerations, relative to nominal values
@@ -197,7 +197,7 @@ class _Search:
             return self.go_to(values)
 
     def why(self, values, off):
-        """The message about what does not balance."""
+        """The message about accelerations and rates that are not balanced."""
         largest = max(map(abs, off.values()), default=0.0)
         units, shown = self.point.units, [name for name in sorted(off, key=lambda name: -abs(off[name])) if abs(off[name]) > NOTABLE * largest][:SHOWN]
         rates = [f"{name} = {off[name]:.6g} {units[name]}" for name in shown if name not in self.hold]

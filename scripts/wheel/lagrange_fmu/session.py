@@ -67,7 +67,7 @@ class Simulation(NamedValues):
 
     @contextmanager
     def _named(self, what):
-        """Raise Problem for a call that fails, with what the FMU logs."""
+        """Raise Problem for a call that fails, with the FMU's messages."""
         self._problems.clear()
         try:
             yield

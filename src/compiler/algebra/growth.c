@@ -69,7 +69,7 @@ static bool grows(const struct Graph *graph, struct Factor factor, struct Growth
 /* Growth rates of the terms of a sum, which grow like exp(rate base) in both directions of base. */
 struct Rates {
   Node base;
-  double unit; /* the smallest rate, or the coefficient of what is hyperbolic; 0 for no growth */
+  double unit; /* the smallest rate, or the coefficient of the hyperbolic functions; 0 for no growth */
   double most;
   bool up, down, is_hyperbolic;
 };

@@ -26,7 +26,10 @@ const char *last_separator(const char *path);
 /* True if the path is absolute. */
 bool is_absolute(const char *path);
 
-/* Limits the address space of the process to so many bytes, if the system can do so and no sanitizer is in use. */
+/*
+ * Limits the address space of the process to this number of bytes, if the system supports that and no sanitizer is in
+ * use.
+ */
 void limit_memory(size_t bytes);
 
 /* Makes standard output end lines by \n on every system. */

@@ -39,5 +39,5 @@ const struct Method *method_named(const char *name);
 /* Returns "a, b or c". */
 char *method_names(void);
 
-/* Returns the solver for a Jacobian with so many rows and nonzero elements. */
+/* Returns the solver for a Jacobian with these numbers of rows and nonzero elements. */
 const char *method_solver(const struct Method *method, size_t rows, size_t elements);

@@ -29,7 +29,8 @@ struct Contact {
  * Coulomb friction in a plane, along two velocities. It is two consecutive frictions of the model, "along" and
  * "across", with one mode: 1 while it slides against the velocity in the plane, 0 while it sticks, -1 while it slips
  * along the heading, a given direction, as at the onset of slip. While it sticks, the heading is the load that it
- * carries beside its constraint, as a share of the sliding force; it is 0 unless several frictions share a load.
+ * carries in addition to its constraint, as a share of the sliding force; it is 0 unless several frictions share a
+ * load.
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 

@@ -25,7 +25,7 @@ static bool scale_of(const char *unit, struct Scale *scale) {
   return unit_parse(unit, &scale->dimension, &problem) || display_unit_parse(unit, &scale->dimension, &scale->factor);
 }
 
-/* The unit behind the number at the beginning; NULL where there is none of either. */
+/* Returns the unit after the number at the beginning of a text; NULL if either is missing. */
 static const char *unit_behind(const char *text, double *number) {
   char *end;
   *number = strtod(text, &end);

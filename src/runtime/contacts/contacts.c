@@ -58,8 +58,8 @@ static const double least_speed = 1e-150;
 static const char no_impact[] = "an impact of a contact has no solution";
 
 /*
- * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding do not count, but for
- * the contact whose zero was located, before its first impact.
+ * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding count only for the
+ * contact whose zero was located, before its first impact.
  */
 static size_t find_impact(const struct Resolution *resolution) {
   size_t found = resolution->switches->contact_count;

@@ -73,7 +73,10 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   component->has_returned_early = false;
   observe(component);
   enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize);
-  /* The instance is as before the call (section 2.2.3); an early return would hide that the motion ends. */
+  /*
+   * The instance is restored to its state before the call (section 2.2.3); an early return would hide that the motion
+   * ends.
+   */
   if (status == STATUS_DISCARD) instance_restore(instance, component->before);
   if (status == STATUS_DONE && instance->fmu_state->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* An error in the callback was logged. */

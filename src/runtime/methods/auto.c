@@ -228,7 +228,10 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
   return true;
 }
 
-/* True if Radau IIA is predicted to be faster than the series; the required margin falls with their time of use. */
+/*
+ * True if Radau IIA is predicted to be faster than the series. The required margin falls with the time for which the
+ * series were used.
+ */
 static bool series_are_slow(struct Instance *instance, struct Choice *choice, double progress) {
   enum { ITERATIONS = 4 };
   const struct Taylor *taylor = instance->solver_memory;

@@ -6,10 +6,10 @@
  *   friction:  p = projection of p - u / w onto the disk of radius mu p_contact, along a line onto the interval,
  *
  * where w is cones->scale. A row is scaled to a rate: it is u where the projection changes nothing, w p where a contact
- * opens, and w (p - limit direction) where a friction slides. The pieces are linear but for the directions of slip. The
- * derivative is factored by elimination with complete pivoting, O(n^3) a step. Impulses that it does not determine keep
- * their values. There is no line search: the method ends at the first step that does not reduce the residual enough,
- * and undoes that step.
+ * opens, and w (p - limit direction) where a friction slides. The rows are piecewise linear, except for the directions
+ * of slip. The derivative is factored by elimination with complete pivoting, O(n^3) a step. Impulses that it does not
+ * determine keep their values. There is no line search: the method ends at the first step that does not reduce the
+ * residual enough, and undoes that step.
  */
 #include "planes/cone_newton.h"
 

@@ -43,7 +43,7 @@ static bool stop_slow(struct Resolution *resolution) {
   return !moves || resolution->occasion == AT_START || resolution_push(resolution);
 }
 
-/* Selects contacts at rest and frictions, but for frictions along lines that stick: those stay active constraints. */
+/* Selects contacts at rest, and frictions except those along lines that stick: these remain active constraints. */
 static void choose_pushes(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++)

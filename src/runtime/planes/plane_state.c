@@ -13,7 +13,7 @@ static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
 /* A slow friction that cannot stick is tried again at this fraction of its speed. */
 static const double slower_share = 0.1;
 
-/* Slip directions whose length differs from 1 by less are unit vectors but for rounding. */
+/* Slip directions whose length differs from 1 by less are unit vectors up to rounding. */
 static const double least_part = 1e-9;
 
 /*

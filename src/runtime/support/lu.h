@@ -1,7 +1,7 @@
 /*
- * LU factorization of matrices with a row and a column for each velocity and each state behind them, for implicit
- * methods. Elements are real or complex (number.h). lagc chooses the cheaper form for a system, lagrangian.implicit.lu,
- * and an FMU links that one.
+ * LU factorization of matrices with a row and a column for each velocity and each further state, for implicit methods.
+ * Elements are real or complex (number.h). lagc chooses the cheaper form for a system, lagrangian.implicit.lu, and an
+ * FMU links that one.
  */
 #ifndef LU_H
 #define LU_H

@@ -120,7 +120,9 @@ static struct Translation translate(const char *text, FILE *file) {
   return result;
 }
 
-/* Writes a number with up to so many digits, or as a power of ten; false if that is not the number to 1e-12. */
+/*
+ * Writes a number with at most this number of digits, or as a power of ten; false if that differs by more than 1e-12.
+ */
 static bool write_number(char text[32], double number, int digits) {
   double exponent = round(log10(number));
   bool is_power = exponent != 0 && fabs(number * pow(10, -exponent) - 1) < 1e-12;

@@ -5,7 +5,7 @@
 
 #define CELSIUS_ZERO 273.15 /* K */
 
-/* True of the degree Celsius, which has a zero of its own. */
+/* True for the degree Celsius, whose zero is not that of the kelvin. */
 bool is_celsius(const char *text);
 
 /*

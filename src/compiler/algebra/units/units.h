@@ -23,7 +23,7 @@ extern const struct Dimension dimension_unknown, dimension_one;
  */
 bool unit_parse(const char *text, struct Dimension *dimension, const char **problem);
 
-/* Returns the exponent after a unit's name, as in s-1 or Pa0.5, and moves *text behind it; 1 if there is none. */
+/* Returns the exponent after a unit's name, as in s-1 or Pa0.5, and moves *text past it; 1 if there is none. */
 double unit_exponent(const char **text);
 
 /* Returns the dimension of a valid unit. */

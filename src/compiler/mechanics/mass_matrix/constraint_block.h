@@ -4,8 +4,8 @@
 #include "mechanics/mass_matrix/mass_elements.h"
 
 /*
- * The rows J of count constraints, and the coefficients of their forces in generalized forces beside J^T; both of
- * constraints and coordinates.
+ * The rows J of count constraints, and the coefficients of their forces in generalized forces in addition to J^T; both
+ * of constraints and coordinates.
  */
 struct ConstraintBlock {
   size_t count;

@@ -36,5 +36,5 @@ struct Links {
 struct Links *links_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
                            Node regularization);
 
-/* Returns links without trees, for so many rows. */
+/* Returns links without trees, for this number of rows. */
 struct Links *links_without_trees(size_t row_count);

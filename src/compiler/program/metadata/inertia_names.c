@@ -14,7 +14,7 @@ static void name_block(const struct Graph *graph, const struct InertiaBlock *blo
   }
 }
 
-/* Names dependences in kinematic trees. The articulated inertia of a link depends on the links behind it. */
+/* Names dependences in kinematic trees. The articulated inertia of a link depends on the links outward of it. */
 static void name_pivots_of_trees(const struct Graph *graph, const struct Inertia *inertia, const char **texts) {
   const struct Pivot **pivots = allocate(inertia->pivot_count, sizeof(struct Pivot *));
   Node *values = allocate(inertia->pivot_count, sizeof *values);

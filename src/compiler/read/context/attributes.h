@@ -32,7 +32,7 @@ struct Occurrence {
   xmlNodePtr node;
   struct Source *source;    /* of the element */
   const struct Loop *loops; /* innermost <for> around it, see definitions.h; NULL for none */
-  size_t number;            /* index among its kind of what it declares: coordinates, constraints, contacts, ... */
+  size_t number;            /* index among the declarations of its kind: coordinates, constraints, contacts, ... */
 };
 
 /* The state of the reader, which all readers of elements share. */

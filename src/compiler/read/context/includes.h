@@ -11,7 +11,7 @@ struct Source {
   const char *file;     /* name for messages */
   char *canonical_path; /* equal for all names of the same file */
   char *prefix;         /* of its names: "motor."; "" for the main file */
-  char *origin;         /* how it came to be read, for messages; NULL for the main file */
+  char *origin;         /* how the file is included, for messages; NULL for the main file */
   xmlNodePtr include;   /* the <include> element; NULL for the main file */
   xmlNodePtr root;      /* <system>; NULL if the file cannot be read */
   struct Source *outer; /* the file that contains the <include>; NULL for the main file */

@@ -7,7 +7,7 @@
 /* Writes the parameters that the friction of all joints shares. */
 void write_friction_parameters(const struct Writer *writer, const struct Robot *robot);
 
-/* Writes the coordinates of a joint, and its other elements but for its frame. */
+/* Writes the coordinates of a joint, and its other elements except its frame. */
 void write_joint(const struct Writer *writer, const struct Joint *joint);
 
 /* Return, for a joint with one degree of freedom, whether it is prismatic, and the unit of its position. */
