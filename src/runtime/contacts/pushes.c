@@ -30,6 +30,10 @@ static double lost_height(const struct Resolution *resolution) {
   return resolution->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(resolution->instance);
 }
 
+/*
+ * With the rate u at which the gap opens, and the acceleration -g of the gap, a bounce lasts 2 u / g and has the height
+ * u^2 / (2 g).
+ */
 bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
   double fall = -resolution->value[gap + CONTACT_ACCELERATION];
@@ -67,6 +71,7 @@ bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contac
   return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
 }
 
+/* The caller selects contacts and frictions by takes_part. */
 static bool contact_takes_part(const struct Resolution *resolution, size_t contact) {
   return resolution->takes_part[contact] != 0.0;
 }

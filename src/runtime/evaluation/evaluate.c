@@ -155,6 +155,7 @@ static enum Status evaluate_state_derivative(struct Instance *instance, size_t s
   return status;
 }
 
+/* Evaluates all indicators, since they share their evaluation. */
 static enum Status evaluate_indicator(struct Instance *instance, size_t index, double *value) {
   double *indicator = instance->switching_work;
   if (!lagrangian.event_laws->indicators(instance, indicator)) return discard_for_singularity(instance);

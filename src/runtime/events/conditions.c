@@ -1,3 +1,9 @@
+/*
+ * Triggers of <event> and <sample> elements. condition[i] of the resolution holds the value of an event's condition
+ * before the last change: positive if a condition held, the last nonzero sign of an expression. An event happens if its
+ * condition becomes positive, or if the sign of its expression changes in its direction. All events of a round happen
+ * with the values before it, so that their order has no effect; two that assign the same variable are an error.
+ */
 #include "events/conditions.h"
 
 #include "evaluation/evaluate.h"
@@ -8,6 +14,7 @@ static bool has_last_sign(const struct EventMetadata *event) {
   return event->passage != PASSAGE_HOLDS && event->passage != PASSAGE_SAMPLES;
 }
 
+/* Assigns the values of an event. They are in value[], which was evaluated before the first assignment of the round. */
 static void assign(struct Resolution *resolution, const struct EventMetadata *event) {
   const struct SwitchTable *switches = resolution->switches;
   const double *value = resolution->value + assignment_slot(switches, 0);
@@ -110,7 +117,10 @@ static bool is_at_zero(const struct Resolution *resolution) {
   return is_located && switches->branches[resolution->indicator].is_last_sign && !resolution->moved;
 }
 
-/* Lets the next crossing of events that happened at 0 begin there. */
+/*
+ * Clears the previous signs of events in both directions that happened at a located zero. If the event turns the motion
+ * back, the expression returns from 0, which is no second crossing.
+ */
 static void begin_at_zero(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->event_count; i++)
     if (resolution->happened[i] != 0.0 && resolution->switches->events[i].passage == PASSAGE_BOTH)

@@ -46,6 +46,10 @@ void continuity_note(struct Resolution *resolution, size_t branch) {
   memcpy(resolution->energy, resolution->value + energy_slot(switches), switches->energy_count * sizeof(double));
 }
 
+/*
+ * Within the overshoot, an acceleration a changes a velocity v by the share a overshoot / scale(v). The factor 4 is a
+ * margin for energies, which are quadratic in v.
+ */
 double continuity_allowed_share(const struct Resolution *resolution) {
   double change = 0.0;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
@@ -55,7 +59,10 @@ double continuity_allowed_share(const struct Resolution *resolution) {
   return least_kink + 4.0 * resolution->overshoot * change;
 }
 
-/* Returns the largest jump among count energies or momenta from first on, relative to their size. */
+/*
+ * Returns the largest jump among count energies or momenta from first on, relative to their size. Eight rounding error
+ * bounds count as no jump.
+ */
 static double share_of_jump(const struct Resolution *resolution, size_t first, size_t count) {
   size_t slot = energy_slot(resolution->switches) + first;
   const double *before = resolution->energy + first, *behind = resolution->value + slot;
@@ -96,7 +103,10 @@ static bool values_of_piece(struct Resolution *resolution, size_t branch, double
   return true;
 }
 
-/* Returns the contact whose gap differs between the pieces of a branch; contact_count for none. */
+/*
+ * Returns the contact whose gap differs between the pieces of a branch; contact_count for none. Overwrites value and
+ * other_error_bound, since the motion ends after the message.
+ */
 static size_t find_corner(struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
   const double *one = resolution->value, *other = resolution->other_error_bound;
