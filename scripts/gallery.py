@@ -30,7 +30,14 @@ PAGES, SITE = BUILD / "gallery-pages", BUILD / "gallery"
 READ = {
     "Start": "README.md",
     "Gallery": "gallery.md",
-    "Tutorial": "fmu/TUTORIAL.md",
+    "Tutorials": {
+        "All tutorials": "fmu/tutorials/README.md",
+        "A pendulum in the browser": "fmu/tutorials/pendulum-in-the-browser.md",
+        "From a pendulum to a robot": "fmu/TUTORIAL.md",
+        "A crane for Simulink": "fmu/tutorials/crane-for-simulink.md",
+        "A robot from URDF": "fmu/howto/robot-from-urdf.md",
+        "A controller coupled by SSP": "fmu/howto/couple-by-ssp.md",
+    },
     "How-to": {
         "All tasks": "fmu/howto/README.md",
         "Close a loop": "fmu/howto/close-a-loop.md",
@@ -43,8 +50,6 @@ READ = {
         "Rope": "fmu/howto/rope.md",
         "One-way clutch": "fmu/howto/one-way-clutch.md",
         "Tyre": "fmu/howto/tyre.md",
-        "Robot from URDF": "fmu/howto/robot-from-urdf.md",
-        "Couple a controller by SSP": "fmu/howto/couple-by-ssp.md",
         "Import into FMPy": "fmu/howto/import-into-fmpy.md",
         "Import into OMSimulator": "fmu/howto/import-into-omsimulator.md",
         "Import into CasADi": "fmu/howto/import-into-casadi.md",
@@ -87,7 +92,7 @@ PYTHON_WORDS = "From the docstrings. [The Python package](scripts/wheel/README.m
 MADE = {"gallery.md", "python.md"}  # pages that are no files of the tree
 FIRST = "DoublePendulum"  # system that the laboratory shows first
 # Files to which pages link.
-BESIDE = ("fmu/systems.gif", "fmu/system.xsd", "scripts/coupling/slaves.py", "scripts/coupling/BalancedCart/SystemStructure.ssd", *(f"fmu/{name}/system.xml" for name in (
+BESIDE = ("fmu/systems.gif", "fmu/tutorials/laboratory.png", "fmu/tutorials/crane-blocks.svg", "fmu/system.xsd", "scripts/coupling/slaves.py", "scripts/coupling/BalancedCart/SystemStructure.ssd", *(f"fmu/{name}/system.xml" for name in (
     "BristleFriction", "ChainPendulum", "DigitalServo", "FourBar", "GantryCrane", "HydraulicCylinder", "PidController", "Rope", "SpinningBeam", "StateFeedback",
     "WormGear")))  # fmt: skip
 STYLE = """
