@@ -1,6 +1,6 @@
 """
-Write the fuzzer's initial inputs: corpus.py FOLDER. These are the systems of fmu/ and tests/systems/ and the examples of fmu/README.md,
-each also with mistakes, and a dictionary of the language's words (words, beside FOLDER).
+Write the fuzzer's initial inputs to a folder: corpus.py FOLDER. These are the systems of fmu/ and tests/systems/ and the examples of
+fmu/README.md, each also with mistakes. The file `words` next to FOLDER is a dictionary of the language's words.
 """
 
 import random

@@ -80,7 +80,7 @@ def test_forces_of_an_integral(open_fmu):
     assert instance.get("totalEnergy") == pytest.approx(start, rel=1e-7)
 
 
-# Each with its value as a function of a bound or frequency x, and where it comes out of the range in which lagc finds it right.
+# Each integrand with its value as a function of x, a bound or a frequency, and the x at which it leaves the range that lagc reports.
 MOVING = {
     "integral(s, 0, x, sin(s))": lambda x: 1 - np.cos(x),
     "integral(s, 0, 1, cos(x*s))": lambda x: np.sin(x) / x if x else 1.0,
@@ -129,7 +129,7 @@ def test_ranges_are_named(tmp_path, expression, stop, message):
 
 
 def test_shapes_of_many_sines_stay_small(tmp_path):
-    """The shortening of a beam with eight shapes, whose velocity is a quadratic form at each of the nodes."""
+    """The shortening of a beam with eight shapes; its rate is a quadratic form of coordinates and velocities."""
     shapes = "".join(f'<coordinate name="q{k}" velocity="v{k}" start="0.0{k}"/>' for k in range(1, 9))
     w = "+".join(f"q{k}*sin({k}*pi*s)" for k in range(1, 9))
     functions = f'<function name="w" arguments="s">{w}</function><function name="short" arguments="s">integral(r, 0, s, diff(w(r), r)^2/2)</function>'

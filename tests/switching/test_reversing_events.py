@@ -47,8 +47,8 @@ def test_an_event_turns_a_body_back(method, start, speed):
 
 def spring_after_five_events():
     """
-    State 0.1 s after the fifth event, and that time. The mass starts with 0.3 J, loses 0.51 of its kinetic energy at x = 0.2, and each time
-    swings round to there.
+    State 0.1 s after the fifth event, and the time of this state. The mass starts with 0.3 J, loses 0.51 of its kinetic energy at x = 0.2,
+    and each time returns to this point.
     """
     w, energy, time = math.sqrt(10), 0.3, math.asin(0.2 * math.sqrt(10)) / math.sqrt(10)
     for _ in range(4):
