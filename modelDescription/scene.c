@@ -6,7 +6,7 @@
 #include "algebra/formula.h"
 #include "base/memory.h"
 #include "scene/formulas.h"
-#include "scene/links.h"
+#include "scene/connections.h"
 #include "scene/packed_mesh.h"
 #include "scene/surfaces.h"
 #include "xml_output.h"
@@ -181,12 +181,12 @@ static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples
 
 static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model) {
   struct Samples samples = take_samples(model, false, NULL);
-  struct Links links = find_links(&samples);
-  char **formulas = joint_formulas(model, &links);
+  struct Connections connections = find_connections(&samples);
+  char **formulas = joint_formulas(model, &connections);
   struct Surfaces surfaces = find_surfaces(&samples);
-  for (size_t i = 0; i < links.rod_count; i++) write_rod(writer, &samples, &links.rods[i]);
-  for (size_t i = 0; i < links.joint_count; i++)
-    write_joint(writer, &samples, &links.joints[i], formulas + JOINT_COORDINATES * i);
+  for (size_t i = 0; i < connections.rod_count; i++) write_rod(writer, &samples, &connections.rods[i]);
+  for (size_t i = 0; i < connections.joint_count; i++)
+    write_joint(writer, &samples, &connections.joints[i], formulas + JOINT_COORDINATES * i);
   for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
   release_samples(&samples);
 }

@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "scene/configurations.h"
-#include "scene/links.h"
+#include "scene/connections.h"
 #include "scene/surfaces.h"
 #include "solids.h"
 
@@ -14,7 +14,7 @@ enum { MOST_WAYS = 8, MOST_DOTS = 60 };
 /* The visible parts of the system at its start values. */
 struct Sight {
   struct Samples samples;
-  struct Links links;
+  struct Connections connections;
   struct Surfaces surfaces;
   double *values; /* of all nodes, in SI units */
   struct View view;
@@ -123,10 +123,11 @@ static bool is_particle(const struct Thing *thing) {
 
 /* True if a rod or a joint connects the object, or if it is not a particle. */
 static bool is_attached(const struct Sight *sight, size_t thing) {
-  const struct Links *links = &sight->links;
+  const struct Connections *connections = &sight->connections;
   bool attached = !is_particle(&sight->samples.things[thing]);
-  for (size_t k = 0; k < links->rod_count; k++) attached |= links->rods[k].from == thing || links->rods[k].to == thing;
-  for (size_t k = 0; k < links->joint_count; k++) attached |= links->joints[k].with == thing;
+  for (size_t k = 0; k < connections->rod_count; k++)
+    attached |= connections->rods[k].from == thing || connections->rods[k].to == thing;
+  for (size_t k = 0; k < connections->joint_count; k++) attached |= connections->joints[k].with == thing;
   return attached;
 }
 
@@ -145,15 +146,16 @@ static void append_axes(struct Drawing *drawing, const struct Sight *sight, doub
 /* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */
 static void append_bodies(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
-  const struct Links *links = &sight->links;
+  const struct Connections *connections = &sight->connections;
   for (size_t i = 0; i < samples->thing_count; i++)
     if (samples->things[i].body != NULL && is_solid(samples->things[i].body))
       append_solid(drawing, &sight->view, model, samples->things[i].body, sight->values);
-  for (size_t i = 0; i < links->rod_count; i++)
-    append_line(drawing, LINK, spot_of(sight, links->rods[i].from), spot_of(sight, links->rods[i].to));
-  for (size_t i = 0; i < links->joint_count; i++)
-    append_line(drawing, LINK, spot_of(sight, links->joints[i].of),
-                spot_on(sight, links->joints[i].of, links->joints[i].coordinates[0], links->joints[i].coordinates[1]));
+  for (size_t i = 0; i < connections->rod_count; i++)
+    append_line(drawing, LINK, spot_of(sight, connections->rods[i].from), spot_of(sight, connections->rods[i].to));
+  for (size_t i = 0; i < connections->joint_count; i++)
+    append_line(drawing, LINK, spot_of(sight, connections->joints[i].of),
+                spot_on(sight, connections->joints[i].of, connections->joints[i].coordinates[0],
+                        connections->joints[i].coordinates[1]));
   for (size_t i = 0; i < samples->thing_count; i++)
     if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
 }
@@ -172,8 +174,8 @@ static void append_points(struct Drawing *drawing, const struct Sight *sight) {
     bool is_ball = is_particle(thing) && thing->body->mass.node != ZERO && samples->thing_count <= MOST_DOTS;
     if (!thing->is_planar) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
   }
-  for (size_t i = 0; i < sight->links.joint_count; i++) {
-    const struct SceneJoint *joint = &sight->links.joints[i];
+  for (size_t i = 0; i < sight->connections.joint_count; i++) {
+    const struct SceneJoint *joint = &sight->connections.joints[i];
     append_pivot(drawing, spot_on(sight, joint->of, joint->coordinates[0], joint->coordinates[1]));
   }
   append_pivot(drawing, spot_of(sight, 0));
@@ -228,7 +230,7 @@ static bool is_finite(const struct Rectangle *all) {
 static struct Sight sight_of(const struct Model *model) {
   struct Configurations everything = configurations_of(model, NULL);
   struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
-  sight.links = find_links(&sight.samples);
+  sight.connections = find_connections(&sight.samples);
   sight.surfaces = find_surfaces(&sight.samples);
   if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));
   for (size_t i = 0; i < sight.samples.thing_count; i++)

@@ -23,11 +23,12 @@ static double change_of(const struct Model *model, size_t parameter) {
 }
 
 /* Returns the coordinates of all joints with changed parameters; NULL if a joint does not exist then. */
-static double *coordinates_with(const struct Model *model, const struct Links *links, const double *changes) {
+static double *coordinates_with(const struct Model *model, const struct Connections *connections,
+                                const double *changes) {
   struct Samples samples = take_samples(model, false, changes);
-  double *coordinates = allocate(JOINT_COORDINATES * links->joint_count, sizeof *coordinates);
-  for (size_t i = 0; i < links->joint_count && coordinates != NULL; i++) {
-    struct SceneJoint joint = {.of = links->joints[i].of, .with = links->joints[i].with};
+  double *coordinates = allocate(JOINT_COORDINATES * connections->joint_count, sizeof *coordinates);
+  for (size_t i = 0; i < connections->joint_count && coordinates != NULL; i++) {
+    struct SceneJoint joint = {.of = connections->joints[i].of, .with = connections->joints[i].with};
     if (!find_joint(&samples, &joint)) coordinates = NULL;
     for (int k = 0; k < JOINT_COORDINATES && coordinates != NULL; k++)
       coordinates[JOINT_COORDINATES * i + (size_t)k] = joint.coordinates[k];
@@ -37,17 +38,17 @@ static double *coordinates_with(const struct Model *model, const struct Links *l
 }
 
 /* Finds the coefficient of each parameter in each coordinate, a row each. Returns false if a joint vanishes. */
-static bool find_multiples(const struct Model *model, const struct Links *links, double *multiples) {
+static bool find_multiples(const struct Model *model, const struct Connections *connections, double *multiples) {
   size_t count = model->parameters.count;
   for (size_t p = 0; p < count; p++) {
     double *changes = allocate(count, sizeof *changes);
     changes[p] = change_of(model, p);
     if (changes[p] == 0.0) continue;
-    double *coordinates = coordinates_with(model, links, changes);
+    double *coordinates = coordinates_with(model, connections, changes);
     if (coordinates == NULL) return false;
-    for (size_t i = 0; i < JOINT_COORDINATES * links->joint_count; i++)
+    for (size_t i = 0; i < JOINT_COORDINATES * connections->joint_count; i++)
       multiples[i * count + p] =
-          (coordinates[i] - links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]) / changes[p];
+          (coordinates[i] - connections->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]) / changes[p];
   }
   return true;
 }
@@ -77,26 +78,27 @@ static char *sum_as_text(const struct Model *model, const double *multiples, dou
   return is_first ? NULL : formula;
 }
 
-char **joint_formulas(const struct Model *model, const struct Links *links) {
-  size_t count = model->parameters.count, coordinate_count = JOINT_COORDINATES * links->joint_count;
+char **joint_formulas(const struct Model *model, const struct Connections *connections) {
+  size_t count = model->parameters.count, coordinate_count = JOINT_COORDINATES * connections->joint_count;
   char **formulas = allocate(coordinate_count + 1, sizeof *formulas);
   double *multiples = allocate(coordinate_count * count + 1, sizeof *multiples);
-  if (links->joint_count == 0 || count > MOST_PARAMETERS || !find_multiples(model, links, multiples)) return formulas;
+  if (connections->joint_count == 0 || count > MOST_PARAMETERS || !find_multiples(model, connections, multiples))
+    return formulas;
   bool *holds = allocate(coordinate_count, sizeof *holds);
   for (size_t i = 0; i < coordinate_count; i++) holds[i] = true;
   for (int trial = 0; trial < TRIALS; trial++) {
     double *changes = allocate(count, sizeof *changes);
     for (size_t p = 0; p < count; p++)
       changes[p] = change_of(model, p) * sin(1.0 + 1.7 * (double)(p + 1) * (trial + 1));
-    double *coordinates = coordinates_with(model, links, changes);
+    double *coordinates = coordinates_with(model, connections, changes);
     for (size_t i = 0; i < coordinate_count; i++)
       holds[i] &= coordinates != NULL &&
                   is_sum(multiples + i * count, changes, count,
-                         links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES], coordinates[i]);
+                         connections->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES], coordinates[i]);
   }
   for (size_t i = 0; i < coordinate_count; i++)
     if (holds[i])
       formulas[i] = sum_as_text(model, multiples + i * count,
-                                links->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]);
+                                connections->joints[i / JOINT_COORDINATES].coordinates[i % JOINT_COORDINATES]);
   return formulas;
 }

@@ -44,10 +44,10 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   size_t count = model->displacements.count;
   if (count == 0) return;
   Node *force = forces_along(model, DISPLACEMENT, 2 * count), *undisplaced = undisplaced_symbols(graph);
-  Node *push = point_forces(model, DISPLACEMENT, 2 * count), *damping = allocate(2 * count, sizeof *damping);
+  Node *applied = point_forces(model, DISPLACEMENT, 2 * count), *damping = allocate(2 * count, sizeof *damping);
   gradient_of(graph, model->energies.displaced_dissipation.node, DISPLACEMENT, 2 * count, damping);
   for (size_t i = 0; i < count; i++)
-    reactions[i] = subtract(graph, subtract(graph, push[2 * i], damping[2 * i + 1]), force[2 * i]);
+    reactions[i] = subtract(graph, subtract(graph, applied[2 * i], damping[2 * i + 1]), force[2 * i]);
   substitute(graph, reactions, count, undisplaced, reactions);
   for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
 }

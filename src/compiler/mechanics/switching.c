@@ -213,14 +213,14 @@ static Node scale_of_plane(const struct Model *model, const struct Friction *alo
   struct Graph *graph = model->graph;
   Node scale = ZERO;
   for (int axis = 0; axis < 2; axis++) {
-    const struct Gradient jacobian_rows = gradient_by_kinds(graph, along[axis].velocity, 1u << VELOCITY);
-    for (size_t i = 0; i < jacobian_rows.count; i++) {
-      const struct Symbol *symbol = graph_symbol_of(graph, jacobian_rows.symbols[i]);
+    const struct Gradient gradient = gradient_by_kinds(graph, along[axis].velocity, 1u << VELOCITY);
+    for (size_t i = 0; i < gradient.count; i++) {
+      const struct Symbol *symbol = graph_symbol_of(graph, gradient.symbols[i]);
       double nominal = model->velocities.items[symbol->index].nominal;
-      Node size = function(graph, ABSOLUTE, jacobian_rows.symbols[i], ZERO);
+      Node size = function(graph, ABSOLUTE, gradient.symbols[i], ZERO);
       size = add(graph, size, graph_constant(graph, isnan(nominal) ? 1.0 : nominal));
-      Node jacobian_row = function(graph, ABSOLUTE, jacobian_rows.values[i], ZERO);
-      Node term = multiply(graph, jacobian_row, size);
+      Node slope = function(graph, ABSOLUTE, gradient.values[i], ZERO);
+      Node term = multiply(graph, slope, size);
       scale = add(graph, scale, term);
     }
   }

@@ -81,48 +81,48 @@ void pose_translate(struct Graph *graph, struct Pose *pose, struct Vector offset
  * Rotates the frame. turn maps components along the new axes to those along the present ones; spin is the relative
  * angular velocity along the new axes.
  */
-static void turn_axes(struct Graph *graph, struct Pose *pose, const struct Matrix *turn, struct Vector spin) {
-  for (int i = 0; i < 3; i++) pose->rotation.row[i] = matrix_apply_transposed(graph, turn, pose->rotation.row[i]);
-  pose->velocity = matrix_apply_transposed(graph, turn, pose->velocity);
-  pose->angular_velocity = vector_add(graph, matrix_apply_transposed(graph, turn, pose->angular_velocity), spin);
+static void rotate_axes(struct Graph *graph, struct Pose *pose, const struct Matrix *rotation, struct Vector spin) {
+  for (int i = 0; i < 3; i++) pose->rotation.row[i] = matrix_apply_transposed(graph, rotation, pose->rotation.row[i]);
+  pose->velocity = matrix_apply_transposed(graph, rotation, pose->velocity);
+  pose->angular_velocity = vector_add(graph, matrix_apply_transposed(graph, rotation, pose->angular_velocity), spin);
 }
 
 void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step) {
   pose_translate(graph, pose, step->origin, step->velocity);
-  turn_axes(graph, pose, &step->rotation, step->angular_velocity);
+  rotate_axes(graph, pose, &step->rotation, step->angular_velocity);
 }
 
 /* Rodrigues' formula for a unit axis e: R = cos I + sin [e x] + (1 - cos) e e^T. */
-void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate) {
+void pose_rotate(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate) {
   Node cosine = function(graph, COSINE, angle, ZERO), sine = function(graph, SINE, angle, ZERO);
   Node rest = subtract(graph, ONE, cosine);
-  struct Matrix turn;
+  struct Matrix rotation;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
-      Node product = multiply(graph, axis.along[i], axis.along[j]), *element = &turn.row[i].along[j];
-      Node jacobian_row = i == j ? ZERO : multiply(graph, sine, axis.along[3 - i - j]);
-      if ((i + 1) % 3 == j) jacobian_row = negate(graph, jacobian_row);
-      *element = add(graph, multiply(graph, rest, product), i == j ? cosine : jacobian_row);
+      Node product = multiply(graph, axis.along[i], axis.along[j]), *element = &rotation.row[i].along[j];
+      Node skew = i == j ? ZERO : multiply(graph, sine, axis.along[3 - i - j]);
+      if ((i + 1) % 3 == j) skew = negate(graph, skew);
+      *element = add(graph, multiply(graph, rest, product), i == j ? cosine : skew);
     }
-  turn_axes(graph, pose, &turn, vector_scale(graph, rate, axis));
+  rotate_axes(graph, pose, &rotation, vector_scale(graph, rate, axis));
 }
 
 /* The rotation is v -> q v conj(q); the relative angular velocity along the new axes is 2 conj(q) q'. */
-void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]) {
-  struct Matrix turn;
+void pose_rotate_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]) {
+  struct Matrix rotation;
   Node square[4];
   struct Vector spin;
   for (int i = 0; i < 4; i++) square[i] = power_number(graph, q[i], 2.0);
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     Node others = add(graph, square[j + 1], square[k + 1]);
-    turn.row[i].along[i] = subtract(graph, add(graph, square[0], square[i + 1]), others);
-    Node product = multiply(graph, q[i + 1], q[j + 1]), jacobian_row = multiply(graph, q[0], q[k + 1]);
-    turn.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, jacobian_row));
-    turn.row[j].along[i] = scale(graph, 2.0, add(graph, product, jacobian_row));
+    rotation.row[i].along[i] = subtract(graph, add(graph, square[0], square[i + 1]), others);
+    Node product = multiply(graph, q[i + 1], q[j + 1]), skew = multiply(graph, q[0], q[k + 1]);
+    rotation.row[i].along[j] = scale(graph, 2.0, subtract(graph, product, skew));
+    rotation.row[j].along[i] = scale(graph, 2.0, add(graph, product, skew));
     Node forth = difference_of_products(graph, q[0], rate[i + 1], q[i + 1], rate[0]);
     Node around = difference_of_products(graph, q[k + 1], rate[j + 1], q[j + 1], rate[k + 1]);
     spin.along[i] = scale(graph, 2.0, add(graph, forth, around));
   }
-  turn_axes(graph, pose, &turn, spin);
+  rotate_axes(graph, pose, &rotation, spin);
 }

@@ -47,10 +47,10 @@ struct Pose pose_of_base(void);
 void pose_translate(struct Graph *graph, struct Pose *pose, struct Vector offset, struct Vector rate);
 
 /* Rotates the frame about a constant unit axis. */
-void pose_turn(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate);
+void pose_rotate(struct Graph *graph, struct Pose *pose, struct Vector axis, Node angle, Node rate);
 
 /* Rotates the frame by a unit quaternion q[0] + q[1] i + q[2] j + q[3] k. */
-void pose_turn_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
+void pose_rotate_by_quaternion(struct Graph *graph, struct Pose *pose, const Node q[4], const Node rate[4]);
 
 /* Applies a translation or a rotation relative to the frame. One with both would have a velocity along other axes. */
 void pose_follow(struct Graph *graph, struct Pose *pose, const struct Pose *step);

@@ -120,18 +120,18 @@ extern const char *const shape_type_names[SHAPE_TYPES];
 struct ContactShape {
   char *name;
   enum ShapeType type;
-  size_t frame;         /* index among the model's frames: position and orientation */
-  const char *in;       /* name of the frame or body; a particle in the plane has the base's axes */
-  size_t particle;      /* index of that particle among the bodies; NO_PARTICLE for none */
-  int axis;             /* of a plane, cylinder or capsule: x, y or z of the frame */
-  struct Vector offset; /* m, of its centre, along the frame's axes */
-  struct Matrix turn;   /* rotation from its own axes to the frame's */
-  Node angles[3];       /* rad, of that rotation: about the frame's x, y and z in turn */
-  Node radius, length;  /* m; the length of a capsule excludes its round ends */
-  struct Vector size;   /* m, of a box or ellipsoid along its axes */
-  struct Mesh *mesh;    /* NULL for other types */
-  bool is_hidden;       /* has contacts, but is not drawn */
-  char *color;          /* such as "#ff8000", or "#ff800080" at half opacity; NULL for the page's choice */
+  size_t frame;           /* index among the model's frames: position and orientation */
+  const char *in;         /* name of the frame or body; a particle in the plane has the base's axes */
+  size_t particle;        /* index of that particle among the bodies; NO_PARTICLE for none */
+  int axis;               /* of a plane, cylinder or capsule: x, y or z of the frame */
+  struct Vector offset;   /* m, of its centre, along the frame's axes */
+  struct Matrix rotation; /* rotation from its own axes to the frame's */
+  Node angles[3];         /* rad, of that rotation: about the frame's x, y and z in turn */
+  Node radius, length;    /* m; the length of a capsule excludes its round ends */
+  struct Vector size;     /* m, of a box or ellipsoid along its axes */
+  struct Mesh *mesh;      /* NULL for other types */
+  bool is_hidden;         /* has contacts, but is not drawn */
+  char *color;            /* such as "#ff8000", or "#ff800080" at half opacity; NULL for the page's choice */
 };
 
 #define NO_PARTICLE ((size_t)-1)

@@ -48,7 +48,7 @@ static Node sliding_by_direction(struct Graph *graph, const struct Friction *fri
   return choose_node(graph, friction->mode, friction->sliding, friction->sliding_back);
 }
 
-Node sliding_push(struct Graph *graph, const struct Friction *friction) {
+Node sliding_force(struct Graph *graph, const struct Friction *friction) {
   if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, sliding_by_direction(graph, friction));
   return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
 }
@@ -58,7 +58,7 @@ Node friction_sticks(struct Graph *graph, const struct Friction *friction) {
 }
 
 Node friction_force(struct Graph *graph, const struct Friction *friction, Node force) {
-  if (friction->is_given) return sliding_push(graph, friction);
+  if (friction->is_given) return sliding_force(graph, friction);
   Node static_force = function(graph, GUARD, friction_sticks(graph, friction), force);
-  return add(graph, static_force, sliding_push(graph, friction));
+  return add(graph, static_force, sliding_force(graph, friction));
 }

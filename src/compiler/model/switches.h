@@ -108,7 +108,7 @@ bool has_planes(const struct Switches *switches);
 Node square_of_speed(struct Graph *graph, const struct Friction *along);
 
 /* Returns the force that the friction exerts against the velocity, in addition to the force of its constraint. */
-Node sliding_push(struct Graph *graph, const struct Friction *friction);
+Node sliding_force(struct Graph *graph, const struct Friction *friction);
 
 /* Returns an expression that is 1 while the friction's constraint is active, else 0. */
 Node friction_sticks(struct Graph *graph, const struct Friction *friction);

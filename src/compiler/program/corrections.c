@@ -148,16 +148,16 @@ struct Routine *start_velocities_routine(const struct Program *program, struct V
 
 struct Routine *responses_routine(const struct Program *program, struct Values *values) {
   struct Routine *routine = values_begin(values);
-  const Node *push = program->expressions->corrections.push;
+  const Node *impulse = program->expressions->corrections.impulse;
   size_t n = program->equations->count;
-  compute_blocks(program, values, push, push, n);
+  compute_blocks(program, values, impulse, impulse, n);
   for (size_t i = 0; i < n; i++) values_copy(values, target_slot(i), ZERO);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(n + i), push[i]);
+  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(n + i), impulse[i]);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
     if (block->constraint_count == 0) continue;
-    append_solved(program, values, b, push, false);
+    append_solved(program, values, b, impulse, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
         routine_copy(values->routine, target_slot(block->coordinates[i]),

@@ -17,9 +17,9 @@
 /* A constraint, with the slots of its numbers in the block that is factored at run time. */
 struct Row {
   Slot right_side, target, force;
-  Slot turn;      /* its element of dJ w, if turns */
-  bool turns;     /* it has a nonzero element of dJ w */
-  bool is_looped; /* in a block that is factored at run time; no other constraint is redundant */
+  Slot change;     /* its element of dJ w, if has_change */
+  bool has_change; /* it has a nonzero element of dJ w */
+  bool is_looped;  /* in a block that is factored at run time; no other constraint is redundant */
 };
 
 static struct Row *rows_create(const struct Program *program) {
@@ -62,7 +62,7 @@ static Slot right_side_of(const struct Program *program, size_t coordinate) {
 }
 
 /* Computes dJ w into local variables. */
-static void append_turns(const struct Program *program, struct Values *values, struct Row *rows) {
+static void append_changes(const struct Program *program, struct Values *values, struct Row *rows) {
   const struct Elements *jacobian = &program->equations->constraints->jacobian;
   const Node *along = program->expressions->constraints_along;
   values_compute(values, along, jacobian->count, false);
@@ -72,14 +72,14 @@ static void append_turns(const struct Program *program, struct Values *values, s
     if (!row->is_looped) continue;
     Slot term = routine_local(values->routine), right_side = right_side_of(program, jacobian->positions[k].column);
     routine_append(values->routine, PRODUCT, term, values_slot(values, along[k]), right_side, 0);
-    Slot sum = row->turns ? routine_local(values->routine) : term;
-    if (row->turns) routine_append(values->routine, SUM, sum, row->turn, term, 0);
-    row->turn = sum;
-    row->turns = true;
+    Slot sum = row->has_change ? routine_local(values->routine) : term;
+    if (row->has_change) routine_append(values->routine, SUM, sum, row->change, term, 0);
+    row->change = sum;
+    row->has_change = true;
   }
 }
 
-static bool any_turns(const struct Program *program) {
+static bool any_changes(const struct Program *program) {
   bool any = false;
   for (size_t k = 0; k < program->equations->constraints->jacobian.count; k++)
     any |= program->expressions->constraints_along[k] != ZERO;
@@ -90,20 +90,21 @@ void append_least_forces_along(const struct Program *program, struct Values *val
   struct Row *rows = rows_create(program);
   size_t count = program->equations->constraints->count;
   const struct LoopedBlocks *blocks = &program->blocks;
-  bool turns = any_turns(program);
+  bool has_change = any_changes(program);
   for (size_t b = 0; b < blocks->count; b++)
-    if (turns && blocks->items[b].block->constraint_count > 0) append_origins(program, values, b, rows);
-  append_turns(program, values, rows);
+    if (has_change && blocks->items[b].block->constraint_count > 0) append_origins(program, values, b, rows);
+  append_changes(program, values, rows);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].turns) routine_append(values->routine, DIFFERENCE, rows[j].right_side, rows[j].target, rows[j].turn, 0);
+    if (rows[j].has_change)
+      routine_append(values->routine, DIFFERENCE, rows[j].right_side, rows[j].target, rows[j].change, 0);
     else routine_copy(values->routine, rows[j].right_side, rows[j].target);
   }
   for (size_t b = 0; b < blocks->count; b++)
     if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Slot)b, 0, 0, 0);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].turns) routine_append(values->routine, SUM, rows[j].target, rows[j].right_side, rows[j].turn, 0);
+    if (rows[j].has_change) routine_append(values->routine, SUM, rows[j].target, rows[j].right_side, rows[j].change, 0);
     else routine_copy(values->routine, rows[j].target, rows[j].right_side);
   }
 }

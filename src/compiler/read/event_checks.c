@@ -77,7 +77,7 @@ static void warn_of_event(const struct Reader *reader, const struct Event *event
 }
 
 /* The branches of a condition, and the times after the start at which they switch. */
-struct Turns {
+struct BranchTimes {
   const struct Branch **branches;
   double *times;
   size_t branch_count, time_count;
@@ -89,7 +89,7 @@ static int compare_times(const void *first, const void *second) {
 }
 
 /* Finds the branches and their times. False if a branch depends on others, or is not affine in time. */
-static bool find_turns(const struct Model *model, const struct Event *event, struct Turns *turns) {
+static bool find_branch_times(const struct Model *model, const struct Event *event, struct BranchTimes *branch_times) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
   Node *roots = allocate(switches->branch_count + 1, sizeof *roots);
@@ -97,29 +97,30 @@ static bool find_turns(const struct Model *model, const struct Event *event, str
   roots[0] = event->condition;
   for (size_t i = 0; i < switches->branch_count; i++)
     if (cone_has(cone, switches->branches[i].mode)) {
-      turns->branches[turns->branch_count++] = &switches->branches[i];
-      roots[turns->branch_count] = switches->branches[i].indicator;
+      branch_times->branches[branch_times->branch_count++] = &switches->branches[i];
+      roots[branch_times->branch_count] = switches->branches[i].indicator;
     }
-  cone_collect(cone, model->graph, roots, turns->branch_count + 1);
-  if (count_switches(model) != turns->branch_count || !is_alone(model, event)) return false;
-  for (size_t i = 0; i < turns->branch_count; i++) {
+  cone_collect(cone, model->graph, roots, branch_times->branch_count + 1);
+  if (count_switches(model) != branch_times->branch_count || !is_alone(model, event)) return false;
+  for (size_t i = 0; i < branch_times->branch_count; i++) {
     double value[TIMES];
-    if (!evaluate(model, turns->branches[i]->indicator, value)) return false;
+    if (!evaluate(model, branch_times->branches[i]->indicator, value)) return false;
     double duration = value[0] / (value[0] - value[1]);
-    if (duration > 0.0) turns->times[turns->time_count++] = duration;
+    if (duration > 0.0) branch_times->times[branch_times->time_count++] = duration;
   }
-  qsort(turns->times, turns->time_count, sizeof *turns->times, compare_times);
+  qsort(branch_times->times, branch_times->time_count, sizeof *branch_times->times, compare_times);
   return true;
 }
 
 /* True if the condition holds at a duration after the start. */
-static bool holds_at(const struct Model *model, const struct Event *event, const struct Turns *turns, double duration) {
+static bool holds_at(const struct Model *model, const struct Event *event, const struct BranchTimes *branch_times,
+                     double duration) {
   double *symbols = start_values(model);
   symbols[model->graph->vertices[model->time].left] += duration;
   const double *value = graph_evaluate(model->graph, symbols);
-  for (size_t i = 0; i < turns->branch_count; i++) {
-    double indicator = value[turns->branches[i]->indicator];
-    symbols[model->graph->vertices[turns->branches[i]->mode].left] = (indicator > 0.0) - (indicator < 0.0);
+  for (size_t i = 0; i < branch_times->branch_count; i++) {
+    double indicator = value[branch_times->branches[i]->indicator];
+    symbols[model->graph->vertices[branch_times->branches[i]->mode].left] = (indicator > 0.0) - (indicator < 0.0);
   }
   return graph_evaluate(model->graph, symbols)[event->condition] > 0.0;
 }
@@ -127,14 +128,14 @@ static bool holds_at(const struct Model *model, const struct Event *event, const
 static void warn_of_condition(const struct Reader *reader, const struct Event *event) {
   const struct Model *model = reader->model;
   size_t count = model->switches.branch_count;
-  struct Turns turns = {.branches = allocate(count, sizeof(const struct Branch *)),
-                        .times = allocate(count, sizeof(double))};
-  if (!find_turns(model, event, &turns)) return;
-  bool at_start = holds_at(model, event, &turns, 0.0), before = at_start;
+  struct BranchTimes branch_times = {.branches = allocate(count, sizeof(const struct Branch *)),
+                                     .times = allocate(count, sizeof(double))};
+  if (!find_branch_times(model, event, &branch_times)) return;
+  bool at_start = holds_at(model, event, &branch_times, 0.0), before = at_start;
   double passed = 0.0;
-  for (size_t i = 0; i <= turns.time_count; i++) {
-    double next = i < turns.time_count ? turns.times[i] : passed + 2.0;
-    bool holds = holds_at(model, event, &turns, (passed + next) / 2.0);
+  for (size_t i = 0; i <= branch_times.time_count; i++) {
+    double next = i < branch_times.time_count ? branch_times.times[i] : passed + 2.0;
+    bool holds = holds_at(model, event, &branch_times, (passed + next) / 2.0);
     if (holds && !before) return;
     before = holds;
     passed = next;

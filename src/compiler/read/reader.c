@@ -30,7 +30,7 @@
 #include "read/linearization_reader.h"
 #include "read/names/definitions.h"
 #include "read/names/words.h"
-#include "read/pulls.h"
+#include "read/pointer_interaction.h"
 #include "read/robots/robot_system.h"
 #include "read/space/frames.h"
 #include "read/tables/table.h"
@@ -136,11 +136,11 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_expanded(reader, POSITIONS);
   evaluate_start_expressions(reader);
   read_expanded(reader, EXPRESSIONS);
-  if (reader->options->pull && reader->model->coordinates.count > 0) add_pulls(reader);
+  if (reader->options->pull && reader->model->coordinates.count > 0) add_pointer_interaction(reader);
   undisplace_branches(reader);
   if (reader->diagnostics->errors == 0) {
     find_given_frictions(reader->model);
-    add_pushes_in_planes(reader);
+    add_sliding_forces_in_planes(reader);
   }
   complete_friction_forces(reader);
   if (reader->diagnostics->errors == 0) replace_sticking_velocities(reader->model);

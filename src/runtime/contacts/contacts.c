@@ -291,7 +291,7 @@ static size_t find_prescribed(const struct Resolution *resolution) {
 
 /* Projects the velocities onto the contacts that have come to rest. NULL, or the reason why that fails. */
 static const char *let_rest(struct Resolution *resolution) {
-  if (!resolution_push(resolution)) return refuse_rest(resolution);
+  if (!resolution_project_velocities(resolution)) return refuse_rest(resolution);
   size_t fixed = find_prescribed(resolution);
   if (fixed < resolution->switches->contact_count) {
     contact_forces_refuse_fixed(resolution, fixed);
@@ -377,7 +377,7 @@ static bool lift(struct Resolution *resolution, bool *lifts) {
   }
   if (!*lifts) return true;
   resolution->lifts++;
-  bool done = resolution_move(resolution);
+  bool done = resolution_project_coordinates(resolution);
   resolution_restore_modes(resolution);
   return done;
 }
@@ -412,7 +412,7 @@ static bool part_at_start(struct Resolution *resolution) {
     set_contact(resolution, i, true);
     parts = true;
   }
-  parts = parts && resolution_move(resolution) && !undo_move_of_fixed(resolution);
+  parts = parts && resolution_project_coordinates(resolution) && !undo_move_of_fixed(resolution);
   resolution_restore_modes(resolution);
   return parts;
 }
@@ -433,7 +433,7 @@ static bool lift_start(struct Resolution *resolution) {
     count++;
   }
   log_parted(resolution);
-  return count == 0 || resolution_push(resolution);
+  return count == 0 || resolution_project_velocities(resolution);
 }
 
 /*
@@ -505,14 +505,14 @@ static const char *check_gaps(const struct Resolution *resolution) {
 
 static const char *act_once(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
-  bool may_turn = may_turn_gaps(resolution) && resolution->occasion != AT_START;
+  bool may_change = may_change_gaps(resolution) && resolution->occasion != AT_START;
   *again = true;
   const char *problem = check_values(resolution);
   if (problem != NULL) return problem;
-  if ((resolution->moved || may_turn || resolution->occasion == IN_EXCHANGE) && open_lifted(resolution)) return NULL;
-  if (may_turn && !resolution->jumped) problem = check_gaps(resolution);
+  if ((resolution->moved || may_change || resolution->occasion == IN_EXCHANGE) && open_lifted(resolution)) return NULL;
+  if (may_change && !resolution->jumped) problem = check_gaps(resolution);
   if (problem != NULL) return problem;
-  if (((may_turn && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
+  if (((may_change && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
   size_t contact = find_impact(resolution);
   bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT;
   if (hits && is_tried && closes_clearly(resolution, contact))

@@ -90,7 +90,7 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
                                 .is_first = resolution->flips[indicator] == 0.0,
                                 .may_jump =
                                     resolution->jumped || resolution->occasion == AT_START ||
-                                    (may_turn_gaps(resolution) && is_off_zero(resolution, value[FRICTION_VELOCITY]))};
+                                    (may_change_gaps(resolution) && is_off_zero(resolution, value[FRICTION_VELOCITY]))};
   take_direction(resolution, friction, &state);
   /* A friction force that varies passes through 0 and is nonzero the next moment. */
   bool may_stay = resolution->switches->rests_on != NULL || !resolution->switches->friction_varies;
@@ -140,11 +140,11 @@ static double mode_from_rest(const struct Resolution *resolution, const struct F
 
 /* Returns the mode of a friction that slides at a velocity that has not jumped. */
 static double mode_from_sliding(const struct Resolution *resolution, const struct FrictionState *state) {
-  bool turns = (state->is_moving && state->mode * state->velocity < 0.0) || state->is_hit;
-  if (state->is_moving && !turns) return state->mode;
+  bool reverses = (state->is_moving && state->mode * state->velocity < 0.0) || state->is_hit;
+  if (state->is_moving && !reverses) return state->mode;
   if (resolution->occasion == AT_START && state->is_first) return 0.0;
   double least_rate = -state->error_bound_of_rate - state->error_bound / shortest_slip;
-  bool leaves = !state->is_moving && state->mode * state->rate >= least_rate && (!turns || !state->is_first);
+  bool leaves = !state->is_moving && state->mode * state->rate >= least_rate && (!reverses || !state->is_first);
   return leaves ? state->mode : 0.0;
 }
 
@@ -356,8 +356,8 @@ static bool follows_from(struct Resolution *resolution, size_t friction, size_t 
   struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
   resolution_values_of_force(resolution, &point, constraint, 0.0, resolution->value);
   resolution_values_of_force(resolution, &point, constraint, 1.0, resolution->other_error_bound);
-  bool turns = branch == resolution->switches->branch_count || with[branch] != without[branch];
-  return turns && with[slot] != without[slot];
+  bool reverses = branch == resolution->switches->branch_count || with[branch] != without[branch];
+  return reverses && with[slot] != without[slot];
 }
 
 /* Returns the largest constraint force; INFINITY if accelerations do not exist. */

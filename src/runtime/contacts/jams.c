@@ -47,14 +47,14 @@ static double direction_of(const struct Resolution *resolution, size_t friction)
  */
 static size_t turn_moving(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  size_t turned = switches->friction_count;
+  size_t switched = switches->friction_count;
   for (size_t i = 0; i < switches->friction_count && resolution->occasion == AT_START; i++) {
     double direction = direction_of(resolution, i);
     if (!(direction * mode_of(resolution, switches->frictions[i].mode) < 0.0)) continue;
     resolution_set_mode(resolution, switches->frictions[i].mode, direction);
-    turned = i;
+    switched = i;
   }
-  return turned;
+  return switched;
 }
 
 static bool is_tried_branch(const struct Resolution *resolution, size_t branch) {

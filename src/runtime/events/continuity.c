@@ -150,8 +150,8 @@ const char *continuity_check_corner(struct Resolution *resolution) {
 /* Checks that the constraints hold after branches have switched. Returns NULL, or the reason. */
 static const char *check_constraints(struct Resolution *resolution) {
   struct Instance *instance = resolution->instance;
-  bool may_turn = may_turn_gaps(resolution) && !resolution->jumped;
-  if (lagrangian.constraints.projection == NULL || !(may_turn || resolution->moved)) return NULL;
+  bool may_change = may_change_gaps(resolution) && !resolution->jumped;
+  if (lagrangian.constraints.projection == NULL || !(may_change || resolution->moved)) return NULL;
   if (evaluate_prepare(instance) != STATUS_DONE) return constraints_not_kept;
   bool starts = resolution->occasion == AT_START;
   double moved = starts ? lagrangian.constraints.projection->drift(instance, resolution->time)

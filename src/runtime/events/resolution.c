@@ -196,7 +196,7 @@ void resolution_restore_modes(struct Resolution *resolution) {
   resolution->instance->parameter_constants_are_stale = true;
 }
 
-bool resolution_push(struct Resolution *resolution) {
+bool resolution_project_velocities(struct Resolution *resolution) {
   struct Instance *instance = resolution->instance;
   double *velocity = resolution->state + lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
@@ -213,7 +213,7 @@ bool resolution_moves(const struct Resolution *resolution, size_t constraint) {
   return slope[constraint] > 0.0;
 }
 
-bool resolution_move(struct Resolution *resolution) {
+bool resolution_project_coordinates(struct Resolution *resolution) {
   struct Instance *instance = resolution->instance;
   memset(resolution->rounded, 0, lagrangian.state_count * sizeof *resolution->rounded);
   if (evaluate_prepare(instance) != STATUS_DONE) return false;

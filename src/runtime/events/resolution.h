@@ -139,20 +139,20 @@ void resolution_values_of_force(const struct Resolution *resolution, const struc
 const double *resolution_accelerations(const struct Resolution *resolution);
 
 /* Projects the velocities onto the active constraints, by the least change in the metric of M. False if that fails. */
-bool resolution_push(struct Resolution *resolution);
+bool resolution_project_velocities(struct Resolution *resolution);
 
-/* True if velocities change along an active constraint, by resolution_push(); false if its row of J is 0. */
+/* True if velocities change along an active constraint, by resolution_project_velocities(); false if its row of J is 0. */
 bool resolution_moves(const struct Resolution *resolution, size_t constraint);
 
 /* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */
-bool resolution_move(struct Resolution *resolution);
+bool resolution_project_coordinates(struct Resolution *resolution);
 
 static inline bool is_hit(const struct Resolution *resolution, size_t indicator) {
   return resolution->occasion == AT_EVENT && resolution->indicator == indicator;
 }
 
 /* True if a branch or a mode may have changed gaps or their rates. */
-static inline bool may_turn_gaps(const struct Resolution *resolution) {
+static inline bool may_change_gaps(const struct Resolution *resolution) {
   return resolution->switched != NULL || resolution->set_mode;
 }
 

@@ -65,7 +65,7 @@ static const char *switch_last_signs(struct Resolution *resolution, bool *again)
   if (!resolution->lags) return branches_switch(resolution, true, again);
   resolution->lags = false;
   *again = true;
-  return resolution_push(resolution) ? NULL : constraints_not_kept;
+  return resolution_project_velocities(resolution) ? NULL : constraints_not_kept;
 }
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
@@ -107,14 +107,14 @@ static const char *begin_resolution(struct Resolution *resolution) {
 /* Projects velocities that have jumped onto the constraints. */
 static const char *push(struct Resolution *resolution) {
   bool has_to_keep = resolution->jumped && lagrangian.constraints.projection != NULL;
-  return has_to_keep && !resolution_push(resolution) ? constraints_not_kept : NULL;
+  return has_to_keep && !resolution_project_velocities(resolution) ? constraints_not_kept : NULL;
 }
 
 /* Checks contacts and frictions after an event. Returns NULL, or the violated law. */
 static const char *check_laws(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   const char *problem = NULL;
-  if (switches->contact_laws != NULL && (resolution->moved || may_turn_gaps(resolution)))
+  if (switches->contact_laws != NULL && (resolution->moved || may_change_gaps(resolution)))
     problem = switches->contact_laws->check_gaps(resolution);
   if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(resolution);
   return problem;

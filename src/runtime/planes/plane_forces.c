@@ -40,7 +40,7 @@ static bool stop_slow(struct Resolution *resolution) {
     moves |= state.speed > 0.0;
     plane_stick(resolution, &state);
   }
-  return !moves || resolution->occasion == AT_START || resolution_push(resolution);
+  return !moves || resolution->occasion == AT_START || resolution_project_velocities(resolution);
 }
 
 /* Selects contacts at rest, and frictions except those along lines that stick: these remain active constraints. */

@@ -86,7 +86,7 @@ static bool bring_to_rest(struct Resolution *resolution) {
     if (begins) plane_stick(resolution, &state);
     moves |= (begins || (state.mode == PLANE_STICKS && !state.is_given)) && state.speed > 0.0;
   }
-  bool is_done = !moves || resolution->occasion == AT_START || resolution_push(resolution);
+  bool is_done = !moves || resolution->occasion == AT_START || resolution_project_velocities(resolution);
   resolution_restore_modes(resolution);
   return is_done;
 }

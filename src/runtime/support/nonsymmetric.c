@@ -100,10 +100,10 @@ size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, 
 void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                         double *x) {
   struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
-  double *push = x + n; /* free, as r < n */
+  double *free_force = x + n; /* free, as r < n */
   solve_symmetric(n, start, column, coordinate, m, x);
-  for (size_t i = 0; i < nonsymmetric.count; i++) push[i] = x[nonsymmetric.force[i]];
-  solve_small(nonsymmetric.count, m + nonsymmetric.factor, m + nonsymmetric.pivot, push);
+  for (size_t i = 0; i < nonsymmetric.count; i++) free_force[i] = x[nonsymmetric.force[i]];
+  solve_small(nonsymmetric.count, m + nonsymmetric.factor, m + nonsymmetric.pivot, free_force);
   for (size_t k = 0; k < nonsymmetric.count; k++)
-    for (size_t i = 0; i < n; i++) x[i] -= push[k] * m[nonsymmetric.response + k * n + i];
+    for (size_t i = 0; i < n; i++) x[i] -= free_force[k] * m[nonsymmetric.response + k * n + i];
 }

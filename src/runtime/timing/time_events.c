@@ -29,7 +29,7 @@ static double time_to_zero(const struct Resolution *resolution, size_t branch) {
 }
 
 /* Returns the branch that reaches 0 first; branch_count for none. */
-static size_t first_to_turn(const struct Resolution *resolution) {
+static size_t first_to_switch(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t first = switches->branch_count;
   double least = INFINITY;
@@ -46,7 +46,7 @@ static bool find_next_time(struct Instance *instance, double *time) {
   struct Resolution resolution = resolution_of(instance);
   double present = instance->fmu_state->time;
   time_events_values(&resolution, present);
-  size_t branch = first_to_turn(&resolution);
+  size_t branch = first_to_switch(&resolution);
   if (branch == resolution.switches->branch_count) return false;
   const struct SampleMetadata *sample = sample_of(resolution.switches, branch);
   *time = sample != NULL ? sample_time(instance, sample) : present;
@@ -62,7 +62,7 @@ static bool is_due(struct Instance *instance) {
   struct Resolution resolution = resolution_of(instance);
   double present = instance->fmu_state->time;
   time_events_values(&resolution, present);
-  size_t branch = first_to_turn(&resolution);
+  size_t branch = first_to_switch(&resolution);
   return branch < resolution.switches->branch_count && time_to_zero(&resolution, branch) <= rounding_of_time(present);
 }
 

@@ -40,14 +40,14 @@ static void clear_component(struct SpatialInertia *inertia, int component) {
 /* Computes U = inertia S and the masses D = S^T U + inertia of the coordinates. Returns U. */
 static struct SpatialVector *set_masses(struct Graph *graph, struct ArticulatedLink *item,
                                         const struct SpatialInertia *inertia) {
-  const struct Link *link = item->link;
+  const struct TreeLink *link = item->link;
   struct SpatialVector *force = allocate(link->count, sizeof *force);
   item->pattern = full_pattern(link->count);
   item->mass = allocate(item->pattern.start[link->count], sizeof *item->mass);
   for (size_t i = 0; i < link->count; i++) {
-    force[i] = spatial_inertia_apply(graph, inertia, link->axes[i]);
+    force[i] = spatial_inertia_apply(graph, inertia, link->motion_subspace[i]);
     for (size_t j = 0; j <= i; j++) {
-      Node mass = spatial_dot(graph, force[i], link->axes[j]);
+      Node mass = spatial_dot(graph, force[i], link->motion_subspace[j]);
       item->mass[item->pattern.start[i] + j] = add(graph, mass, link->inertia[i * link->count + j]);
     }
   }
@@ -71,14 +71,14 @@ static void set_gains(struct Graph *graph, struct ArticulatedLink *item, const s
 /* Returns the articulated inertia without the free motions of the link: inertia - U D^-1 U^T. */
 static struct SpatialInertia eliminate_link(struct Graph *graph, struct ArticulatedLink *item,
                                             struct SpatialInertia inertia) {
-  const struct Link *link = item->link;
+  const struct TreeLink *link = item->link;
   if (link->count == 0) return inertia;
   const struct SpatialVector *force = set_masses(graph, item, &inertia);
   item->factor = factors_create(graph, &item->pattern, item->mass);
   set_gains(graph, item, force);
   for (size_t i = 0; i < link->count; i++) inertia = spatial_inertia_less(graph, &inertia, item->gain[i], force[i]);
   for (size_t i = 0; i < link->count && !link->has_inertia; i++) {
-    int component = only_component(link->axes[i]);
+    int component = only_component(link->motion_subspace[i]);
     if (component >= 0) clear_component(&inertia, component);
   }
   return inertia;
@@ -90,7 +90,7 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
  */
 struct Load {
   Node mass;
-  Node jacobian_row; /* at most the mass times the distance of the centre of mass from the link's origin */
+  Node first_moment; /* at most the mass times the distance of the centre of mass from the link's origin */
   Node trace;        /* at most the trace of the moments about the origin */
 };
 
@@ -101,9 +101,9 @@ static Node length_of(struct Graph *graph, struct Vector vector) {
 /* Returns the load of a link, with that of the outward links. */
 static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bodies, const struct Load *behind) {
   const struct Vector *moment = bodies->moment.row, *coupling = bodies->coupling.row;
-  struct Vector jacobian_row = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* from -[lever] */
+  struct Vector first_moment = {{coupling[1].along[2], coupling[2].along[0], coupling[0].along[1]}}; /* from -[lever] */
   struct Load load = {.mass = add(graph, bodies->mass.row[0].along[0], behind->mass),
-                      .jacobian_row = add(graph, length_of(graph, jacobian_row), behind->jacobian_row),
+                      .first_moment = add(graph, length_of(graph, first_moment), behind->first_moment),
                       .trace = behind->trace};
   for (int i = 0; i < 3; i++) load.trace = add(graph, load.trace, moment[i].along[i]);
   return load;
@@ -111,21 +111,21 @@ static struct Load load_of(struct Graph *graph, const struct SpatialInertia *bod
 
 static void add_load_to_parent(struct Graph *graph, struct Load *parent, const struct Pose *pose, struct Load load) {
   Node distance = length_of(graph, pose->origin), shift = multiply(graph, load.mass, distance);
-  Node steiner = multiply(graph, distance, add(graph, scale(graph, 2.0, load.jacobian_row), shift));
+  Node steiner = multiply(graph, distance, add(graph, scale(graph, 2.0, load.first_moment), shift));
   parent->mass = add(graph, parent->mass, load.mass);
-  parent->jacobian_row = add(graph, parent->jacobian_row, add(graph, load.jacobian_row, shift));
+  parent->first_moment = add(graph, parent->first_moment, add(graph, load.first_moment, shift));
   parent->trace = add(graph, parent->trace, add(graph, load.trace, scale(graph, 2.0, steiner)));
 }
 
 /* Computes bounds of the diagonal elements of M. A pivot far below one is rounding error. */
 static void set_scales(struct Graph *graph, struct ArticulatedLink *item, const struct Load *load) {
-  const struct Link *link = item->link;
+  const struct TreeLink *link = item->link;
   item->scale = allocate(link->count, sizeof *item->scale);
   for (size_t i = 0; i < link->count; i++) {
-    struct SpatialVector axis = link->axes[i];
+    struct SpatialVector axis = link->motion_subspace[i];
     Node moved = multiply(graph, load->mass, vector_dot(graph, axis.linear, axis.linear));
-    Node turned = multiply(graph, load->trace, vector_dot(graph, axis.angular, axis.angular));
-    item->scale[i] = add(graph, add(graph, moved, turned), link->inertia[i * link->count + i]);
+    Node rotating = multiply(graph, load->trace, vector_dot(graph, axis.angular, axis.angular));
+    item->scale[i] = add(graph, add(graph, moved, rotating), link->inertia[i * link->count + i]);
   }
 }
 
@@ -145,15 +145,15 @@ static void eliminate_all(struct Graph *graph, struct ArticulatedTree *tree) {
   }
 }
 
-static struct ArticulatedTree *collect_links(const struct Links *links, size_t tree, const size_t *coordinates,
+static struct ArticulatedTree *collect_links(const struct KinematicTrees *trees, size_t tree, const size_t *coordinates,
                                              size_t row_count) {
   struct ArticulatedTree *result = allocate(1, sizeof *result);
-  size_t *index = allocate(links->count, sizeof *index);
-  *result = (struct ArticulatedTree){.items = allocate(links->count, sizeof *result->items), .row_count = row_count};
-  for (size_t i = 0; i < links->count; i++) {
-    const struct Link *link = &links->items[i];
+  size_t *index = allocate(trees->count, sizeof *index);
+  *result = (struct ArticulatedTree){.items = allocate(trees->count, sizeof *result->items), .row_count = row_count};
+  for (size_t i = 0; i < trees->count; i++) {
+    const struct TreeLink *link = &trees->items[i];
     if (link->tree != tree) continue;
-    bool is_inside = link->parent != NO_LINK && links->items[link->parent].tree == tree;
+    bool is_inside = link->parent != NO_LINK && trees->items[link->parent].tree == tree;
     index[i] = result->count;
     struct ArticulatedLink *item = &result->items[result->count++];
     *item = (struct ArticulatedLink){.link = link, .parent = is_inside ? index[link->parent] : NO_LINK};
@@ -164,9 +164,9 @@ static struct ArticulatedTree *collect_links(const struct Links *links, size_t t
   return result;
 }
 
-struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Links *links, size_t tree,
+struct ArticulatedTree *articulated_create(struct Graph *graph, const struct KinematicTrees *trees, size_t tree,
                                            const size_t *coordinates, size_t row_count) {
-  struct ArticulatedTree *result = collect_links(links, tree, coordinates, row_count);
+  struct ArticulatedTree *result = collect_links(trees, tree, coordinates, row_count);
   bool was_not_finite = graph->not_finite;
   graph->not_finite = false;
   eliminate_all(graph, result);
@@ -187,9 +187,9 @@ void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, 
   Node *pushed = allocate(tree->row_count, sizeof *pushed);
   for (size_t i = tree->count; i-- > 0;) {
     const struct ArticulatedLink *item = &tree->items[i];
-    const struct Link *link = item->link;
+    const struct TreeLink *link = item->link;
     for (size_t k = 0; k < link->count; k++)
-      pushed[k] = subtract(graph, x[item->rows[k]], spatial_dot(graph, force[i], link->axes[k]));
+      pushed[k] = subtract(graph, x[item->rows[k]], spatial_dot(graph, force[i], link->motion_subspace[k]));
     for (size_t k = 0; k < link->count; k++)
       force[i] = spatial_add(graph, force[i], spatial_scale(graph, pushed[k], item->gain[k]));
     if (link->count > 0) factors_solve(graph, &item->pattern, item->factor, pushed);
@@ -200,13 +200,13 @@ void articulated_solve(struct Graph *graph, const struct ArticulatedTree *tree, 
   }
   for (size_t i = 0; i < tree->count; i++) {
     const struct ArticulatedLink *item = &tree->items[i];
-    const struct Link *link = item->link;
+    const struct TreeLink *link = item->link;
     if (item->parent != NO_LINK) motion[i] = spatial_motion_from_parent(graph, &link->pose, motion[item->parent]);
     const struct SpatialVector carried = motion[i];
     for (size_t k = 0; k < link->count; k++) {
       Node *acceleration = &x[item->rows[k]];
       *acceleration = subtract(graph, *acceleration, spatial_dot(graph, item->gain[k], carried));
-      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, *acceleration, link->axes[k]));
+      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, *acceleration, link->motion_subspace[k]));
     }
   }
 }
@@ -217,15 +217,15 @@ void articulated_add_product(struct Graph *graph, const struct ArticulatedTree *
     const struct ArticulatedLink *item = &tree->items[i];
     if (item->parent != NO_LINK) motion[i] = spatial_motion_from_parent(graph, &item->link->pose, motion[item->parent]);
     for (size_t k = 0; k < item->link->count; k++)
-      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, x[item->rows[k]], item->link->axes[k]));
+      motion[i] = spatial_add(graph, motion[i], spatial_scale(graph, x[item->rows[k]], item->link->motion_subspace[k]));
   }
   for (size_t i = tree->count; i-- > 0;) {
     const struct ArticulatedLink *item = &tree->items[i];
-    const struct Link *link = item->link;
+    const struct TreeLink *link = item->link;
     force[i] = spatial_add(graph, force[i], spatial_inertia_apply(graph, &link->bodies, motion[i]));
     for (size_t k = 0; k < link->count; k++) {
       Node *along = &sum[item->rows[k]];
-      *along = add(graph, *along, spatial_dot(graph, force[i], link->axes[k]));
+      *along = add(graph, *along, spatial_dot(graph, force[i], link->motion_subspace[k]));
       for (size_t l = 0; l < link->count; l++)
         *along = add(graph, *along, multiply(graph, link->inertia[k * link->count + l], x[item->rows[l]]));
     }

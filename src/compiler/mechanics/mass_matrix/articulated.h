@@ -12,11 +12,11 @@
 #pragma once
 
 #include "mechanics/mass_matrix/factors.h"
-#include "mechanics/mass_matrix/links.h"
+#include "mechanics/mass_matrix/kinematic_trees.h"
 
 /* A link with its factors. */
 struct ArticulatedLink {
-  const struct Link *link;
+  const struct TreeLink *link;
   size_t parent; /* index among the tree's links; NO_LINK if the tree does not move the parent */
   size_t *rows;  /* of each of its rows, the index among the rows of the tree */
   struct FactorPattern pattern;
@@ -36,7 +36,7 @@ struct ArticulatedTree {
  * Returns the tree of links with this number; coordinates are its row_count rows. Returns NULL if a constant is not
  * finite, as of a link whose motion has no inertia.
  */
-struct ArticulatedTree *articulated_create(struct Graph *graph, const struct Links *links, size_t tree,
+struct ArticulatedTree *articulated_create(struct Graph *graph, const struct KinematicTrees *trees, size_t tree,
                                            const size_t *coordinates, size_t row_count);
 
 /* Returns the pivot of a row. */

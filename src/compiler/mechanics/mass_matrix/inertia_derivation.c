@@ -14,26 +14,27 @@ struct Trees {
 };
 
 /* Returns the rows of a tree, ascending. */
-static size_t *rows_of_tree(const struct Links *links, size_t tree, size_t row_count, size_t *count) {
+static size_t *rows_of_tree(const struct KinematicTrees *kinematic_trees, size_t tree, size_t row_count,
+                            size_t *count) {
   size_t *rows = allocate(row_count, sizeof *rows);
   *count = 0;
   for (size_t i = 0; i < row_count; i++)
-    if (links->tree_of[i] == tree) rows[(*count)++] = i;
+    if (kinematic_trees->tree_of[i] == tree) rows[(*count)++] = i;
   return rows;
 }
 
-static struct Trees find_trees(const struct Model *model, struct Links *links, size_t rows_in_all) {
+static struct Trees find_trees(const struct Model *model, struct KinematicTrees *kinematic_trees, size_t rows_in_all) {
   struct Graph *graph = model->graph;
   size_t count;
-  struct Trees trees = {links->tree_of, allocate(rows_in_all, sizeof *trees.items)};
+  struct Trees trees = {kinematic_trees->tree_of, allocate(rows_in_all, sizeof *trees.items)};
   for (size_t i = 0; i < rows_in_all && graph_limit(graph) == NULL; i++) {
-    size_t tree = links->tree_of[i];
+    size_t tree = kinematic_trees->tree_of[i];
     if (tree == NO_TREE || trees.items[tree].tree != NULL) continue;
-    size_t *rows = rows_of_tree(links, tree, rows_in_all, &count);
-    trees.items[tree].tree = articulated_create(graph, links, tree, rows, count);
+    size_t *rows = rows_of_tree(kinematic_trees, tree, rows_in_all, &count);
+    trees.items[tree].tree = articulated_create(graph, kinematic_trees, tree, rows, count);
     if (trees.items[tree].tree != NULL && tree_has_factors(model, trees.items[tree].tree)) continue;
     trees.items[tree].tree = NULL;
-    for (size_t k = 0; k < count; k++) links->tree_of[rows[k]] = NO_TREE;
+    for (size_t k = 0; k < count; k++) kinematic_trees->tree_of[rows[k]] = NO_TREE;
   }
   return trees;
 }
@@ -164,8 +165,9 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   bool is_linear = model->linearized || (model->solver.method != NULL && model->solver.method->needs_linear);
   size_t rows = count + constraint_block->count;
   /* Formulas of linear systems need the elements of M. */
-  struct Links *links = is_linear ? links_without_trees(rows) : links_create(model, constraint_block, regularization);
-  struct Trees trees = find_trees(model, links, rows);
+  struct KinematicTrees *kinematic_trees =
+      is_linear ? no_kinematic_trees(rows) : kinematic_trees_create(model, constraint_block, regularization);
+  struct Trees trees = find_trees(model, kinematic_trees, rows);
   struct Elements elements = elements_of(model, momentum, trees.tree_of);
   couple_trees(&trees, count, &elements);
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);

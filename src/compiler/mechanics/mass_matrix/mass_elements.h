@@ -11,7 +11,7 @@ struct Elements {
   size_t count;
 };
 
-/* Number of no tree, see links.h. */
+/* Number of no tree, see kinematic_trees.h. */
 #define NO_TREE ((size_t)-1)
 
 /* Returns M from the momenta dL/dv, for coordinates that belong to no tree. Elements that vanish are left out. */

@@ -1,7 +1,7 @@
 #include "mechanics/mass_matrix/spatial.h"
 
 #include "algebra/simplify.h"
-#include "mechanics/mass_matrix/turned.h"
+#include "mechanics/mass_matrix/rotated.h"
 
 const struct SpatialVector spatial_zero = {{{ZERO, ZERO, ZERO}}, {{ZERO, ZERO, ZERO}}};
 
@@ -43,16 +43,16 @@ static void mirror(struct Matrix *matrix) {
 struct SpatialInertia spatial_inertia_of_body(struct Graph *graph, Node mass, struct Vector offset,
                                               const struct Matrix *tensor) {
   struct SpatialInertia inertia = {0};
-  struct Vector jacobian_row = vector_scale(graph, mass, offset);
+  struct Vector first_moment = vector_scale(graph, mass, offset);
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     inertia.mass.row[i].along[i] = mass;
-    inertia.coupling.row[i].along[j] = jacobian_row.along[k]; /* the matrix of -(mass offset) x */
-    inertia.coupling.row[j].along[i] = negate(graph, jacobian_row.along[k]);
-    Node square = multiply(graph, jacobian_row.along[j], offset.along[j]);
-    square = add(graph, square, multiply(graph, jacobian_row.along[k], offset.along[k]));
+    inertia.coupling.row[i].along[j] = first_moment.along[k]; /* the matrix of -(mass offset) x */
+    inertia.coupling.row[j].along[i] = negate(graph, first_moment.along[k]);
+    Node square = multiply(graph, first_moment.along[j], offset.along[j]);
+    square = add(graph, square, multiply(graph, first_moment.along[k], offset.along[k]));
     inertia.moment.row[i].along[i] = add(graph, tensor->row[i].along[i], square);
-    Node product = multiply(graph, jacobian_row.along[i], offset.along[j]);
+    Node product = multiply(graph, first_moment.along[i], offset.along[j]);
     inertia.moment.row[i].along[j] = subtract(graph, tensor->row[i].along[j], product);
     inertia.moment.row[j].along[i] = inertia.moment.row[i].along[j];
   }
@@ -101,14 +101,14 @@ struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct Spa
 struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struct Pose *pose,
                                                 const struct SpatialInertia *inertia) {
   struct Vector r = pose->origin;
-  struct SpatialInertia result = {.mass = matrix_turned(graph, &pose->rotation, &inertia->mass)};
+  struct SpatialInertia result = {.mass = matrix_rotated(graph, &pose->rotation, &inertia->mass)};
   mirror(&result.mass);
-  struct Matrix coupling = matrix_turned(graph, &pose->rotation, &inertia->coupling);
-  struct Matrix moment = matrix_turned(graph, &pose->rotation, &inertia->moment);
+  struct Matrix coupling = matrix_rotated(graph, &pose->rotation, &inertia->coupling);
+  struct Matrix moment = matrix_rotated(graph, &pose->rotation, &inertia->moment);
   /* (X [r])^T = -[r] X^T */
-  struct Matrix jacobian_row = crossed(graph, r, &result.mass);
-  jacobian_row = matrix_transposed(&jacobian_row);
-  result.coupling = matrix_add(graph, &coupling, &jacobian_row);
+  struct Matrix first_moment = crossed(graph, r, &result.mass);
+  first_moment = matrix_transposed(&first_moment);
+  result.coupling = matrix_add(graph, &coupling, &first_moment);
   struct Matrix first = crossed(graph, r, &coupling), second = crossed(graph, r, &result.coupling);
   first = matrix_transposed(&first);
   moment = matrix_add(graph, &moment, &first);

@@ -97,30 +97,30 @@ static void create_corrections(struct Expressions *expressions, const Node *seed
 }
 
 /* Adds the generalized impulse of an impulse seed along the gradient of a gap, or of a velocity. */
-static void add_push(const struct Model *model, Node along, enum SymbolKind kind, Node seed, Node *push) {
+static void add_impulse(const struct Model *model, Node along, enum SymbolKind kind, Node seed, Node *impulse) {
   struct Graph *graph = model->graph;
   struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
     if (model->given.prescribed_motions[coordinate].given) continue;
-    push[coordinate] = add(graph, push[coordinate], multiply(graph, seed, gradient.values[i]));
+    impulse[coordinate] = add(graph, impulse[coordinate], multiply(graph, seed, gradient.values[i]));
   }
 }
 
 /* Sums the generalized impulses: contacts act along their gaps, frictions along their velocities. */
-static void create_pushes(struct Expressions *expressions, const Node *seeds) {
+static void create_impulses(struct Expressions *expressions, const Node *seeds) {
   const struct Model *model = expressions->model;
   const struct Switches *switches = &model->switches;
-  Node *push = expressions->corrections.push = allocate(row_count(expressions->equations), sizeof(Node));
+  Node *impulse = expressions->corrections.impulse = allocate(row_count(expressions->equations), sizeof(Node));
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
     Node seed = replacement_of(model->graph, seeds, model->unknowns.forces[contact->constraint]);
-    add_push(model, contact->gap, COORDINATE, seed, push);
+    add_impulse(model, contact->gap, COORDINATE, seed, impulse);
   }
   for (size_t i = 0; i < switches->friction_count && switches->contact_count > 0; i++) {
     const struct Friction *friction = &switches->frictions[i];
     Node seed = replacement_of(model->graph, seeds, model->unknowns.forces[friction->constraint]);
-    add_push(model, friction->velocity, VELOCITY, seed, push);
+    add_impulse(model, friction->velocity, VELOCITY, seed, impulse);
   }
 }
 
@@ -180,7 +180,7 @@ static void create_directional(struct Expressions *expressions, struct Extras ex
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
-  if (expressions->equations->constraints->count > 0) create_pushes(expressions, seeds);
+  if (expressions->equations->constraints->count > 0) create_impulses(expressions, seeds);
   if (extras.adjoint)
     expressions->weighted_gradient = weighted_gradient_create(expressions->model, expressions->equations,
                                                               expressions->interface, expressions->result, seeds);
@@ -283,7 +283,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, expressions->corrections.velocity, row_count(equations));
     append_nodes(&targets, expressions->corrections.pivot, equations->constraints->count);
     append_nodes(&targets, expressions->corrections.slope, equations->constraints->count);
-    append_nodes(&targets, expressions->corrections.push, equations->count);
+    append_nodes(&targets, expressions->corrections.impulse, equations->count);
   }
   append_nodes(&targets, equations->rates.nodes, equations->rates.count);
   append_nodes(&targets, expressions->rates_along, equations->rates.count);

@@ -38,7 +38,7 @@ struct Corrections {
   Node *position, *velocity; /* of coordinates in kinematic trees: the solutions themselves */
   Node *pivot;               /* of each constraint in a kinematic tree, see articulated.h; ZERO of others */
   Node *slope;               /* of each constraint: the length of its row of J, see constraint_slopes() */
-  Node *push; /* of each coordinate: the generalized impulse of the contact and friction impulses in the seeds */
+  Node *impulse; /* of each coordinate: the generalized impulse of the contact and friction impulses in the seeds */
 };
 
 /*

@@ -93,14 +93,14 @@ static bool may_return(enum Opcode opcode) {
 }
 
 /* An instruction with its level, and its number in the routine, by which equal ones keep their order. */
-struct Turn {
+struct ScheduledInstruction {
   size_t level, number;
   uint32_t spaces;
   const struct Instruction *instruction;
 };
 
 static int compare(const void *first, const void *second) {
-  const struct Turn *a = first, *b = second;
+  const struct ScheduledInstruction *a = first, *b = second;
   if (a->level != b->level) return a->level < b->level ? -1 : 1;
   if (a->instruction->opcode != b->instruction->opcode) return a->instruction->opcode < b->instruction->opcode ? -1 : 1;
   if (a->instruction->function != b->instruction->function)
@@ -118,7 +118,7 @@ uint32_t spaces_of(const struct Instruction *instruction) {
 
 size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
   struct Accesses accesses = accesses_create(routine, blocks);
-  struct Turn *turns = allocate(routine->count, sizeof *turns);
+  struct ScheduledInstruction *scheduled = allocate(routine->count, sizeof *scheduled);
   size_t *order = allocate(routine->count, sizeof *order);
   size_t last_check = 0;
   for (size_t i = 0; i < routine->count; i++) {
@@ -126,12 +126,12 @@ size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks
     bool checks = may_return(instruction->opcode);
     size_t level = level_of(&accesses, instruction, blocks, checks ? last_check : 0);
     if (checks) last_check = level;
-    turns[i] = (struct Turn){level, i, spaces_of(instruction), instruction};
+    scheduled[i] = (struct ScheduledInstruction){level, i, spaces_of(instruction), instruction};
   }
-  if (routine->count > 0) qsort(turns, routine->count, sizeof *turns, compare);
-  for (size_t i = 0; i < routine->count; i++) order[i] = turns[i].number;
+  if (routine->count > 0) qsort(scheduled, routine->count, sizeof *scheduled, compare);
+  for (size_t i = 0; i < routine->count; i++) order[i] = scheduled[i].number;
   for (int space = 0; space < SPACE_COUNT; space++) release(accesses.of[space]);
-  release(turns);
+  release(scheduled);
   return order;
 }
 

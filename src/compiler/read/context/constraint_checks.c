@@ -31,9 +31,9 @@ static bool is_moving(const struct Model *model, Node constraint) {
 static void require_rates(const struct Reader *reader, const struct Variable *constraint) {
   const struct Model *model = reader->model;
   size_t needed = graph_depends_on(model->graph, constraint->node, VELOCITY) ? 1 : 2;
-  struct Gradient jacobian_rows = gradient_by_kinds(model->graph, constraint->node, KIND(INPUT));
-  for (size_t i = 0; i < jacobian_rows.count; i++) {
-    size_t input = (size_t)graph_symbol_of(model->graph, jacobian_rows.symbols[i])->index;
+  struct Gradient gradient = gradient_by_kinds(model->graph, constraint->node, KIND(INPUT));
+  for (size_t i = 0; i < gradient.count; i++) {
+    size_t input = (size_t)graph_symbol_of(model->graph, gradient.symbols[i])->index;
     if (input_rate_count(model, input) >= needed) continue;
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' needs the %s derivative of '%s'; expected %s", constraint->name,

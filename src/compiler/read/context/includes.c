@@ -130,7 +130,7 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
                                    .says_ground = ground != NULL,
                                    .says_limits = has_attribute(source->include, "limits"),
                                    .says_effort = has_attribute(source->include, "effort"),
-                                   .standing = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
+                                   .ground_contact = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
                                    .keyframe = attribute(source->include, "keyframe"),
                                    .tool = attribute(source->include, "tool")};
     known->document = load_system(source, &options, &local);

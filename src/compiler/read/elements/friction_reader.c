@@ -129,11 +129,11 @@ static void hold_velocity(struct Reader *reader, const struct Friction *friction
 }
 
 /* Adds the force of a sliding friction against its velocity. */
-static void add_push(struct Reader *reader, const struct Friction *friction) {
+static void add_sliding_force(struct Reader *reader, const struct Friction *friction) {
   struct Graph *graph = reader->model->graph;
-  Node push = negate(graph, sliding_push(graph, friction));
-  const struct Gradient jacobian_rows = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
-  add_virtual_work(reader->model, push, &jacobian_rows);
+  Node reaction = negate(graph, sliding_force(graph, friction));
+  const struct Gradient gradient = gradient_by_kinds(graph, friction->velocity, KIND(VELOCITY));
+  add_virtual_work(reader->model, reaction, &gradient);
 }
 
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit) {
@@ -145,13 +145,13 @@ void complete_friction(struct Reader *reader, struct Friction *friction, struct 
     friction[i].stiction_back = friction->stiction_back;
     hold_velocity(reader, &friction[i], unit);
   }
-  if (parts == 1 && reader->diagnostics->errors == 0) add_push(reader, friction);
+  if (parts == 1 && reader->diagnostics->errors == 0) add_sliding_force(reader, friction);
 }
 
-void add_pushes_in_planes(struct Reader *reader) {
+void add_sliding_forces_in_planes(struct Reader *reader) {
   const struct Switches *switches = &reader->model->switches;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (switches->frictions[i].plane.axis != NO_PLANE) add_push(reader, &switches->frictions[i]);
+    if (switches->frictions[i].plane.axis != NO_PLANE) add_sliding_force(reader, &switches->frictions[i]);
 }
 
 void read_friction(struct Reader *reader, xmlNodePtr node) {

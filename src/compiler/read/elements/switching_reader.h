@@ -36,7 +36,7 @@ void read_sample(struct Reader *reader, xmlNodePtr node);
 void undisplace_branches(struct Reader *reader);
 
 /* Adds the forces of frictions in planes, once those with prescribed velocities are known. */
-void add_pushes_in_planes(struct Reader *reader);
+void add_sliding_forces_in_planes(struct Reader *reader);
 
 /* Replaces NAME.force of frictions, after all expressions, by the sliding force while they slide. */
 void complete_friction_forces(struct Reader *reader);

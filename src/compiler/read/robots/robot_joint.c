@@ -25,19 +25,19 @@ const char *joint_unit(const struct Joint *joint) {
 void write_friction_parameters(const struct Writer *writer, const struct Robot *robot) {
   static const char meaning[] = "velocity at which friction has 76 % of its full force";
   if (writer->options->sticks) return;
-  bool turns = false, slides = false;
+  bool has_rotational = false, has_sliding = false;
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct Joint *joint = robot->joints[i];
-    slides |= joint->friction > 0 && joint_slides(joint);
-    turns |= joint->friction > 0 && !joint_slides(joint);
+    has_sliding |= joint->friction > 0 && joint_slides(joint);
+    has_rotational |= joint->friction > 0 && !joint_slides(joint);
   }
   for (size_t i = 0; i < robot->tendon_count; i++) {
     bool is_length = transmission_slides(&robot->tendons[i].transmission);
-    slides |= robot->tendons[i].friction > 0 && is_length;
-    turns |= robot->tendons[i].friction > 0 && !is_length;
+    has_sliding |= robot->tendons[i].friction > 0 && is_length;
+    has_rotational |= robot->tendons[i].friction > 0 && !is_length;
   }
-  if (turns) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
-  if (slides) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
+  if (has_rotational) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
+  if (has_sliding) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
 }
 
 /* Expressions of a joint's velocity, and of its ratio to that of its leader. */
@@ -244,7 +244,7 @@ void write_joint(const struct Writer *writer, const struct Joint *joint) {
 }
 
 /* Writes a rotation about an axis: x, y or z if possible, which needs fewer operations. */
-static void write_turn(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *angle) {
+static void write_rotation(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *angle) {
   xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
   int along = 0;
   while (along < 3 && fabs(axis[along]) != 1) along++;
@@ -284,7 +284,7 @@ static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, c
   double across[2][3];
   axes_across(joint->axis, across[0], across[1]);
   for (int i = 0; i < 2; i++) write_slide(writer, frame, across[i], format_text("%s_%s", joint->symbol, axes[i]));
-  write_turn(writer, frame, joint->axis, format_text("%s_angle", joint->symbol));
+  write_rotation(writer, frame, joint->axis, format_text("%s_angle", joint->symbol));
 }
 
 static void write_quaternion(const struct Writer *writer, xmlNodePtr frame, const char *name) {
@@ -305,6 +305,6 @@ void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Jo
   else if (joint_is_single(joint)) {
     char *position = joint_position(joint);
     if (joint_slides(joint)) write_slide(writer, frame, joint->axis, position);
-    else write_turn(writer, frame, joint->axis, position);
+    else write_rotation(writer, frame, joint->axis, position);
   }
 }

@@ -168,7 +168,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   }
   for (size_t i = 0; i < robot->joint_count; i++) {
     writer->line = robot->joints[i]->line;
-    write_limited_pushes(writer, robot->joints[i]);
+    write_limited_forces(writer, robot->joints[i]);
   }
   for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
   for (size_t i = 0; i < robot->tendon_link_count; i++) {
@@ -257,9 +257,9 @@ static void check_rims(const struct Robot *robot, const struct RobotOptions *opt
 }
 
 /* Reports unknown links that should touch the ground, and those without a suitable shape. */
-static void check_standing(const struct Robot *robot, const struct RobotOptions *options,
+static void check_ground_contact(const struct Robot *robot, const struct RobotOptions *options,
                            struct Diagnostics *diagnostics) {
-  const char *rest = options->standing;
+  const char *rest = options->ground_contact;
   if (!options->has_ground || rest == NULL) return;
   for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
     const struct Link *link = robot_link(robot, name, "the ground", diagnostics);
@@ -281,7 +281,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
   const struct Link *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);
-    check_standing(robot, options, diagnostics);
+    check_ground_contact(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }
   if (diagnostics->errors == errors) {

@@ -9,10 +9,10 @@
 
 static void write_coefficients(const struct Writer *writer, const struct Tendon *tendon) {
   for (size_t i = 0; i < tendon->transmission.count; i++) {
-    const struct Pull *pull = &tendon->transmission.pulls[i];
-    if (pull->symbol == NULL) continue;
-    write_parameter(writer, copy_text(pull->symbol), pull->coefficient, joint_slides(pull->joint) ? "rad/m" : "m/rad",
-                    format_text("coefficient in the tendon '%s' of the joint '%s'", tendon->name, pull->joint->name));
+    const struct TransmissionTerm *term = &tendon->transmission.terms[i];
+    if (term->symbol == NULL) continue;
+    write_parameter(writer, copy_text(term->symbol), term->coefficient, joint_slides(term->joint) ? "rad/m" : "m/rad",
+                    format_text("coefficient in the tendon '%s' of the joint '%s'", tendon->name, term->joint->name));
   }
 }
 
@@ -48,7 +48,7 @@ static void write_friction(const struct Writer *writer, const struct Tendon *ten
     set_attribute(friction, "velocity", rate);
     set_attribute(friction, "force", format_text("%s_friction", name));
   } else
-    write_pull(writer, &tendon->transmission, number(1), format_text("%s_sheath", name),
+    write_term(writer, &tendon->transmission, number(1), format_text("%s_sheath", name),
                format_text("-%s_friction*tanh(%s/%s)", name, rate, creep), false);
 }
 

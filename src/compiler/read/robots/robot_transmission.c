@@ -6,19 +6,19 @@
 #include "read/robots/robot_joint.h"
 #include "read/robots/robot_tree.h"
 
-static char *coefficient_of(const struct Pull *pull) {
-  return pull->symbol != NULL ? copy_text(pull->symbol) : number(pull->coefficient);
+static char *coefficient_of(const struct TransmissionTerm *term) {
+  return term->symbol != NULL ? copy_text(term->symbol) : number(term->coefficient);
 }
 
 /* Returns the derivative of the transmission's length with respect to the coordinate of the joint's leader. */
-static char *share_of(const struct Pull *pull) {
-  const struct Joint *joint = pull->joint;
+static char *share_of(const struct TransmissionTerm *term) {
+  const struct Joint *joint = term->joint;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
-  return pull->coefficient == 1 && pull->symbol == NULL ? ratio : format_text("%s*%s", coefficient_of(pull), ratio);
+  return term->coefficient == 1 && term->symbol == NULL ? ratio : format_text("%s*%s", coefficient_of(term), ratio);
 }
 
 static bool is_joint(const struct Transmission *transmission) {
-  return transmission->count == 1 && transmission->pulls->coefficient == 1;
+  return transmission->count == 1 && transmission->terms->coefficient == 1;
 }
 
 static char *length_through_space(const struct Transmission *transmission) {
@@ -30,7 +30,7 @@ static char *length_through_space(const struct Transmission *transmission) {
 }
 
 bool transmission_slides(const struct Transmission *transmission) {
-  return transmission->site_count > 0 || joint_slides(transmission->pulls->joint);
+  return transmission->site_count > 0 || joint_slides(transmission->terms->joint);
 }
 
 const char *transmission_unit(const struct Transmission *transmission) {
@@ -39,11 +39,11 @@ const char *transmission_unit(const struct Transmission *transmission) {
 
 char *transmission_length(const struct Transmission *transmission) {
   if (transmission->site_count > 0) return length_through_space(transmission);
-  if (is_joint(transmission)) return joint_position(transmission->pulls->joint);
+  if (is_joint(transmission)) return joint_position(transmission->terms->joint);
   char *sum = copy_text("");
   for (size_t i = 0; i < transmission->count; i++)
-    sum = format_text("%s%s%s*%s", sum, i > 0 ? " + " : "", coefficient_of(&transmission->pulls[i]),
-                      joint_position(transmission->pulls[i].joint));
+    sum = format_text("%s%s%s*%s", sum, i > 0 ? " + " : "", coefficient_of(&transmission->terms[i]),
+                      joint_position(transmission->terms[i].joint));
   return format_text("(%s)", sum);
 }
 
@@ -51,14 +51,14 @@ char *transmission_rate(const struct Transmission *transmission) {
   if (transmission->site_count > 0) return format_text("der%s", length_through_space(transmission));
   char *sum = copy_text("");
   for (size_t i = 0; i < transmission->count; i++)
-    sum = format_text("%s%s%s*%s_velocity", sum, i > 0 ? " + " : "", share_of(&transmission->pulls[i]),
-                      transmission->pulls[i].joint->leader->symbol);
+    sum = format_text("%s%s%s*%s_velocity", sum, i > 0 ? " + " : "", share_of(&transmission->terms[i]),
+                      transmission->terms[i].joint->leader->symbol);
   return is_joint(transmission) ? sum : format_text("(%s)", sum);
 }
 
 /* Writes a force on one end of a segment, directed away from the other end. */
-static void write_push(const struct Writer *writer, const struct Link *end, const struct Link *other,
-                       const char *force) {
+static void write_site_force(const struct Writer *writer, const struct Link *end, const struct Link *other,
+                             const char *force) {
   static const char *const axes[] = {"x", "y", "z"};
   xmlNodePtr node = write_element(writer, "force");
   set_attribute(node, "on", copy_text(end->symbol));
@@ -72,8 +72,8 @@ static void write_pushes(const struct Writer *writer, const struct Transmission 
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct Link *first = transmission->sites[i - 1], *second = transmission->sites[i];
     if (first->carrier == second->carrier) continue; /* of constant length */
-    write_push(writer, first, second, force);
-    write_push(writer, second, first, force);
+    write_site_force(writer, first, second, force);
+    write_site_force(writer, second, first, force);
   }
 }
 
@@ -83,12 +83,12 @@ static void write_joint_force(const struct Writer *writer, const struct Joint *j
   set_content(node, force);
 }
 
-/* Adds an actuator's force to the sum for a joint that limits it, see write_limited_pushes(). */
-static void add_push(struct Joint *joint, char *push) {
-  joint->pushes = joint->pushes == NULL ? push : format_text("%s + %s", joint->pushes, push);
+/* Adds an actuator's force to the sum for a joint that limits it, see write_limited_forces(). */
+static void add_push(struct Joint *joint, char *actuator_limits) {
+  joint->pushes = joint->pushes == NULL ? actuator_limits : format_text("%s + %s", joint->pushes, actuator_limits);
 }
 
-void write_pull(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
+void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
                 const char *name, char *force, bool is_of_actuator) {
   if (transmission->count > 1 || transmission->site_count > 0) {
     xmlNodePtr definition = write_element(writer, "define");
@@ -98,17 +98,17 @@ void write_pull(const struct Writer *writer, const struct Transmission *transmis
   }
   write_pushes(writer, transmission, format_text("%s*%s", gear, force));
   for (size_t i = 0; i < transmission->count; i++) {
-    const struct Pull *pull = &transmission->pulls[i];
-    if (is_of_actuator && !isnan(pull->joint->push[0]))
-      add_push(pull->joint, format_text("%s*%s*(%s)", gear, coefficient_of(pull), force));
-    else write_joint_force(writer, pull->joint, format_text("%s*%s*(%s)", gear, share_of(pull), force));
+    const struct TransmissionTerm *term = &transmission->terms[i];
+    if (is_of_actuator && !isnan(term->joint->actuator_limits[0]))
+      add_push(term->joint, format_text("%s*%s*(%s)", gear, coefficient_of(term), force));
+    else write_joint_force(writer, term->joint, format_text("%s*%s*(%s)", gear, share_of(term), force));
   }
 }
 
-void write_limited_pushes(const struct Writer *writer, const struct Joint *joint) {
+void write_limited_forces(const struct Writer *writer, const struct Joint *joint) {
   if (joint->pushes == NULL) return;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
-  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->push, joint->pushes)));
+  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->pushes)));
 }
 
 /*
@@ -150,5 +150,5 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
   set_attribute(input, "unit", copy_text(unit));
   set_number(input, "start", actuator->start);
   set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
-  write_pull(writer, transmission, gear, name, clamped(actuator->force, force), true);
+  write_term(writer, transmission, gear, name, clamped(actuator->force, force), true);
 }

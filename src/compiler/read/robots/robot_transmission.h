@@ -15,13 +15,13 @@ char *transmission_rate(const struct Transmission *transmission);
 /*
  * Writes a force times the gear along the transmission, positive if it lengthens it: on joints, or between sites. A
  * force that is used several times becomes the definition NAME_force. Forces of actuators on joints that limit them are
- * left to write_limited_pushes().
+ * left to write_limited_forces().
  */
-void write_pull(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
+void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
                 const char *name, char *force, bool is_of_actuator);
 
 /* Writes the input NAME_control of an actuator, and its force. */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
 
 /* Writes the sum of the actuators' forces on a joint that limits it. */
-void write_limited_pushes(const struct Writer *writer, const struct Joint *joint);
+void write_limited_forces(const struct Writer *writer, const struct Joint *joint);

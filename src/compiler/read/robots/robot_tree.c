@@ -262,17 +262,17 @@ static void connect_transmission(struct Connection *connection, struct Transmiss
     if (entry != NULL) transmission->sites[i] = connection->robot->links[entry->index];
   }
   for (size_t i = 0; i < transmission->count; i++) {
-    struct Pull *pull = &transmission->pulls[i], *first = transmission->pulls;
-    const struct Entry *entry = find(connection, &connection->joints, pull->joint_name, what, line);
-    pull->joint = entry != NULL ? connection->robot->joints[entry->index] : NULL;
-    if (pull->joint == NULL) continue;
-    if (!joint_is_single(pull->joint))
+    struct TransmissionTerm *term = &transmission->terms[i], *first = transmission->terms;
+    const struct Entry *entry = find(connection, &connection->joints, term->joint_name, what, line);
+    term->joint = entry != NULL ? connection->robot->joints[entry->index] : NULL;
+    if (term->joint == NULL) continue;
+    if (!joint_is_single(term->joint))
       report_error(connection->diagnostics, line,
                    "the %s '%s' is at the joint '%s', which has more than one degree of freedom; expected a hinge or "
                    "slide",
-                   kind, name, pull->joint_name);
-    if (first->joint != NULL && (first->joint->type == PRISMATIC) != (pull->joint->type == PRISMATIC))
-      pull->symbol = format_text("%s_by_%s", symbol, pull->joint->symbol);
+                   kind, name, term->joint_name);
+    if (first->joint != NULL && (first->joint->type == PRISMATIC) != (term->joint->type == PRISMATIC))
+      term->symbol = format_text("%s_by_%s", symbol, term->joint->symbol);
   }
 }
 
@@ -285,7 +285,7 @@ static void connect_transmissions(struct Connection *connection) {
   }
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
-    if (actuator->transmission.site_count > 0 || actuator->transmission.pulls->joint != NULL)
+    if (actuator->transmission.site_count > 0 || actuator->transmission.terms->joint != NULL)
       continue; /* that of a tendon, already resolved */
     connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);
   }

@@ -92,8 +92,8 @@ size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
 static struct Vector velocity_of_point(struct Graph *graph, const struct ContactSide *side, struct Vector point) {
-  struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
-  struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, jacobian_row);
+  struct Vector lever_arm = vector_subtract(graph, point, side->pose.origin), none = {{ZERO, ZERO, ZERO}};
+  struct Vector offset = matrix_apply_transposed(graph, &side->pose.rotation, lever_arm);
   return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
 }
 
@@ -220,8 +220,8 @@ static void add_force_on(struct Reader *reader, long line, const struct ContactS
     add_force_along(reader, line, shape->name, position, force.along[i]);
   }
   if (is_particle) return;
-  struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin);
-  add_torque_on(reader, line, vector_cross(graph, jacobian_row, force), frame);
+  struct Vector lever_arm = vector_subtract(graph, point, side->pose.origin);
+  add_torque_on(reader, line, vector_cross(graph, lever_arm, force), frame);
 }
 
 static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {

@@ -158,9 +158,9 @@ static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactSha
     shape->angles[i] = angle.node;
     struct Vector axis = {{ZERO, ZERO, ZERO}};
     axis.along[i] = ONE;
-    pose_turn(reader->model->graph, &pose, axis, angle.node, ZERO);
+    pose_rotate(reader->model->graph, &pose, axis, angle.node, ZERO);
   }
-  shape->turn = pose.rotation;
+  shape->rotation = pose.rotation;
 }
 
 void place_shape(struct Reader *reader, xmlNodePtr node) {

@@ -14,8 +14,8 @@ static struct Vector velocity_of_material(struct Reader *reader, const struct Co
   struct Graph *graph = reader->model->graph;
   struct Vector spin = matrix_apply(graph, &side->pose.rotation, side->pose.angular_velocity), velocity;
   for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, side->pose.origin.along[i]);
-  struct Vector jacobian_row = vector_subtract(graph, point, side->pose.origin);
-  return vector_add(graph, velocity, vector_cross(graph, spin, jacobian_row));
+  struct Vector lever_arm = vector_subtract(graph, point, side->pose.origin);
+  return vector_add(graph, velocity, vector_cross(graph, spin, lever_arm));
 }
 
 static struct Vector oblique_axis(struct Graph *graph, int which) {
@@ -29,7 +29,7 @@ static void tangents_of_plane(struct Graph *graph, const struct ContactSide *pla
   for (int i = 0; i < 2; i++) {
     struct Vector axis = {{ZERO, ZERO, ZERO}};
     axis.along[(plane->shape->axis + 1 + i) % 3] = ONE;
-    axis = matrix_apply(graph, &plane->shape->turn, axis);
+    axis = matrix_apply(graph, &plane->shape->rotation, axis);
     tangents[i] = matrix_apply(graph, &plane->pose.rotation, axis);
   }
 }

@@ -55,7 +55,7 @@ static struct Vector along_axis(const struct ContactShape *shape, Node length) {
 
 static void append_point(struct Graph *graph, struct Points *points, const struct ContactShape *shape,
                          struct Vector from) {
-  points->positions[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->turn, from));
+  points->positions[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->rotation, from));
 }
 
 static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
@@ -116,13 +116,13 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
 }
 
 /* Rotates a vector along the axes of the shape to the base's axes. */
-static struct Vector turned_by(const struct Pair *pair, const struct ContactSide *side, struct Vector vector) {
-  vector = matrix_apply(pair->graph, &side->shape->turn, vector);
+static struct Vector rotated_by(const struct Pair *pair, const struct ContactSide *side, struct Vector vector) {
+  vector = matrix_apply(pair->graph, &side->shape->rotation, vector);
   return matrix_apply(pair->graph, &side->pose.rotation, vector);
 }
 
 static struct Vector axis_of(const struct Pair *pair, const struct ContactSide *side) {
-  return turned_by(pair, side, along_axis(side->shape, ONE));
+  return rotated_by(pair, side, along_axis(side->shape, ONE));
 }
 
 static struct Vector middle_of(const struct Pair *pair, const struct ContactSide *side) {
@@ -155,13 +155,13 @@ static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
   struct Vector own = matrix_apply_transposed(graph, &pair->first->pose.rotation, normal);
-  own = matrix_apply_transposed(graph, &pair->first->shape->turn, own);
+  own = matrix_apply_transposed(graph, &pair->first->shape->rotation, own);
   for (int i = 0; i < 3; i++) {
     Node half = scale(graph, 0.5, pair->first->shape->size.along[i]);
     lowest.along[i] = multiply(graph, power_number(graph, half, 2.0), own.along[i]);
   }
   Node reach = power_number(graph, vector_dot(graph, lowest, own), 0.5);
-  lowest = turned_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
+  lowest = rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
   Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
   touches->items[touches->count++] =
       (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach)};
@@ -204,12 +204,12 @@ static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
 static struct Vector seen_from_second(const struct Pair *pair) {
   struct Vector between = vector_subtract(pair->graph, middle_of(pair, pair->first), middle_of(pair, pair->second));
   between = matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
-  return matrix_apply_transposed(pair->graph, &pair->second->shape->turn, between);
+  return matrix_apply_transposed(pair->graph, &pair->second->shape->rotation, between);
 }
 
 static void touch_nearest(const struct Pair *pair, struct Vector nearest, struct Touches *touches) {
-  struct Vector turned = turned_by(pair, pair->second, nearest);
-  struct Vector point = vector_add(pair->graph, middle_of(pair, pair->second), turned);
+  struct Vector rotated = rotated_by(pair, pair->second, nearest);
+  struct Vector point = vector_add(pair->graph, middle_of(pair, pair->second), rotated);
   touch_balls(pair, middle_of(pair, pair->first), point, ZERO, touches);
 }
 

@@ -89,9 +89,9 @@ static void require_fixed(const struct Reader *reader, long line, const char *wh
 /* Reports inputs that prescribe the motion of a body with mass and lack second derivatives. */
 static void require_accelerations(const struct Reader *reader, const struct Body *body, int component) {
   const struct Model *model = reader->model;
-  struct Gradient jacobian_rows = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
-  for (size_t i = 0; i < jacobian_rows.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
-    size_t input = (size_t)graph_symbol_of(model->graph, jacobian_rows.symbols[i])->index;
+  struct Gradient gradient = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
+  for (size_t i = 0; i < gradient.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
+    size_t input = (size_t)graph_symbol_of(model->graph, gradient.symbols[i])->index;
     Node rate = model->given.input_rates[input];
     if (rate != ZERO && model->given.input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
     report_error(reader->diagnostics, body->line,
@@ -187,10 +187,10 @@ static void place_body(struct Reader *reader, const struct SpatialPoint *point, 
 /* Reports inputs that prescribe the rotation of the frame without their second derivatives. */
 static void require_angular_accelerations(const struct Reader *reader, const struct Body *body) {
   const struct Matrix *rotation = &reader->model->mechanism.frames[body->frame].pose.rotation;
-  struct Body turned = *body;
+  struct Body rotated = *body;
   for (int i = 0; i < 9; i++) {
-    turned.displaced[0] = rotation->row[i / 3].along[i % 3];
-    require_accelerations(reader, &turned, 0);
+    rotated.displaced[0] = rotation->row[i / 3].along[i % 3];
+    require_accelerations(reader, &rotated, 0);
   }
 }
 

@@ -58,11 +58,11 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   add_term(model, &model->forces.along[index], without_displacements(reader, line_of(node), "the force", force.node));
 }
 
-void add_virtual_work(struct Model *model, Node force, const struct Gradient *jacobian_rows) {
-  for (size_t i = 0; i < jacobian_rows->count; i++) {
-    const struct Symbol *symbol = graph_symbol_of(model->graph, jacobian_rows->symbols[i]);
+void add_virtual_work(struct Model *model, Node force, const struct Gradient *gradient) {
+  for (size_t i = 0; i < gradient->count; i++) {
+    const struct Symbol *symbol = graph_symbol_of(model->graph, gradient->symbols[i]);
     struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];
-    add_term(model, sum, multiply(model->graph, force, jacobian_rows->values[i]));
+    add_term(model, sum, multiply(model->graph, force, gradient->values[i]));
   }
 }
 
@@ -96,9 +96,9 @@ static struct Matrix rotation_of(struct Reader *reader, long line, const struct 
 
 void add_force_along(struct Reader *reader, long line, const char *name, Node displaced, Node force) {
   struct Model *model = reader->model;
-  struct Gradient jacobian_rows = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
-                                                    KIND(COORDINATE) | KIND(TIME));
-  add_virtual_work(model, force, &jacobian_rows);
+  struct Gradient gradient = gradient_by_kinds(model->graph, without_displacements(reader, line, name, displaced),
+                                               KIND(COORDINATE) | KIND(TIME));
+  add_virtual_work(model, force, &gradient);
   append_point_force(model, displaced, force);
 }
 
@@ -148,8 +148,8 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Model *model = reader->model;
   struct Graph *graph = model->graph;
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
-  struct Gradient jacobian_rows = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
-  add_virtual_work(model, ONE, &jacobian_rows);
+  struct Gradient gradient = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
+  add_virtual_work(model, ONE, &gradient);
   add_term(model, &model->forces.driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
   model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
@@ -163,17 +163,17 @@ void add_torque_on(struct Reader *reader, long line, struct Vector torque, const
 
 void read_torque(struct Reader *reader, xmlNodePtr node) {
   char *name = reference_attribute(reader, node, "on");
-  const struct ReferenceFrame *turned = name != NULL ? find_frame(reader, name) : NULL;
+  const struct ReferenceFrame *target = name != NULL ? find_frame(reader, name) : NULL;
   const struct ReferenceFrame *frame = frame_of_attribute(reader, node, "in");
   struct Vector torque = read_components(reader, node, "N.m");
   long line = line_of(node);
   reader->model->forces.any = true;
-  if (name != NULL && turned == NULL) report_unknown_body(reader, node, name, "frame or body");
-  if (turned != NULL && frame != NULL) {
-    if (frame != turned) {
+  if (name != NULL && target == NULL) report_unknown_body(reader, node, name, "frame or body");
+  if (target != NULL && frame != NULL) {
+    if (frame != target) {
       struct Matrix to_base = rotation_of(reader, line, frame);
-      add_torque_on(reader, line, matrix_apply(reader->model->graph, &to_base, torque), turned);
-    } else add_torque(reader, line, torque, turned->pose.angular_velocity);
+      add_torque_on(reader, line, matrix_apply(reader->model->graph, &to_base, torque), target);
+    } else add_torque(reader, line, torque, target->pose.angular_velocity);
   }
 }
 

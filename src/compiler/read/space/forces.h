@@ -8,7 +8,7 @@
  * Adds the generalized forces Q_i = F dr/dq_i of a force F along r, and its power F dr/dt. jacobian_rows: derivatives
  * of r with respect to coordinates and time, or of its rate with respect to velocities.
  */
-void add_virtual_work(struct Model *model, Node force, const struct Gradient *jacobian_rows);
+void add_virtual_work(struct Model *model, Node force, const struct Gradient *gradient);
 
 /*
  * Adds a force along a component of a position. displaced: the position as a function of displacements. name: of the

@@ -7,7 +7,7 @@
 #include "read/context/variables.h"
 #include "read/names/definitions.h"
 #include "read/names/similar.h"
-#include "read/space/turns.h"
+#include "read/space/rotations.h"
 
 static const char *const frame_components[] = {"x",   "y",   "z",   "R11", "R12", "R13", "R21",
                                                "R22", "R23", "R31", "R32", "R33", NULL};
@@ -53,17 +53,17 @@ void frames_begin(struct Reader *reader) {
 }
 
 void declare_frame(struct Reader *reader, xmlNodePtr node) {
-  xmlNodePtr turn = quaternion_of(node);
+  xmlNodePtr rotation = quaternion_of(node);
   for (xmlNodePtr step = node->children; step != NULL; step = step->next)
-    if (is_element(step, "rotate")) check_turn(reader, step);
-  if (turn == NULL) return;
+    if (is_element(step, "rotate")) check_rotation(reader, step);
+  if (rotation == NULL) return;
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
   struct Variable norm = {.name = format_text("%s.norm", name),
                           .description = format_text("norm of the quaternion of %s", name),
                           .unit = copy_text("1"),
                           .dimension = dimension_one,
-                          .line = scope_line(reader->scope, line_of(turn))};
+                          .line = scope_line(reader->scope, line_of(rotation))};
   reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, norm);
 }
@@ -193,14 +193,14 @@ static void append_step(struct Graph *graph, struct ReferenceFrame *frame, const
 static void append_steps_of_planar_body(struct Reader *reader, xmlNodePtr node, const char *name,
                                         struct ReferenceFrame *frame) {
   struct Graph *graph = reader->model->graph;
-  struct Pose translation = pose_of_base(), turn = pose_of_base();
+  struct Pose translation = pose_of_base(), rotation = pose_of_base();
   struct Vector origin = {{planar_component(reader, node, name, "x"), planar_component(reader, node, name, "y"),
                            planar_component(reader, node, name, "z")}};
   Node angle = planar_component(reader, node, name, "angle");
   pose_translate(graph, &translation, origin, derivative_of(reader->scope, origin));
-  pose_turn(graph, &turn, (struct Vector){{ZERO, ZERO, ONE}}, angle, total_time_derivative(reader->scope, angle));
+  pose_rotate(graph, &rotation, (struct Vector){{ZERO, ZERO, ONE}}, angle, total_time_derivative(reader->scope, angle));
   append_step(graph, frame, &translation);
-  append_step(graph, frame, &turn);
+  append_step(graph, frame, &rotation);
 }
 
 /* Appends the translations and rotations of a frame that begins with the pose of its parent. */
@@ -212,7 +212,7 @@ static void read_steps(struct Reader *reader, xmlNodePtr node, const char *name,
     if (!is_translation && !is_element(element, "rotate")) continue;
     struct Pose step = pose_of_base();
     if (is_translation) translate(reader, element, &step);
-    else turn(reader, element, &step);
+    else rotate(reader, element, &step);
     append_step(graph, frame, &step);
   }
 }
@@ -359,9 +359,9 @@ static Node inertia_of_norm(const struct Model *model, size_t frame) {
     const struct Body *body = &model->mechanism.bodies[i];
     if (!body->is_in_frame || !is_inside(model, body->frame, frame)) continue;
     for (int axis = 0; axis < 3; axis++) {
-      Node jacobian_row = body->frame == frame ? body->offset.along[axis] : ZERO;
-      if (!graph_is_constant_in_time(graph, jacobian_row)) jacobian_row = ZERO;
-      Node moment = multiply(graph, body->mass.node, power_number(graph, jacobian_row, 2.0));
+      Node lever_arm = body->frame == frame ? body->offset.along[axis] : ZERO;
+      if (!graph_is_constant_in_time(graph, lever_arm)) lever_arm = ZERO;
+      Node moment = multiply(graph, body->mass.node, power_number(graph, lever_arm, 2.0));
       sum = add(graph, sum, add(graph, body->tensor.row[axis].along[axis], moment));
     }
   }

@@ -74,8 +74,8 @@ Node height_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *fr
 }
 
 /* Returns the vector from the centre to the lowest point: downward, and for a wheel perpendicular to its axis. */
-static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct JointEnd *from,
-                                     const struct JointEnd *to) {
+static struct Vector lever_arm_of(struct Graph *graph, xmlNodePtr node, Node radius, const struct JointEnd *from,
+                                  const struct JointEnd *to) {
   struct Vector up = axis_of_end(from, Z);
   if (is_sphere(node)) return vector_scale(graph, negate(graph, radius), up);
   struct Tilt tilt = tilt_of(graph, from, to);
@@ -89,19 +89,19 @@ static struct Vector jacobian_row_of(struct Graph *graph, xmlNodePtr node, Node 
  * it.
  */
 static struct Vector velocity_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *end,
-                                 struct Vector jacobian_row) {
+                                 struct Vector lever_arm) {
   struct Graph *graph = reader->model->graph;
   struct Vector spin = angular_velocity_of_end(reader, node, end), velocity;
   for (int i = 0; i < 3; i++) velocity.along[i] = total_time_derivative(reader->scope, end->position.along[i]);
-  return vector_add(graph, velocity, vector_cross(graph, spin, jacobian_row));
+  return vector_add(graph, velocity, vector_cross(graph, spin, lever_arm));
 }
 
 Node slip_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to, int axis) {
   struct Graph *graph = reader->model->graph;
   Node radius = read_length(reader, node, "radius"), minus = graph_constant(graph, -1.0);
-  struct Vector jacobian_row = jacobian_row_of(graph, node, radius, from, to);
+  struct Vector lever_arm = lever_arm_of(graph, node, radius, from, to);
   struct Vector between = vector_add(graph, to->position, vector_scale(graph, minus, from->position));
-  struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, jacobian_row));
-  struct Vector rim = velocity_of(reader, node, to, jacobian_row);
+  struct Vector ground = velocity_of(reader, node, from, vector_add(graph, between, lever_arm));
+  struct Vector rim = velocity_of(reader, node, to, lever_arm);
   return vector_dot(graph, axis_of_end(from, axis), vector_add(graph, rim, vector_scale(graph, minus, ground)));
 }

@@ -60,9 +60,9 @@ struct Joint {
   double armature;        /* inertia of the motor in terms of the coordinate */
   double stiffness, rest; /* of a spring, and its unstressed position */
   struct JointStart start;
-  bool has_motor;      /* has an input for its force or torque, in addition to the file's actuators */
-  double effort;       /* largest force or torque of the motor; NAN for no limit */
-  double push[2];      /* limits of the sum of the file's actuators, along the coordinate; NAN for none */
+  bool has_motor;            /* has an input for its force or torque, in addition to the file's actuators */
+  double effort;             /* largest force or torque of the motor; NAN for no limit */
+  double actuator_limits[2]; /* limits of the sum of the file's actuators, along the coordinate; NAN for none */
   char *pushes;        /* if there are such limits: the sum of actuator forces as an expression; NULL for none so far */
   char *mimicked_name; /* position = multiplier*(that of this joint) + offset; NULL if it mimics none */
   double multiplier, offset;
@@ -75,7 +75,7 @@ struct Joint {
 };
 
 /* A joint's contribution to the length of a transmission: coefficient*position. */
-struct Pull {
+struct TransmissionTerm {
   char *joint_name;
   double coefficient;
   /* Results of robot_connect(): */
@@ -85,7 +85,7 @@ struct Pull {
 
 /* Its length is the sum of coefficients times positions, or of the distances along sites (spatial tendon). */
 struct Transmission {
-  struct Pull *pulls;
+  struct TransmissionTerm *terms;
   size_t count;
   char **site_names;
   struct Link **sites; /* as many, results of robot_connect() */
@@ -139,7 +139,7 @@ struct RobotOptions {
   bool sticks;                                /* joint friction is dry; else it is regularized and allows creep */
   bool has_ground;                            /* shapes of links touch a plane */
   bool says_ground, says_limits, says_effort; /* the <include> has these attributes, with any value */
-  const char *standing;                       /* names of these links, separated by blanks; NULL for all that move */
+  const char *ground_contact;                 /* names of these links, separated by blanks; NULL for all that move */
   bool is_effort_limited;                     /* motors are limited by their effort */
   const char *keyframe;                       /* name of the MJCF keyframe for start values; NULL for the default */
   const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */

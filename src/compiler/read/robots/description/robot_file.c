@@ -182,7 +182,7 @@ void report_left_out(struct RobotFile *file) {
 }
 
 bool link_touches_ground(const struct RobotOptions *options, const char *link) {
-  const char *rest = options->standing;
+  const char *rest = options->ground_contact;
   if (!options->has_ground || rest == NULL) return options->has_ground;
   for (char *name = next_name(&rest); name != NULL; name = next_name(&rest))
     if (strcmp(name, link) == 0) return true;

@@ -105,7 +105,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
   mjcf_refuse(mjcf, node, "springdamper");
-  mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->push);
+  mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->actuator_limits);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   joint->lower = limits[0] * scale;
   joint->upper = limits[1] * scale;

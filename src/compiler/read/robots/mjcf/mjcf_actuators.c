@@ -49,11 +49,11 @@ static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuat
 /* Returns the transmission of a tendon, or of the joint that the element names. */
 static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   if (tendon != NULL) return tendon->transmission;
-  struct Pull *pull = allocate(1, sizeof *pull);
-  *pull = (struct Pull){.coefficient = 1};
+  struct TransmissionTerm *term = allocate(1, sizeof *term);
+  *term = (struct TransmissionTerm){.coefficient = 1};
   bool is_at_joint = !has_attribute(node, "tendon");
-  if (is_at_joint) pull->joint_name = required_attribute(&mjcf->file, node, "joint");
-  return (struct Transmission){.pulls = pull, .count = is_at_joint};
+  if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, "joint");
+  return (struct Transmission){.terms = term, .count = is_at_joint};
 }
 
 /*
@@ -83,7 +83,7 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
 static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   const struct Robot *robot = mjcf->file.robot;
   for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)
-    if (!isnan(robot->joints[i]->push[0])) {
+    if (!isnan(robot->joints[i]->actuator_limits[0])) {
       report_error(mjcf->file.diagnostics, line_of(node),
                    "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
                    "expected a file without this, or forcerange of the actuators",

@@ -12,11 +12,11 @@ static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon
   struct Transmission *transmission = &tendon->transmission;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (!is_element(child, "joint")) continue;
-    struct Pull pull = {.joint_name = required_attribute(&mjcf->file, child, "joint"), .coefficient = 1};
+    struct TransmissionTerm term = {.joint_name = required_attribute(&mjcf->file, child, "joint"), .coefficient = 1};
     required_attribute(&mjcf->file, child, "coef");
-    read_numbers(&mjcf->file, child, "coef", 1, &pull.coefficient);
-    transmission->pulls = make_room(transmission->pulls, transmission->count, sizeof *transmission->pulls);
-    transmission->pulls[transmission->count++] = pull;
+    read_numbers(&mjcf->file, child, "coef", 1, &term.coefficient);
+    transmission->terms = make_room(transmission->terms, transmission->count, sizeof *transmission->terms);
+    transmission->terms[transmission->count++] = term;
   }
   if (transmission->count == 0)
     report_error(mjcf->file.diagnostics, tendon->line,
@@ -58,19 +58,19 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
  * Returns the length of a fixed tendon with all joints as placed, or with their springs relaxed. Missing joints count
  * 0; they are reported elsewhere.
  */
-static double sum_of_pulls(const struct Mjcf *mjcf, const struct Transmission *transmission, bool is_relaxed) {
+static double sum_of_terms(const struct Mjcf *mjcf, const struct Transmission *transmission, bool is_relaxed) {
   double length = 0;
   for (size_t i = 0; i < transmission->count; i++) {
-    const struct Joint *joint = mjcf_joint(mjcf, transmission->pulls[i].joint_name);
+    const struct Joint *joint = mjcf_joint(mjcf, transmission->terms[i].joint_name);
     if (joint == NULL) continue;
-    length += transmission->pulls[i].coefficient * (is_relaxed ? joint->rest : joint->start.position[0]);
+    length += transmission->terms[i].coefficient * (is_relaxed ? joint->rest : joint->start.position[0]);
   }
   return length;
 }
 
 /* Returns the length with all joints as placed, without segments at missing sites, reported elsewhere. */
 static double start_length(const struct Mjcf *mjcf, const struct Transmission *transmission) {
-  double length = sum_of_pulls(mjcf, transmission, false);
+  double length = sum_of_terms(mjcf, transmission, false);
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct Placement *from = mjcf_placement_of(mjcf, transmission->site_names[i - 1]),
                            *to = mjcf_placement_of(mjcf, transmission->site_names[i]);
@@ -87,7 +87,7 @@ static double start_length(const struct Mjcf *mjcf, const struct Transmission *t
  */
 static double relaxed_length(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   const struct Robot *robot = mjcf->file.robot;
-  if (tendon->transmission.site_count == 0) return sum_of_pulls(mjcf, &tendon->transmission, true);
+  if (tendon->transmission.site_count == 0) return sum_of_terms(mjcf, &tendon->transmission, true);
   bool is_needed = mjcf_number(mjcf, node, "stiffness", 0) != 0;
   for (size_t i = 0; i < robot->joint_count && is_needed; i++) {
     const struct Joint *joint = robot->joints[i];

@@ -26,7 +26,7 @@ struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType 
   joint->child_name = child;
   joint->origin = no_displacement;
   joint->axis[2] = 1;
-  joint->lower = joint->upper = joint->effort = joint->push[0] = joint->push[1] = NAN;
+  joint->lower = joint->upper = joint->effort = joint->actuator_limits[0] = joint->actuator_limits[1] = NAN;
   joint->multiplier = 1;
   add_joint(&mjcf->file, joint);
   return joint;

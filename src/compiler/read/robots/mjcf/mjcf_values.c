@@ -221,8 +221,8 @@ static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double angles[3]) 
     char letter = mjcf->euler_sequence[i];
     double axis[3] = {0};
     axis[tolower((unsigned char)letter) - 'x'] = 1;
-    struct Matrix3 turn = rotation_about(axis, angles[i] * mjcf->angle);
-    rotation = isupper((unsigned char)letter) ? product(&turn, &rotation) : product(&rotation, &turn);
+    struct Matrix3 step = rotation_about(axis, angles[i] * mjcf->angle);
+    rotation = isupper((unsigned char)letter) ? product(&step, &rotation) : product(&rotation, &step);
   }
   return rotation;
 }

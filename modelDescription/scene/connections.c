@@ -10,7 +10,7 @@
  * tests (J. T. Schwartz: Fast probabilistic algorithms for verification of polynomial identities, Journal of the ACM
  * 27, 1980). Costs O(c^3) for each pair of objects with c constraints; large systems test neighbours only.
  */
-#include "links.h"
+#include "connections.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -95,26 +95,27 @@ static size_t group_of(const size_t *groups, size_t thing) {
  * Keeps the shortest rods that connect everything (a minimum spanning forest by Kruskal's algorithm), and all rods of
  * constraints; removes those of length 0.
  */
-static void keep_shortest(struct Links *links, size_t thing_count) {
+static void keep_shortest(struct Connections *connections, size_t thing_count) {
   size_t *groups = allocate(thing_count, sizeof *groups), kept = 0;
   for (size_t i = 0; i < thing_count; i++) groups[i] = i;
-  if (links->rod_count > 0) qsort(links->rods, links->rod_count, sizeof *links->rods, by_length);
-  for (size_t i = 0; i < links->rod_count; i++) {
-    size_t from = group_of(groups, links->rods[i].from), to = group_of(groups, links->rods[i].to);
-    if (from == to && !links->rods[i].has_force) continue;
+  if (connections->rod_count > 0)
+    qsort(connections->rods, connections->rod_count, sizeof *connections->rods, by_length);
+  for (size_t i = 0; i < connections->rod_count; i++) {
+    size_t from = group_of(groups, connections->rods[i].from), to = group_of(groups, connections->rods[i].to);
+    if (from == to && !connections->rods[i].has_force) continue;
     groups[to] = from;
-    if (!(links->rods[i].length > NO_LENGTH)) continue;
-    links->rods[kept++] = links->rods[i];
+    if (!(connections->rods[i].length > NO_LENGTH)) continue;
+    connections->rods[kept++] = connections->rods[i];
   }
-  links->rod_count = kept;
+  connections->rod_count = kept;
 }
 
-static void try_rod(struct Links *links, const struct Samples *samples, size_t from, size_t to) {
+static void try_rod(struct Connections *connections, const struct Samples *samples, size_t from, size_t to) {
   struct Rod rod = {.from = from, .to = to};
   if (!moves(samples, from) && !moves(samples, to)) return;
   if (!is_rod(samples, 2, &rod) && !is_rod(samples, 1, &rod)) return;
-  links->rods = make_room(links->rods, links->rod_count, sizeof *links->rods);
-  links->rods[links->rod_count++] = rod;
+  connections->rods = make_room(connections->rods, connections->rod_count, sizeof *connections->rods);
+  connections->rods[connections->rod_count++] = rod;
 }
 
 /*
@@ -175,11 +176,11 @@ bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
   return true;
 }
 
-static void try_joint(struct Links *links, const struct Samples *samples, size_t of, size_t with) {
+static void try_joint(struct Connections *connections, const struct Samples *samples, size_t of, size_t with) {
   struct SceneJoint joint = {.of = of, .with = with};
   if (!find_joint(samples, &joint)) return;
-  links->joints = make_room(links->joints, links->joint_count, sizeof *links->joints);
-  links->joints[links->joint_count++] = joint;
+  connections->joints = make_room(connections->joints, connections->joint_count, sizeof *connections->joints);
+  connections->joints[connections->joint_count++] = joint;
 }
 
 /* True if the pair is tested. Objects in a frame are connected with that alone. */
@@ -189,16 +190,16 @@ static bool are_compared(const struct Samples *samples, size_t first, size_t sec
   return samples->thing_count <= MOST_THINGS || first == 0 || second == first + 1;
 }
 
-struct Links find_links(const struct Samples *samples) {
-  struct Links links = {.rod_count = 0};
+struct Connections find_connections(const struct Samples *samples) {
+  struct Connections connections = {.rod_count = 0};
   for (size_t i = 0; i < samples->thing_count; i++)
     for (size_t j = i + 1; j < samples->thing_count; j++) {
       if (!are_compared(samples, i, j)) continue;
       bool is_planar = samples->things[i].is_planar || samples->things[j].is_planar;
-      if (samples->things[j].is_planar) try_joint(&links, samples, j, i);
-      else if (samples->things[i].is_planar) try_joint(&links, samples, i, j);
-      if (!is_planar) try_rod(&links, samples, i, j);
+      if (samples->things[j].is_planar) try_joint(&connections, samples, j, i);
+      else if (samples->things[i].is_planar) try_joint(&connections, samples, i, j);
+      if (!is_planar) try_rod(&connections, samples, i, j);
     }
-  keep_shortest(&links, samples->thing_count);
-  return links;
+  keep_shortest(&connections, samples->thing_count);
+  return connections;
 }

@@ -1,4 +1,4 @@
-#include "read/pulls.h"
+#include "read/pointer_interaction.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -15,7 +15,7 @@ struct Pointer {
   Node time;              /* s, ratio of damping to stiffness */
 };
 
-static Node append_pull(struct Reader *reader, const char *name, const char *unit) {
+static Node append_pointer_force(struct Reader *reader, const char *name, const char *unit) {
   struct Variable variable = variable_create(format_text("pull.%s", name), NULL, 0);
   variable.unit = copy_text(unit);
   variable.dimension = unit_of(unit);
@@ -25,12 +25,12 @@ static Node append_pull(struct Reader *reader, const char *name, const char *uni
 
 static struct Vector append_vector(struct Reader *reader, const char *const names[3]) {
   struct Vector vector;
-  for (int axis = 0; axis < 3; axis++) vector.along[axis] = append_pull(reader, names[axis], "m");
+  for (int axis = 0; axis < 3; axis++) vector.along[axis] = append_pointer_force(reader, names[axis], "m");
   return vector;
 }
 
 /* Returns the vector from the body's position to the grabbed point; zero for a body without orientation. */
-static struct Vector jacobian_row_of(const struct Model *model, const struct Body *body, struct Vector grabbed) {
+static struct Vector lever_arm_of(const struct Model *model, const struct Body *body, struct Vector grabbed) {
   struct Graph *graph = model->graph;
   if (body->is_in_frame) return matrix_apply(graph, &model->mechanism.frames[body->frame].pose.rotation, grabbed);
   if (!body->has_angle || !body->has_position[0] || !body->has_position[1]) return (struct Vector){{ZERO, ZERO, ZERO}};
@@ -43,10 +43,10 @@ static struct Vector jacobian_row_of(const struct Model *model, const struct Bod
 }
 
 static struct Vector grabbed_point(const struct Model *model, const struct Body *body, struct Vector grabbed) {
-  struct Vector point, jacobian_row = jacobian_row_of(model, body, grabbed);
+  struct Vector point, lever_arm = lever_arm_of(model, body, grabbed);
   for (int axis = 0; axis < 3; axis++)
     point.along[axis] =
-        body->has_position[axis] ? add(model->graph, body->displaced[axis], jacobian_row.along[axis]) : ZERO;
+        body->has_position[axis] ? add(model->graph, body->displaced[axis], lever_arm.along[axis]) : ZERO;
   return point;
 }
 
@@ -61,7 +61,7 @@ static void pull_body(struct Reader *reader, const struct Body *body, const stru
   struct Graph *graph = reader->model->graph;
   struct Vector grabbed = grabbed_point(reader->model, body, pointer->grabbed);
   if (!moves(graph, &grabbed)) return;
-  Node stiffness = append_pull(reader, format_text("of.%s", body->name), "N/m");
+  Node stiffness = append_pointer_force(reader, format_text("of.%s", body->name), "N/m");
   for (int axis = 0; axis < 3; axis++) {
     Node point = without_displacements(reader, body->line, body->name, grabbed.along[axis]);
     Node behind = multiply(graph, pointer->time, total_time_derivative(reader->scope, point));
@@ -70,12 +70,12 @@ static void pull_body(struct Reader *reader, const struct Body *body, const stru
   }
 }
 
-void add_pulls(struct Reader *reader) {
+void add_pointer_interaction(struct Reader *reader) {
   static const char *const position[] = {"x", "y", "z"}, *const grabbed[] = {"u", "v", "w"};
   struct Model *model = reader->model;
   size_t count = model->mechanism.body_count, every = count / MOST_PULLED + 1;
   struct Pointer pointer = {.position = append_vector(reader, position), .grabbed = append_vector(reader, grabbed)};
-  pointer.time = append_pull(reader, "time", "s");
+  pointer.time = append_pointer_force(reader, "time", "s");
   model->forces.any = true;
   /* Includes the last body: the end of a chain is the natural part to pull. */
   for (size_t i = (count + every - 1) % every; i < count; i += every)

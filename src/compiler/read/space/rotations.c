@@ -1,4 +1,4 @@
-#include "read/space/turns.h"
+#include "read/space/rotations.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,7 +66,7 @@ static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *p
   if (definitions_are_waiting(reader->definitions)) return;
   require_unit(reader, line_of_attribute(node, "angle"), "the angle", angle, unit_of("rad"));
   warn_of_degrees(reader, node, angle);
-  pose_turn(reader->model->graph, pose, axis, angle.node, total_time_derivative(reader->scope, angle.node));
+  pose_rotate(reader->model->graph, pose, axis, angle.node, total_time_derivative(reader->scope, angle.node));
 }
 
 /* Sets the norm constraint of a quaternion, q . q - 1 = 0, which was declared with the frame. */
@@ -90,7 +90,7 @@ static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Po
   if (definitions_are_waiting(reader->definitions) || reader->diagnostics->errors > 0) return;
   for (int i = 0; i < 4; i++) rate[i] = total_time_derivative(reader->scope, q[i]);
   set_norm(reader, node, q);
-  pose_turn_by_quaternion(reader->model->graph, pose, q, rate);
+  pose_rotate_by_quaternion(reader->model->graph, pose, q, rate);
 }
 
 static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name, size_t expected) {
@@ -104,7 +104,7 @@ static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name
               found, expected, expected == 3 ? ", or x, y or z" : "");
 }
 
-void check_turn(struct Reader *reader, xmlNodePtr node) {
+void check_rotation(struct Reader *reader, xmlNodePtr node) {
   bool by_quaternion = has_attribute(node, "quaternion"), by_axis = has_attribute(node, "axis");
   if (by_quaternion == by_axis || by_axis != has_attribute(node, "angle"))
     report_at(reader, node, "<rotate> needs either axis=\"...\" with angle=\"...\" or quaternion=\"...\"");
@@ -113,8 +113,8 @@ void check_turn(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "a second quaternion in one frame; expected a <frame> in this one for it");
 }
 
-void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
-  if (reader->diagnostics->errors > 0) return; /* check_turn() may have reported an error */
+void rotate(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
+  if (reader->diagnostics->errors > 0) return; /* check_rotation() may have reported an error */
   if (has_attribute(node, "quaternion")) turn_by_quaternion(reader, node, pose);
   else turn_by_angle(reader, node, pose);
 }

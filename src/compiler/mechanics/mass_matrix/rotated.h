@@ -4,4 +4,4 @@
 #include "model/kinematics.h"
 
 /* Returns R matrix R^T for a rotation R. */
-struct Matrix matrix_turned(struct Graph *graph, const struct Matrix *rotation, const struct Matrix *matrix);
+struct Matrix matrix_rotated(struct Graph *graph, const struct Matrix *rotation, const struct Matrix *matrix);

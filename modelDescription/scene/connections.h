@@ -26,7 +26,7 @@ struct SceneJoint {
 };
 
 /* The rods and joints that were found. The caller owns the lists. */
-struct Links {
+struct Connections {
   struct Rod *rods;
   size_t rod_count;
   struct SceneJoint *joints;
@@ -37,4 +37,4 @@ struct Links {
 bool find_joint(const struct Samples *samples, struct SceneJoint *joint);
 
 /* Finds all rods and joints. */
-struct Links find_links(const struct Samples *samples);
+struct Connections find_connections(const struct Samples *samples);

@@ -7,4 +7,4 @@
 #include "read/context/attributes.h"
 
 /* Adds the inputs pull.x, ... and pull.of.BODY, and the forces: on at most MOST_PULLED bodies, evenly chosen. */
-void add_pulls(struct Reader *reader);
+void add_pointer_interaction(struct Reader *reader);

@@ -7,7 +7,7 @@
 xmlNodePtr quaternion_of(xmlNodePtr frame);
 
 /* Reports a <rotate> with an invalid combination of attributes. */
-void check_turn(struct Reader *reader, xmlNodePtr node);
+void check_rotation(struct Reader *reader, xmlNodePtr node);
 
 /* Rotates the pose by a <rotate>. */
-void turn(struct Reader *reader, xmlNodePtr node, struct Pose *pose);
+void rotate(struct Reader *reader, xmlNodePtr node, struct Pose *pose);

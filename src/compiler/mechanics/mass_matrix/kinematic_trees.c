@@ -1,4 +1,4 @@
-#include "mechanics/mass_matrix/links.h"
+#include "mechanics/mass_matrix/kinematic_trees.h"
 
 #include "algebra/cone.h"
 #include "algebra/differentiate.h"
@@ -18,7 +18,7 @@ enum { LEAST_LINKS = 6 };
 /* State while the tree of links is built. */
 struct Builder {
   const struct Model *model;
-  struct Links *links;
+  struct KinematicTrees *trees;
   size_t row_count;     /* coordinates and constraints */
   size_t *last_link;    /* of each frame; NO_LINK if it is fixed to the base */
   size_t *link_of_body; /* of each body in a frame, likewise */
@@ -37,19 +37,19 @@ static bool is_symbol(const struct Graph *graph, Node node, enum SymbolKind kind
   return graph->vertices[node].operation == SYMBOL && graph->vertices[node].kinds == 1u << kind;
 }
 
-static size_t index_in_link(const struct Link *link, size_t coordinate) {
+static size_t index_in_link(const struct TreeLink *link, size_t coordinate) {
   size_t index = 0;
   while (index < link->count && link->coordinates[index] != coordinate) index++;
   return index;
 }
 
-static void append_row(struct Link *link, size_t row) {
+static void append_row(struct TreeLink *link, size_t row) {
   link->coordinates = make_room(link->coordinates, link->count, sizeof *link->coordinates);
   link->coordinates[link->count++] = row;
 }
 
 /* Appends the coordinates on whose velocities a vector depends. */
-static void find_coordinates(const struct Builder *builder, struct Link *link, struct Vector velocity) {
+static void find_coordinates(const struct Builder *builder, struct TreeLink *link, struct Vector velocity) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
   cone_collect(graph->cone, graph, velocity.along, 3);
@@ -63,44 +63,45 @@ static void find_coordinates(const struct Builder *builder, struct Link *link, s
 }
 
 /* Fills in the motion subspace: the derivatives of a velocity by those of the link's coordinates. */
-static void set_axes(const struct Builder *builder, struct Link *link, struct Vector velocity, bool is_angular) {
+static void set_motion_subspace(const struct Builder *builder, struct TreeLink *link, struct Vector velocity,
+                                bool is_angular) {
   struct Graph *graph = builder->model->graph;
   for (int component = 0; component < 3; component++) {
     struct Gradient gradient = gradient_by_kinds(graph, velocity.along[component], 1u << VELOCITY);
     for (size_t i = 0; i < gradient.count; i++) {
       size_t index = index_in_link(link, (size_t)graph_symbol_of(graph, gradient.symbols[i])->index);
       if (index == link->count) continue; /* a prescribed coordinate */
-      struct SpatialVector *axis = &link->axes[index];
+      struct SpatialVector *axis = &link->motion_subspace[index];
       (is_angular ? &axis->angular : &axis->linear)->along[component] = gradient.values[i];
     }
   }
 }
 
 /* Fills in the pose of a link in its parent, and its motion subspace. */
-static void set_motion(const struct Builder *builder, struct Link *link) {
+static void set_motion(const struct Builder *builder, struct TreeLink *link) {
   for (int i = 0; i < 3; i++) link->pose.rotation.row[i] = without_displacements(builder, link->pose.rotation.row[i]);
   link->pose.origin = without_displacements(builder, link->pose.origin);
-  link->axes = allocate(link->count, sizeof *link->axes);
+  link->motion_subspace = allocate(link->count, sizeof *link->motion_subspace);
   link->inertia = allocate(link->count * link->count, sizeof *link->inertia);
-  set_axes(builder, link, without_displacements(builder, link->pose.velocity), false);
-  set_axes(builder, link, without_displacements(builder, link->pose.angular_velocity), true);
+  set_motion_subspace(builder, link, without_displacements(builder, link->pose.velocity), false);
+  set_motion_subspace(builder, link, without_displacements(builder, link->pose.angular_velocity), true);
 }
 
 /* Appends a link for a step from its parent. Returns its index. */
 static size_t append_link(struct Builder *builder, size_t parent, const struct Pose *step) {
-  struct Links *links = builder->links;
-  struct Link link = {.parent = parent, .pose = *step};
+  struct KinematicTrees *trees = builder->trees;
+  struct TreeLink link = {.parent = parent, .pose = *step};
   find_coordinates(builder, &link, step->velocity);
   find_coordinates(builder, &link, step->angular_velocity);
   for (size_t i = 0; i < link.count; i++) {
     size_t coordinate = link.coordinates[i];
     /* A coordinate that moves two links excludes a tree. */
     if (builder->link_of[coordinate] != NO_LINK) builder->is_elsewhere[coordinate] = true;
-    builder->link_of[coordinate] = links->count;
+    builder->link_of[coordinate] = trees->count;
   }
-  links->items = make_room(links->items, links->count, sizeof *links->items);
-  links->items[links->count] = link;
-  return links->count++;
+  trees->items = make_room(trees->items, trees->count, sizeof *trees->items);
+  trees->items[trees->count] = link;
+  return trees->count++;
 }
 
 static void create_links_of_frames(struct Builder *builder) {
@@ -134,7 +135,7 @@ static void set_inertia_of_body(struct Builder *builder, size_t number) {
   const struct Body *body = &builder->model->mechanism.bodies[number];
   size_t number_of_link = builder->link_of_body[number];
   if (number_of_link == NO_LINK) return;
-  struct Link *link = &builder->links->items[number_of_link];
+  struct TreeLink *link = &builder->trees->items[number_of_link];
   struct Vector offset = body->offset;
   if (number_of_link != builder->last_link[body->frame]) offset = (struct Vector){{ZERO, ZERO, ZERO}};
   struct SpatialInertia inertia = spatial_inertia_of_body(graph, body->mass.node, offset, &body->tensor);
@@ -162,7 +163,7 @@ static void append_links_of_bodies(struct Builder *builder) {
   }
 }
 
-static void add_inertia(struct Link *link, size_t i, size_t j, Node value) {
+static void add_inertia(struct TreeLink *link, size_t i, size_t j, Node value) {
   link->inertia[index_in_link(link, i) * link->count + index_in_link(link, j)] = value;
   link->has_inertia = true;
 }
@@ -183,28 +184,28 @@ static void add_further_inertia(struct Builder *builder, Node regularization) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
       if (model->given.prescribed_motions[i].given || model->given.prescribed_motions[j].given) continue;
       if (builder->link_of[i] == builder->link_of[j] && builder->link_of[i] != NO_LINK)
-        add_inertia(&builder->links->items[builder->link_of[i]], i, j, row.values[k]);
+        add_inertia(&builder->trees->items[builder->link_of[i]], i, j, row.values[k]);
       else builder->is_elsewhere[i] = builder->is_elsewhere[j] = true;
     }
   }
 }
 
 /* Returns the nearest link with coordinates, from this one towards the base. */
-static size_t moved_link(const struct Links *links, size_t link) {
-  while (link != NO_LINK && links->items[link].count == 0) link = links->items[link].parent;
+static size_t moved_link(const struct KinematicTrees *trees, size_t link) {
+  while (link != NO_LINK && trees->items[link].count == 0) link = trees->items[link].parent;
   return link;
 }
 
 /* Finds the components of rows: coordinates on one path to the base move the same bodies. */
 static struct Components couple(const struct Builder *builder) {
-  const struct Links *links = builder->links;
+  const struct KinematicTrees *trees = builder->trees;
   struct Elements couplings = {0};
-  for (size_t i = 0; i < links->count; i++) {
-    const struct Link *link = &links->items[i];
-    size_t before = link->count > 0 ? moved_link(links, link->parent) : NO_LINK;
+  for (size_t i = 0; i < trees->count; i++) {
+    const struct TreeLink *link = &trees->items[i];
+    size_t before = link->count > 0 ? moved_link(trees, link->parent) : NO_LINK;
     for (size_t k = 1; k < link->count; k++)
       elements_append(&couplings, link->coordinates[k], link->coordinates[0], ZERO);
-    if (before != NO_LINK) elements_append(&couplings, link->coordinates[0], links->items[before].coordinates[0], ZERO);
+    if (before != NO_LINK) elements_append(&couplings, link->coordinates[0], trees->items[before].coordinates[0], ZERO);
   }
   return find_components(builder->row_count, &couplings);
 }
@@ -217,7 +218,7 @@ static void mark_columns(struct Builder *builder, const struct Elements *element
 
 /* Excludes constraints that share a link: they may depend on each other, which saddle.h alone detects. */
 static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
-  size_t *counts = allocate(builder->links->count, sizeof *counts);
+  size_t *counts = allocate(builder->trees->count, sizeof *counts);
   for (size_t j = 0; j < count; j++)
     if (is_local[j]) counts[link[j]]++;
   for (size_t j = 0; j < count; j++) is_local[j] = is_local[j] && counts[link[j]] == 1;
@@ -258,7 +259,7 @@ static void add_constraints(struct Builder *builder, const struct ConstraintBloc
     size_t row = n + jacobian->positions[k].row;
     if (!is_local[row - n] || builder->link_of[row] != NO_LINK) continue;
     builder->link_of[row] = builder->link_of[jacobian->positions[k].column];
-    append_row(&builder->links->items[builder->link_of[row]], row);
+    append_row(&builder->trees->items[builder->link_of[row]], row);
   }
 }
 
@@ -269,20 +270,20 @@ static void set_constraints(struct Builder *builder, const struct ConstraintBloc
   for (size_t k = 0; k < jacobian->count; k++) {
     size_t row = n + jacobian->positions[k].row, column = jacobian->positions[k].column;
     if (builder->link_of[row] == NO_LINK) continue;
-    struct Link *link = &builder->links->items[builder->link_of[row]];
+    struct TreeLink *link = &builder->trees->items[builder->link_of[row]];
     add_inertia(link, row, column, jacobian->nodes[k]);
     add_inertia(link, column, row, jacobian->nodes[k]);
   }
 }
 
 /* Returns, for each component, whether it has enough links and is deep enough on average. */
-static bool *find_deep(const struct Links *links, const struct Components *components) {
-  double *depth = allocate(links->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
+static bool *find_deep(const struct KinematicTrees *trees, const struct Components *components) {
+  double *depth = allocate(trees->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
          *count = allocate(components->count, sizeof *count);
   size_t *moving = allocate(components->count, sizeof *moving);
   bool *is_deep = allocate(components->count, sizeof *is_deep);
-  for (size_t i = 0; i < links->count; i++) {
-    const struct Link *link = &links->items[i];
+  for (size_t i = 0; i < trees->count; i++) {
+    const struct TreeLink *link = &trees->items[i];
     depth[i] = (double)link->count + (link->parent != NO_LINK ? depth[link->parent] : 0.0);
     if (link->count == 0) continue;
     size_t component = components->of[link->coordinates[0]];
@@ -297,18 +298,18 @@ static bool *find_deep(const struct Links *links, const struct Components *compo
 
 /* Chooses the components that are trees as a whole, and deep. True if there are any. */
 static bool choose_trees(struct Builder *builder, const struct Components *components) {
-  struct Links *links = builder->links;
+  struct KinematicTrees *trees = builder->trees;
   size_t n = builder->row_count;
-  bool *is_tree = find_deep(links, components), any = false;
+  bool *is_tree = find_deep(trees, components), any = false;
   for (size_t i = 0; i < n; i++)
     if (builder->is_elsewhere[i] || builder->link_of[i] == NO_LINK) is_tree[components->of[i]] = false;
   for (size_t i = 0; i < n; i++) {
-    links->tree_of[i] = is_tree[components->of[i]] ? components->of[i] : NO_TREE;
+    trees->tree_of[i] = is_tree[components->of[i]] ? components->of[i] : NO_TREE;
     any |= is_tree[components->of[i]];
   }
-  for (size_t i = 0; i < links->count; i++) {
-    size_t moved = moved_link(links, i);
-    links->items[i].tree = moved != NO_LINK ? links->tree_of[links->items[moved].coordinates[0]] : NO_TREE;
+  for (size_t i = 0; i < trees->count; i++) {
+    size_t moved = moved_link(trees, i);
+    trees->items[i].tree = moved != NO_LINK ? trees->tree_of[trees->items[moved].coordinates[0]] : NO_TREE;
   }
   return any;
 }
@@ -318,25 +319,25 @@ static bool choose_trees(struct Builder *builder, const struct Components *compo
  * without this search.
  */
 static void set_links(struct Builder *builder, const struct ConstraintBlock *constraint_block, Node regularization) {
-  for (size_t i = 0; i < builder->links->count; i++) set_motion(builder, &builder->links->items[i]);
+  for (size_t i = 0; i < builder->trees->count; i++) set_motion(builder, &builder->trees->items[i]);
   for (size_t i = 0; i < builder->model->mechanism.body_count; i++)
     if (builder->model->mechanism.bodies[i].is_in_frame) set_inertia_of_body(builder, i);
   add_further_inertia(builder, regularization);
   set_constraints(builder, constraint_block);
 }
 
-struct Links *links_without_trees(size_t row_count) {
-  struct Links *links = allocate(1, sizeof *links);
-  links->tree_of = allocate(row_count, sizeof *links->tree_of);
-  for (size_t i = 0; i < row_count; i++) links->tree_of[i] = NO_TREE;
-  return links;
+struct KinematicTrees *no_kinematic_trees(size_t row_count) {
+  struct KinematicTrees *trees = allocate(1, sizeof *trees);
+  trees->tree_of = allocate(row_count, sizeof *trees->tree_of);
+  for (size_t i = 0; i < row_count; i++) trees->tree_of[i] = NO_TREE;
+  return trees;
 }
 
-struct Links *links_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
-                           Node regularization) {
+struct KinematicTrees *kinematic_trees_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
+                                              Node regularization) {
   size_t rows = model->coordinates.count + constraint_block->count;
   struct Builder builder = {.model = model,
-                            .links = links_without_trees(rows),
+                            .trees = no_kinematic_trees(rows),
                             .row_count = rows,
                             .link_of = allocate(rows, sizeof *builder.link_of),
                             .is_elsewhere = allocate(rows, sizeof *builder.is_elsewhere),
@@ -348,8 +349,8 @@ struct Links *links_create(const struct Model *model, const struct ConstraintBlo
   append_links_of_bodies(&builder);
   add_constraints(&builder, constraint_block);
   struct Components components = couple(&builder);
-  if (!choose_trees(&builder, &components)) return builder.links;
+  if (!choose_trees(&builder, &components)) return builder.trees;
   set_links(&builder, constraint_block, regularization);
   choose_trees(&builder, &components);
-  return builder.links;
+  return builder.trees;
 }
