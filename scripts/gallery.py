@@ -131,21 +131,29 @@ def write_system(archive):
         links = {"<b>live</b>": "live.html"} | links
     except Problem as problem:  # an FMU whose method has no sources in it
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)
-    first = next(iter(links.values()))
+    addresses = {text: f"systems/{name}/{place}" for text, place in links.items()}
+    if can_be_edited(name):
+        addresses |= {"edit": f"laboratory.html#{name}"}
+    first = next(iter(addresses.values()))
     sentence = html.escape(read_tree(archive).get("description") or "")
-    words = " · ".join(f'<a href="systems/{name}/{place}">{text}</a>' for text, place in links.items())
-    return f'<div><a href="systems/{name}/{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+    words = " · ".join(f'<a href="{address}">{text}</a>' for text, address in addresses.items())
+    return f'<div><a href="{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+
+
+def can_be_edited(name):
+    """Return whether the laboratory supports the method of a system of fmu/."""
+    source = ROOT / "fmu" / name / "system.xml"
+    return source.exists() and not re.search(r"""method *= *["'](erk|bdf)["']""", source.read_text(encoding="utf-8"))
 
 
 def write_laboratory(names):
-    """Write the page in which systems can be changed; it has those whose method it supports. Return a sentence about it."""
-    sources = {name: ROOT / "fmu" / name / "system.xml" for name in names}
-    has_method = {name: not re.search(r"""method *= *["'](erk|bdf)["']""", source.read_text(encoding="utf-8")) for name, source in sources.items() if source.exists()}
-    chosen = [name for name, has in has_method.items() if has]
+    """Write the page in which systems can be changed. Return a sentence about it."""
+    chosen = list(filter(can_be_edited, names))
     if not chosen:
         return ""
     first = FIRST if FIRST in chosen else chosen[0]
-    write_editor(sources[first], LABORATORY, PAGES / "laboratory.html", {name: files_of(sources[name]) for name in chosen})
+    sources = {name: ROOT / "fmu" / name / "system.xml" for name in chosen}
+    write_editor(sources[first], LABORATORY, PAGES / "laboratory.html", {name: files_of(source) for name, source in sources.items()}, "gallery.html")
     return 'In the [laboratory](laboratory.html) you change them, or write your own: it derives the equations in your browser.\n'
 
 

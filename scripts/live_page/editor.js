@@ -53,7 +53,24 @@ function showLines(wrong = new Set()) {
   const count = $("source").value.split("\n").length;
   const marks = Array.from({ length: count }, (_, i) => (wrong.has(i + 1) ? `<span class="wrong">${i + 1}</span>` : i + 1));
   $("lines").innerHTML = `${marks.join("\n")}\n`;
-  $("lines").scrollTop = $("source").scrollTop;
+  $("colors").innerHTML = `${coloured($("source").value)}\n`;
+  follow();
+}
+
+// Scrolls the line numbers and the colors with the text.
+function follow() {
+  $("lines").scrollTop = $("colors").scrollTop = $("source").scrollTop;
+  $("colors").scrollLeft = $("source").scrollLeft;
+}
+
+// Begins a new element in a line of its own, below the caret's line or before the end of the system.
+function insertElement(offer) {
+  const source = $("source"), { value } = source, last = value.lastIndexOf("</"), line = value.indexOf("\n", source.selectionStart);
+  const at = line < 0 || line >= last ? Math.max(0, value.lastIndexOf("\n", last)) : line;
+  source.focus();
+  source.setSelectionRange(at, at);
+  document.execCommand("insertText", false, "\n  <");
+  offer(true);
 }
 
 function showState(words, kind = "") {
@@ -153,21 +170,28 @@ function offerExamples() {
   const names = Object.keys(data.examples ?? {});
   $("examples").hidden = names.length === 0;
   $("examples").replaceChildren(new Option("another system …", ""), ...names.map((name) => new Option(name, name)));
-  $("examples").addEventListener("change", () => {
-    const chosen = data.examples[$("examples").value];
-    if (!chosen) return;
-    ({ file } = chosen);
-    files = { ...chosen.files };
-    offerFiles();
-    run();
-  });
+  $("examples").addEventListener("change", () => openExample($("examples").value) && run());
+  $("home").hidden = !data.home;
+  $("home").href = data.home ?? "";
+}
+
+// Opens an example; returns false if there is none of that name.
+function openExample(name) {
+  const chosen = data.examples?.[name];
+  if (!chosen) return false;
+  ({ file } = chosen);
+  files = { ...chosen.files };
+  offerFiles();
+  return true;
 }
 
 function addActions() {
   $("run").addEventListener("click", run);
   $("source").addEventListener("input", typed);
+  const offer = offerWords($("source"), $("words"), language);
+  $("insert").addEventListener("click", () => insertElement(offer));
   $("source").addEventListener("keydown", typeSpaces);
-  $("source").addEventListener("scroll", () => ($("lines").scrollTop = $("source").scrollTop));
+  $("source").addEventListener("scroll", follow);
   $("files").addEventListener("change", () => openFile($("files").value));
   $("saveFile").addEventListener("click", () => save(opened.split("/").pop(), files[opened], "text/xml"));
   $("savePage").addEventListener("click", () => save(`${file.split("/").at(-2) ?? "system"}.html`, pageNow(), "text/html"));
@@ -178,14 +202,15 @@ function addActions() {
   });
 }
 
-let pageText;
+let pageText, language;
 let escaped = false; // the last key was Escape
 
 async function begin() {
   pageText = new TextDecoder().decode(await unpacked(data.page));
   window.laboratoryBytes = await unpacked(data.laboratory);
+  language = JSON.parse(new TextDecoder().decode(await unpacked(data.language)));
   offerExamples();
-  offerFiles();
+  if (!openExample(decodeURIComponent(location.hash.slice(1)))) offerFiles();
   addActions();
   await startChecker();
   run();

@@ -8,10 +8,12 @@ from pathlib import Path
 from ..problem import Problem
 from ..whole_files import write_whole
 from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
+from .schema import Schema, documentation, enumerated
 
 HERE = Path(__file__).resolve().parent
 LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, and in the tree
-STYLE, SCRIPTS = "editor.css", ("unpacking.js", "editor.js")
+STYLE, SCRIPTS = "editor.css", ("unpacking.js", "words.js", "completion.js", "editor.js")
+SCHEMAS = (HERE / "system.xsd", HERE.parent.parent / "fmu" / "system.xsd")  # in the wheel, and in the tree
 MESHES = (".stl", ".obj")
 CHECKER = ("laboratory.js", "checker.js")
 WORKER = (*COMMON_WORKER[:-1], "laboratory.js", COMMON_WORKER[-1])
@@ -49,16 +51,33 @@ def _licenses():
     return f"{licenses(has_scene=True, has_fmu=True)}\n\nlibxml2:\n\n{file.read_text(encoding='utf-8')}"
 
 
-def editor_of(system, laboratory, examples=None):
-    """Return the page as text; `laboratory` is the path of laboratory.wasm, `examples` has further systems, as of files_of(), by name."""
+def language():
+    """Return what the editor offers: for each element, where it stands, a sentence, its attributes and its contents."""
+    schema = Schema(next(path for path in SCHEMAS if path.exists()).read_text(encoding="utf-8"))
+
+    def kind(parents, declaration):
+        sentence, attributes, contents, has_text = schema.frame(declaration)
+        named = {a.get("name"): {"text": documentation(a).replace("`", ""), "isNeeded": a.get("use") == "required", "values": enumerated(a)} for a in attributes}
+        return {"in": parents, "text": sentence.replace("`", ""), "attributes": named, "holds": contents, "hasText": has_text}
+
+    return {name: [kind(*pair) for pair in schema.kinds(name)] for name in schema.elements}
+
+
+def editor_of(system, laboratory, examples=None, home=None):
+    """
+    Return the page as text; `laboratory` is the path of laboratory.wasm, `examples` has further systems, as of files_of(), by name: the page opens
+    that of its address behind "#". `home` is the address of a page to which it links.
+    """
     if not Path(laboratory).exists():
         raise Problem(f"there is no {laboratory}, in which systems are derived in a page; see scripts/laboratory")
     data = {
         **files_of(system),
         "examples": examples or {},
+        "home": home,
         "laboratory": packed(Path(laboratory).read_bytes()),
         "checker": packed(script_of(CHECKER).encode()),
         "common": {"worker": packed(script_of(WORKER).encode()), **common(has_scene=True, has_fmu=True), "licenses": _licenses()},
+        "language": packed(json_of(language()).encode()),
         "page": packed(page_of_data("A system", "@DATA@").encode()),
     }
     title = f"{Path(data['file']).parent.name or Path(data['file']).stem}, to be written"
@@ -66,6 +85,6 @@ def editor_of(system, laboratory, examples=None):
     return filled("editor.html", TITLE=html.escape(title), STYLE=style, DATA=json_of(data), SCRIPT=script_of(SCRIPTS))
 
 
-def write_editor(system, laboratory, path, examples=None):
+def write_editor(system, laboratory, path, examples=None, home=None):
     """Write the page and return its path."""
-    return write_whole(path, editor_of(system, laboratory, examples))
+    return write_whole(path, editor_of(system, laboratory, examples, home))

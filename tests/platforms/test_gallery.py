@@ -55,5 +55,11 @@ def test_the_gallery():
         page.goto((SITE / "gallery.html").as_uri())
         page.click('a[href="systems/NewtonsCradle/live.html"] >> text=live')
         page.wait_for_selector("body[data-ready]")
+        page.goto((SITE / "gallery.html").as_uri())
+        page.click('a[href="laboratory.html#HeavyTop"]')
+        page.wait_for_function("window.bench && bench.runs > 0", timeout=90000)
+        assert '<system name="HeavyTop"' in page.input_value("#source")
+        page.click("text=Gallery")
+        page.wait_for_url("**/gallery.html")
     assert complaints == []
     assert [url for url in fetched if not url.startswith(("file:", "blob:", "data:"))] == []

@@ -171,7 +171,7 @@ def write_page(tmp_path, name):
     module()
     file = tmp_path / f"{name}.html"
     file.write_text(editor_of(ROOT / "fmu" / name / "system.xml", LABORATORY), encoding="utf-8")
-    assert len(file.read_text()) < 960_000
+    assert len(file.read_text()) < 985_000
     return file
 
 
@@ -206,6 +206,67 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
     with editor(browser, tmp_path / "kept.html") as page:
         assert page.locator("#source").input_value() == spring
         assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
+
+
+CONTEXTS = [  # the text with the caret at "|", what is offered, in order, and what it becomes with the first
+    ('<system name="A">\n  <poten|\n</system>', ["potential"], "  <potential>|</potential>"),
+    ('<system name="A">\n  <coordinate na|\n</system>', ["name"], '  <coordinate name="|"'),
+    ('<system name="A">\n  <coordinate v| name="x"/>\n</system>', ["velocity", "velocityStart", "velocityNominal", "velocityDescription", "velocityDisplayUnit"], '  <coordinate velocity="|" name="x"/>'),
+    ('<system name="A">\n  <coordinate velocity="v" v|\n</system>', ["velocityStart", "velocityNominal", "velocityDescription", "velocityDisplayUnit"], None),
+    ('<system name="A">\n  <coordinate n| name="x"/>\n</system>', ["nominal"], None),
+    ('<system name="A">\n  <solver method="r|"/>\n</system>', ["radau"], '  <solver method="radau|"/>'),
+    ('<system name="A">\n  <coordinate name="theta" velocity="thetaDot"/>\n  <potential>cos(th|)</potential>\n</system>', ["theta", "thetaDot"], "  <potential>cos(theta|)</potential>"),
+    ('<system name="A">\n  <output name="h">sq|</output>\n</system>', ["sqrt("], '  <output name="h">sqrt(|</output>'),
+    ('<system name="A">\n  <event when="x > 1"><s|\n</system>', ["set"], '  <event when="x > 1"><set>|</set>'),
+    ('<system name="A">\n  <table name="f"><p|\n</system>', ["point"], '  <table name="f"><point x="|" y=""/>'),
+    ('<system name="A">\n  <point n|/>\n</system>', ["name"], None),
+    ('<system name="A">\n  <coordinate name="th|"/>\n</system>', [], None),
+    ('<system name="A">\n  <!-- <poten| -->\n</system>', [], None),
+    ('<system name="A">\n  <kinetic>1</ki|\n</system>', ["kinetic"], "  <kinetic>1</kinetic>|"),
+    ("<sys|", ["system"], '<system name="|"></system>'),
+]  # fmt: skip
+
+
+def test_words_that_may_stand_at_the_caret(browser, tmp_path):
+    with editor(browser, write_page(tmp_path, "SimplePendulum")) as page:
+        functions = {name for kind, name in map(str.split, fmu.lagc("--words").stdout.splitlines()) if kind == "function"}
+        assert set(page.evaluate("[...FUNCTIONS, ...OPERATORS]")) == functions | {"distance", "dot", "norm"}
+        for text, expected, becomes in CONTEXTS:
+            at = text.index("|")
+            offered = page.evaluate("([text, at]) => wordsAt(text, at, language)", [text[:at] + text[at + 1 :], at])
+            assert [word["label"] for word in offered["words"]] == expected, text
+            if becomes is not None:
+                source = page.locator("#source")
+                source.fill(text[:at].removesuffix(offered["word"]) + text[at + 1 :])
+                source.evaluate("(source, at) => { source.focus(); source.setSelectionRange(at, at); }", at - len(offered["word"]))
+                page.keyboard.type(offered["word"])
+                page.keyboard.press("Enter")
+                found, caret = source.input_value(), source.evaluate("source => source.selectionStart")
+                assert becomes in (found[:caret] + "|" + found[caret:]).split("\n"), text
+
+
+def test_colors_and_the_button_that_inserts(browser, tmp_path):
+    """The colors hold the same text, of which each token has its kind; the button begins an element, the keys choose one."""
+    with editor(browser, write_page(tmp_path, "SimplePendulum")) as page:
+        text = '<system name="A"><!-- a < b -->\n  <kinetic>1 & 2</kinetic>\n  <broken at="1\n'
+        page.locator("#source").fill(text)
+        assert page.locator("#colors").evaluate("node => node.textContent") == text + "\n"
+        kinds = page.evaluate("text => tokensOf(text).map(([kind, begin, end]) => [kind, text.slice(begin, end)])", text)
+        assert "".join(word for _, word in kinds) == text
+        assert ["comment", "<!-- a < b -->"] in kinds and ["attribute", "at"] in kinds and ["value", '"1\n'] in kinds and ["text", "1 & 2"] in kinds
+        page.locator("#source").fill('<system name="A">\n  <kinetic>1</kinetic>\n</system>\n')
+        page.locator("#insert").click()
+        assert page.locator("#words li").count() > 30
+        page.keyboard.type("exp")
+        page.keyboard.press("Tab")
+        page.keyboard.press("Control+Space")
+        assert page.locator("#words").is_hidden(), "nothing is offered before the tag's end is near"
+        assert page.locator("#source").input_value() == '<system name="A">\n  <kinetic>1</kinetic>\n  <experiment/>\n</system>\n'
+        page.keyboard.type(" st")
+        page.keyboard.press("ArrowDown")
+        page.keyboard.press("Enter")
+        page.keyboard.type("3")
+        assert '  <experiment stopTime="3"/>' in page.locator("#source").input_value()
 
 
 def test_several_files(browser, tmp_path):

@@ -1,0 +1,100 @@
+// Reads the text of a system while it is written: its tokens, for colors, and what may be typed at a position, for completion.
+"use strict";
+
+const FUNCTIONS = "abs acos acosh asin asinh atan atan2 atanh ceil cos cosh der diff distance dot exp floor gauss if integral log max min mod norm pow round sign sin sinh sqrt sum tan tanh uniform".split(" ");
+const OPERATORS = ["and", "not", "or"];
+const OUTSIDE = /<!--[^]*?(?:-->|$)|<[?!][^]*?(?:>|$)|<\/?[\w:.-]*|[^<]+/y; // a comment, a declaration, the begin of a tag, or text
+const INSIDE = /\/?>|"[^"]*(?:"|$)|'[^']*(?:'|$)|[\w:.-]+|\s+|[^]/y; // the end of a tag, a value, the name of an attribute, or blanks
+
+// Returns the tokens of a text as [kind, begin, end], which follow each other without gaps, although the text may not be XML yet.
+function tokensOf(text) {
+  const tokens = [];
+  for (let at = 0, inTag = false; at < text.length; ) {
+    const rule = inTag ? INSIDE : OUTSIDE;
+    rule.lastIndex = at;
+    const [word] = rule.exec(text), first = word[0];
+    let kind = "text";
+    if (!inTag) {
+      kind = /^<[?!]/.test(word) ? "comment" : first === "<" ? "tag" : "text";
+      inTag = kind === "tag";
+    } else if (/^\/?>$/.test(word)) {
+      kind = "tag";
+      inTag = false;
+    } else if (first === '"' || first === "'") kind = "value";
+    else if (/^[\w:.-]/.test(word)) kind = "attribute";
+    tokens.push([kind, at, (at += word.length)]);
+  }
+  return tokens;
+}
+
+// Returns the text as HTML in which each token has its kind as a class.
+function coloured(text) {
+  const escape = (part) => part.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+  return tokensOf(text).map(([kind, begin, end]) => (kind === "text" ? escape(text.slice(begin, end)) : `<span class="${kind}">${escape(text.slice(begin, end))}</span>`)).join("");
+}
+
+// Returns the attributes of a tag from some of its tokens on.
+function attributesFrom(text, tokens) {
+  const end = tokens.findIndex(([kind]) => kind === "tag");
+  return tokens.slice(0, end < 0 ? undefined : end).filter(([kind]) => kind === "attribute").map(([, begin, after]) => text.slice(begin, after));
+}
+
+// Returns what stands at a position: the kind, the part of the word before it, the element, its parent, its attributes (in a name of one, all others), and the last one before.
+function contextAt(text, at) {
+  const open = [], tokens = tokensOf(text);
+  let element = "", attributes = [];
+  for (const [i, [kind, begin, end]] of tokens.entries()) {
+    const word = text.slice(begin, end), here = { word: text.slice(begin, at), element, parent: open.at(-1) ?? "", attributes, attribute: attributes.at(-1) ?? "" };
+    const isHere = begin < at && at <= end;
+    if (kind === "tag" && word[0] === "<") {
+      if (isHere) return { ...here, kind: word[1] === "/" ? "end" : "element", word: here.word.replace(/^<\/?/, "") };
+      if (word[1] === "/") open.pop();
+      else [element, attributes] = [word.slice(1), []];
+    } else if (kind === "tag") {
+      if (isHere && at < end) return { ...here, kind: "none" };
+      if (word === ">" && element) open.push(element);
+      element = "";
+    } else if (kind === "attribute") {
+      if (isHere) return { ...here, kind, attributes: [...attributes, ...attributesFrom(text, tokens.slice(i + 1))] };
+      attributes = [...attributes, word];
+    } else if (kind === "value" && isHere && (at < end || !/^(["']).*\1$/s.test(word))) return { ...here, kind, word: /[\w.]*$/.exec(here.word)[0] };
+    else if (kind === "text" && isHere) return element ? { ...here, kind: "attribute", word: "", attributes: [...attributes, ...attributesFrom(text, tokens.slice(i + 1))] } : { ...here, kind, word: /[\w.]*$/.exec(here.word)[0] };
+  }
+  return { kind: "text", word: "", element: "", parent: open.at(-1) ?? "", attributes: [], attribute: "" };
+}
+
+// Returns the kind of an element that stands in a parent. Some elements mean different things in different parents.
+const kindOf = (language, element, parent) => language[element]?.find(({ in: parents }) => parents.includes(parent)) ?? language[element]?.[0];
+
+// Returns the names that expressions of a text may use.
+function namesIn(text) {
+  const found = [...text.matchAll(/\b(?:name|velocity)\s*=\s*["']([A-Za-z_]\w*)["']/g)].map((match) => match[1]);
+  return [...new Set([...found.sort(), ...FUNCTIONS.map((name) => `${name}(`), ...OPERATORS, "pi", "time"])];
+}
+
+// Returns what a new element looks like; "|" marks where the caret goes.
+function elementText(name, { attributes, holds, hasText }) {
+  const needed = Object.entries(attributes).filter(([, { isNeeded }]) => isNeeded).map(([attribute]) => ` ${attribute}=""`).join("");
+  const text = `${name}${needed}${holds.length || hasText ? `></${name}>` : "/>"}`;
+  return needed ? text.replace('""', '"|"') : text.replace(/><\/|\/>/, (end) => (end === "/>" ? "|/>" : ">|</"));
+}
+
+// Returns the words that may stand at a position, each as {label, text, note}, where text replaces the part of the word that is there.
+function wordsAt(text, at, language) {
+  const { kind, word, element, parent, attributes, attribute } = contextAt(text, at);
+  const begins = ({ label }) => label.toLowerCase().startsWith(word.toLowerCase());
+  let words = [];
+  if (kind === "element") {
+    words = Object.keys(language).map((name) => [name, kindOf(language, name, parent)]).filter(([, { in: parents }]) => (parent ? parents.includes(parent) : parents.length === 0))
+      .map(([name, known]) => ({ label: name, text: elementText(name, known), note: known.text }));
+  } else if (kind === "end") words = parent ? [{ label: parent, text: `${parent}>`, note: "" }] : [];
+  else if (kind === "attribute") {
+    words = Object.entries(kindOf(language, element, parent)?.attributes ?? {}).filter(([name]) => !attributes.includes(name)).map(([name, { text: note }]) => ({ label: name, text: `${name}="|"`, note }));
+  } else if (kind === "value" || (kind === "text" && parent)) {
+    const values = kind === "value" ? (kindOf(language, element, parent)?.attributes[attribute]?.values ?? []) : [];
+    const free = kind === "text" || !["name", "velocity", "description", "unit", "displayUnit"].includes(attribute);
+    words = values.length > 0 ? values.map((value) => ({ label: value, text: value, note: "" })) : free && word ? namesIn(text).map((name) => ({ label: name, text: name, note: "" })) : [];
+  }
+  const found = words.filter(begins);
+  return { word, words: found.length === 1 && found[0].label === word ? [] : found };
+}
