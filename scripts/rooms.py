@@ -42,7 +42,7 @@ LAGC = House(
     src/compiler/read/shapes
     src/compiler/read/elements
     src/compiler/read
-    src/compiler/program/values
+    src/compiler/program/codegen
     src/compiler/program/expressions
     src/compiler/program/series
     src/compiler/program

@@ -1,5 +1,5 @@
 /*
- * Assembles a system in memory: encodes the routines as instruction tables, fills struct Lagrangian with metadata and
+ * Assembles a system in memory: encodes the functions as instruction tables, fills struct Lagrangian with metadata and
  * with the interpreter's functions, and sets the parts of the runtime that the linker selects in an FMU. Nothing is
  * freed, as a process has one system.
  */
@@ -39,10 +39,10 @@ static const struct Solver *solver_named(const char *name) {
   return NULL;
 }
 
-static const uint32_t *code_of(const struct Encoding *encoding, const struct Routine *routine) {
+static const uint32_t *code_of(const struct Encoding *encoding, const struct IrFunction *ir) {
   struct Words words = {0};
-  if (routine == NULL) return NULL;
-  encode(encoding, routine, &words);
+  if (ir == NULL) return NULL;
+  encode(encoding, ir, &words);
   return words.items;
 }
 
@@ -118,7 +118,8 @@ static void fill_interpreter(const struct Encoding *encoding) {
   const struct Program *program = encoding->program;
   interpreter.coordinate_count = program->equations->count;
   interpreter.parameter_constants_count = program->parameter_constants->count;
-  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++) interpreter.code[i] = code_of(encoding, program->routines[i]);
+  for (enum FunctionName i = 0; i < IR_FUNCTION_COUNT; i++)
+    interpreter.code[i] = code_of(encoding, program->ir_functions[i]);
   add_series(encoding, FUNCTION_START, FUNCTION_SERIES, program->series);
   add_series(encoding, FUNCTION_OUTPUT_SERIES, FUNCTION_OUTPUT_SERIES, program->output_series);
   add_series(encoding, FUNCTION_WATCHED_LIMIT, FUNCTION_WATCHED_LIMIT, program->watched_series);

@@ -162,7 +162,7 @@ static void output_series(const struct Point *point, int order, const Series *in
 }
 
 /* Runs the table of a result and returns its value; NAN without a table. */
-static double value_of(const struct RoutineTables *tables, struct Frame *frame, size_t result) {
+static double value_of(const struct IrTables *tables, struct Frame *frame, size_t result) {
   double *value = &interpreter.values[tables->slot[result]];
   *value = NAN;
   frame->base[SPACE_TARGET] = interpreter.values;

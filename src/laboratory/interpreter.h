@@ -18,11 +18,11 @@ struct Limits {
 /* The tables of a system, and their workspace. */
 struct Interpreter {
   struct InstructionTables tables;
-  /* table of each function with one routine; of series: for the coefficients 0 */
+  /* table of each function with one instruction list; of series: for the coefficients 0 */
   const uint32_t *code[FUNCTION_COUNT];
-  const uint32_t *order[FUNCTION_COUNT];       /* of series: table for the coefficients k */
-  struct RoutineTables results, results_along; /* from encode_all() */
-  double *values;                              /* workspace for the targets of a table of results */
+  const uint32_t *order[FUNCTION_COUNT];  /* of series: table for the coefficients k */
+  struct IrTables results, results_along; /* from encode_all() */
+  double *values;                         /* workspace for the targets of a table of results */
   size_t coordinate_count,
       parameter_constants_count; /* counts; parameter_constants_count excludes the local variables of prepare() */
   size_t mass_row;               /* see struct SeriesProgram */

@@ -20,7 +20,8 @@
  */
 static const double weight_of_fixed = 1e12;
 
-static void weigh_fixed(const struct Program *program, struct Values *values, const struct LoopedBlock *looped) {
+static void weigh_fixed(const struct Program *program, struct CodeGenerator *generator,
+                        const struct LoopedBlock *looped) {
   const struct Model *model = program->model;
   const struct InertiaBlock *block = looped->block;
   Slot weight = slot_in(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
@@ -28,50 +29,49 @@ static void weigh_fixed(const struct Program *program, struct Values *values, co
     size_t row = block->coordinates[i];
     if (row >= model->coordinates.count || !model->coordinates.items[row].is_fixed) continue;
     Slot mass = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    routine_append(values->routine, PRODUCT, mass, mass, weight, 0);
+    ir_append(generator->ir, PRODUCT, mass, mass, weight, 0);
   }
 }
 
 /* Sets the nonsymmetric columns of K to 0: forces that depend on others take no part in corrections and impulses. */
-static void leave_nonsymmetric_out(struct Values *values, const struct LoopedBlock *looped) {
+static void leave_nonsymmetric_out(struct CodeGenerator *generator, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    values_copy(values, slot_in(SPACE_MASS, first + i), ZERO);
+    generator_copy(generator, slot_in(SPACE_MASS, first + i), ZERO);
 }
 
 /* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */
-static void append_solved(const struct Program *program, struct Values *values, size_t number, const Node *right_side,
-                          bool starting) {
+static void append_solved(const struct Program *program, struct CodeGenerator *generator, size_t number,
+                          const Node *right_side, bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
-  append_masses(values, looped);
-  leave_nonsymmetric_out(values, looped);
-  if (starting) weigh_fixed(program, values, looped);
-  append_factor(values, &program->blocks, number);
-  append_solution(values, &program->blocks, number, right_side);
+  append_masses(generator, looped);
+  leave_nonsymmetric_out(generator, looped);
+  if (starting) weigh_fixed(program, generator, looped);
+  append_factor(generator, &program->blocks, number);
+  append_solution(generator, &program->blocks, number, right_side);
 }
 
 /*
  * Appends the correction of one block: solves for side, then copies the changes of its coordinates and the last pivots
  * of its constraints to the targets.
  */
-static void append_block(const struct Program *program, struct Values *values, size_t number, const Node *right_side,
-                         bool starting) {
+static void append_block(const struct Program *program, struct CodeGenerator *generator, size_t number,
+                         const Node *right_side, bool starting) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   const struct InertiaBlock *block = looped->block;
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
-  append_solved(program, values, number, right_side, starting);
+  append_solved(program, generator, number, right_side, starting);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     Slot pivot = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n)
-      routine_copy(values->routine, target_slot(row), slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
-    else routine_copy(values->routine, target_slot(row + constraints), pivot);
+    if (row < n) ir_copy(generator->ir, target_slot(row), slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+    else ir_copy(generator->ir, target_slot(row + constraints), pivot);
   }
 }
 
 /* Computes the elements and right sides of all constrained blocks, and the further nodes. */
-static void compute_blocks(const struct Program *program, struct Values *values, const Node *right_side,
+static void compute_blocks(const struct Program *program, struct CodeGenerator *generator, const Node *right_side,
                            const Node *further, size_t further_count) {
   struct NodeList targets = {0};
   append_nodes(&targets, further, further_count);
@@ -81,7 +81,7 @@ static void compute_blocks(const struct Program *program, struct Values *values,
     append_elements(&targets, block);
     for (size_t i = 0; i < block->count; i++) append_node(&targets, right_side[block->coordinates[i]]);
   }
-  values_compute(values, targets.nodes, targets.count, false);
+  generator_compute(generator, targets.nodes, targets.count, false);
 }
 
 /* True if the row belongs to a kinematic tree that has constraints. */
@@ -91,12 +91,12 @@ static bool is_in_tree(const struct Program *program, size_t row) {
 }
 
 /* Copies the changes and pivots of kinematic trees, which are expressions, to the targets. */
-static void append_trees(const struct Program *program, struct Values *values, const Node *change) {
+static void append_trees(const struct Program *program, struct CodeGenerator *generator, const Node *change) {
   size_t n = program->equations->count, constraints = program->equations->constraints->count;
-  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(i), is_in_tree(program, i) ? change[i] : ZERO);
+  for (size_t i = 0; i < n; i++) generator_copy(generator, target_slot(i), is_in_tree(program, i) ? change[i] : ZERO);
   for (size_t j = 0; j < constraints; j++)
     if (is_in_tree(program, n + j))
-      values_copy(values, target_slot(n + constraints + j), program->expressions->corrections.pivot[j]);
+      generator_copy(generator, target_slot(n + constraints + j), program->expressions->corrections.pivot[j]);
 }
 
 /* Returns the nodes of a correction outside blocks that are factored: slopes, pivots, right sides in trees. */
@@ -112,56 +112,56 @@ static struct NodeList nodes_of_correction(const struct Program *program, const 
 }
 
 /* Builds a correction for side, which has an element for each row of K. starting: fixed coordinates stay. */
-static struct Routine *correction_routine(const struct Program *program, struct Values *values, const Node *right_side,
-                                          bool starting) {
-  struct Routine *routine = values_begin(values);
+static struct IrFunction *build_correction(const struct Program *program, struct CodeGenerator *generator,
+                                           const Node *right_side, bool starting) {
+  struct IrFunction *ir = generator_begin(generator);
   const struct Equations *equations = program->equations;
   const Node *slope = program->expressions->corrections.slope;
   size_t n = equations->count, constraints = equations->constraints->count;
   const struct NodeList further = nodes_of_correction(program, right_side);
-  compute_blocks(program, values, right_side, further.nodes, further.count);
-  append_trees(program, values, right_side);
+  compute_blocks(program, generator, right_side, further.nodes, further.count);
+  append_trees(program, generator, right_side);
   for (size_t j = 0; j < constraints; j++) {
-    values_copy(values, target_slot(n + j), right_side[n + j]);
-    values_copy(values, target_slot(n + 2 * constraints + j), slope[j]);
+    generator_copy(generator, target_slot(n + j), right_side[n + j]);
+    generator_copy(generator, target_slot(n + 2 * constraints + j), slope[j]);
   }
   for (size_t b = 0; b < program->blocks.count; b++)
-    if (program->blocks.items[b].block->constraint_count > 0) append_block(program, values, b, right_side, starting);
-  return routine;
+    if (program->blocks.items[b].block->constraint_count > 0) append_block(program, generator, b, right_side, starting);
+  return ir;
 }
 
-struct Routine *correct_positions_routine(const struct Program *program, struct Values *values) {
-  return correction_routine(program, values, program->expressions->corrections.position, false);
+struct IrFunction *build_correct_positions(const struct Program *program, struct CodeGenerator *generator) {
+  return build_correction(program, generator, program->expressions->corrections.position, false);
 }
 
-struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values) {
-  return correction_routine(program, values, program->expressions->corrections.velocity, false);
+struct IrFunction *build_correct_velocities(const struct Program *program, struct CodeGenerator *generator) {
+  return build_correction(program, generator, program->expressions->corrections.velocity, false);
 }
 
-struct Routine *start_positions_routine(const struct Program *program, struct Values *values) {
-  return correction_routine(program, values, program->expressions->corrections.position, true);
+struct IrFunction *build_start_positions(const struct Program *program, struct CodeGenerator *generator) {
+  return build_correction(program, generator, program->expressions->corrections.position, true);
 }
 
-struct Routine *start_velocities_routine(const struct Program *program, struct Values *values) {
-  return correction_routine(program, values, program->expressions->corrections.velocity, true);
+struct IrFunction *build_start_velocities(const struct Program *program, struct CodeGenerator *generator) {
+  return build_correction(program, generator, program->expressions->corrections.velocity, true);
 }
 
-struct Routine *responses_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
+struct IrFunction *build_responses(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
   const Node *impulse = program->expressions->corrections.impulse;
   size_t n = program->equations->count;
-  compute_blocks(program, values, impulse, impulse, n);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(i), ZERO);
-  for (size_t i = 0; i < n; i++) values_copy(values, target_slot(n + i), impulse[i]);
+  compute_blocks(program, generator, impulse, impulse, n);
+  for (size_t i = 0; i < n; i++) generator_copy(generator, target_slot(i), ZERO);
+  for (size_t i = 0; i < n; i++) generator_copy(generator, target_slot(n + i), impulse[i]);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
     if (block->constraint_count == 0) continue;
-    append_solved(program, values, b, impulse, false);
+    append_solved(program, generator, b, impulse, false);
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
-        routine_copy(values->routine, target_slot(block->coordinates[i]),
-                     slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+        ir_copy(generator->ir, target_slot(block->coordinates[i]),
+                slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
-  return routine;
+  return ir;
 }

@@ -3,12 +3,12 @@
 
 #include "program/program.h"
 
-struct Routine *correct_positions_routine(const struct Program *program, struct Values *values);
-struct Routine *correct_velocities_routine(const struct Program *program, struct Values *values);
+struct IrFunction *build_correct_positions(const struct Program *program, struct CodeGenerator *generator);
+struct IrFunction *build_correct_velocities(const struct Program *program, struct CodeGenerator *generator);
 
 /* Build the same for the start values, where coordinates with fixed start values keep them. */
-struct Routine *start_positions_routine(const struct Program *program, struct Values *values);
-struct Routine *start_velocities_routine(const struct Program *program, struct Values *values);
+struct IrFunction *build_start_positions(const struct Program *program, struct CodeGenerator *generator);
+struct IrFunction *build_start_velocities(const struct Program *program, struct CodeGenerator *generator);
 
 /* Builds the response of the velocities to impulses of contacts and frictions; see respond in include/lagrangian.h. */
-struct Routine *responses_routine(const struct Program *program, struct Values *values);
+struct IrFunction *build_responses(const struct Program *program, struct CodeGenerator *generator);

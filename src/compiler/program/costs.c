@@ -8,13 +8,13 @@
 #include <math.h>
 
 /* Returns the operations of an instruction list; 0 for NULL. */
-static double operations_of(const struct Routine *routine) {
+static double operations_of(const struct IrFunction *ir) {
   /* an elementary function takes the time of about 20 additions */
   enum { OPERATIONS_OF_CALL = 20 };
-  if (routine == NULL) return 0.0;
-  double count = (double)routine->operation_count;
-  for (size_t i = 0; i < routine->count; i++)
-    if (routine->instructions[i].opcode == CALL || routine->instructions[i].opcode == CALL_OF_TWO)
+  if (ir == NULL) return 0.0;
+  double count = (double)ir->operation_count;
+  for (size_t i = 0; i < ir->count; i++)
+    if (ir->instructions[i].opcode == CALL || ir->instructions[i].opcode == CALL_OF_TWO)
       count += OPERATIONS_OF_CALL - 1;
   return count;
 }
@@ -22,8 +22,8 @@ static double operations_of(const struct Routine *routine) {
 /* Returns the operations of a Jacobian, by elements or by directional derivatives; 0 without one. */
 static double operations_of_jacobian(const struct Program *program) {
   if (program->expressions->jacobian == NULL || program->expressions->jacobian->value != NULL)
-    return operations_of(program->routines[FUNCTION_JACOBIAN]);
-  return (double)program->interface->state_count * operations_of(program->routines[FUNCTION_DIRECTIONAL]);
+    return operations_of(program->ir_functions[FUNCTION_JACOBIAN]);
+  return (double)program->interface->state_count * operations_of(program->ir_functions[FUNCTION_DIRECTIONAL]);
 }
 
 /*
@@ -43,7 +43,7 @@ static void count_factors(const struct Program *program, double *elements, doubl
 struct OperationCounts operation_counts_of(const struct Program *program) {
   double elements = 0.0, squares = 0.0;
   if (program->expressions->jacobian != NULL) count_factors(program, &elements, &squares);
-  return (struct OperationCounts){.derivatives = operations_of(program->routines[FUNCTION_DERIVATIVES]),
+  return (struct OperationCounts){.derivatives = operations_of(program->ir_functions[FUNCTION_DERIVATIVES]),
                                   .jacobian = operations_of_jacobian(program),
                                   .series = operations_of(program->series->order),
                                   .recurrences = (double)program->series->recurrences,
@@ -56,7 +56,7 @@ enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
 
 /* Returns the work of one evaluation by a Runge-Kutta or implicit method, with its share of linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
-  double work = 250.0 + operations_of(program->routines[FUNCTION_DERIVATIVES]);
+  double work = 250.0 + operations_of(program->ir_functions[FUNCTION_DERIVATIVES]);
   if (program->expressions->jacobian == NULL) return work;
   double elements, squares, systems = 4.0 * STAGES - 2.0;
   count_factors(program, &elements, &squares);
@@ -66,7 +66,7 @@ static double work_of_evaluation(const struct Program *program) {
 
 static double work_of_series(const struct Program *program) {
   double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
-  return 380.0 + 4.0 * operations_of(program->routines[FUNCTION_DERIVATIVES]) +
+  return 380.0 + 4.0 * operations_of(program->ir_functions[FUNCTION_DERIVATIVES]) +
          ORDER * (0.5 * operations_of(program->series->order) + 1.5 * states + 0.45 * ORDER * recurrences);
 }
 
@@ -79,14 +79,14 @@ static double work_of_series(const struct Program *program) {
 struct StepWork step_work_of(const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };
   bool has_series = program->equations->method->series == ALL_TERMS && program->series != NULL;
-  double share = program->routines[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
+  double share = program->ir_functions[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
   double evaluation = share * work_of_evaluation(program);
-  double step = 250.0 + CORRECTIONS * (operations_of(program->routines[FUNCTION_CORRECT_POSITIONS]) +
-                                       operations_of(program->routines[FUNCTION_CORRECT_VELOCITIES]));
+  double step = 250.0 + CORRECTIONS * (operations_of(program->ir_functions[FUNCTION_CORRECT_POSITIONS]) +
+                                       operations_of(program->ir_functions[FUNCTION_CORRECT_VELOCITIES]));
   if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
-  if (program->routines[FUNCTION_INDICATORS] != NULL)
-    step += SEARCHES * (LOOK + operations_of(program->routines[FUNCTION_INDICATORS]) +
+  if (program->ir_functions[FUNCTION_INDICATORS] != NULL)
+    step += SEARCHES * (LOOK + operations_of(program->ir_functions[FUNCTION_INDICATORS]) +
                         2.0 * ORDER * (double)program->interface->state_count);
   return (struct StepWork){evaluation, step,
-                           EVENT + 4.0 * evaluation + operations_of(program->routines[FUNCTION_SWITCHING_VALUES])};
+                           EVENT + 4.0 * evaluation + operations_of(program->ir_functions[FUNCTION_SWITCHING_VALUES])};
 }

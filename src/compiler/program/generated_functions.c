@@ -5,44 +5,44 @@
 #include "program/least_forces.h"
 #include "program/program.h"
 
-static struct Routine *prepare_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
+static struct IrFunction *build_prepare(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
   struct NodeList targets = {0};
   const struct Inertia *inertia = program->equations->inertia;
-  append_nodes(&targets, values->parameter_constants->nodes, values->parameter_constants->count);
+  append_nodes(&targets, generator->parameter_constants->nodes, generator->parameter_constants->count);
   for (size_t i = 0; i < inertia->pivot_count; i++) {
     const struct Pivot *pivot = &inertia->pivots[i];
-    if (pivot_is_parameter_constants(values->graph, pivot))
+    if (pivot_is_parameter_constants(generator->graph, pivot))
       append_nodes(&targets, (const Node[]){pivot->value, pivot->diagonal, pivot->scale}, 3);
   }
-  values_compute(values, targets.nodes, targets.count, true);
+  generator_compute(generator, targets.nodes, targets.count, true);
   for (size_t i = 0; i < inertia->pivot_count; i++)
-    if (pivot_is_parameter_constants(values->graph, &inertia->pivots[i]))
-      append_pivot_check(values, &inertia->pivots[i]);
-  for (size_t i = 0; i < values->parameter_constants->count; i++)
-    values_copy(values, target_slot(i), values->parameter_constants->nodes[i]);
-  return routine;
+    if (pivot_is_parameter_constants(generator->graph, &inertia->pivots[i]))
+      append_pivot_check(generator, &inertia->pivots[i]);
+  for (size_t i = 0; i < generator->parameter_constants->count; i++)
+    generator_copy(generator, target_slot(i), generator->parameter_constants->nodes[i]);
+  return ir;
 }
 
-static struct Routine *derivatives_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
+static struct IrFunction *build_derivatives(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
   size_t n = program->equations->count;
-  append_accelerations(values, program->equations, &program->blocks, false);
+  append_accelerations(generator, program->equations, &program->blocks, false);
   const struct NodeList *rates = &program->equations->rates;
-  hold_unknowns(values, program->equations, &program->blocks, program->expressions->unknowns);
-  values_compute(values, rates->nodes, rates->count, false);
-  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_slot(i), slot_in(SPACE_STATE, n + i));
-  for (size_t i = 0; i < rates->count; i++) values_copy(values, target_slot(2 * n + i), rates->nodes[i]);
-  return routine;
+  hold_unknowns(generator, program->equations, &program->blocks, program->expressions->unknowns);
+  generator_compute(generator, rates->nodes, rates->count, false);
+  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_in(SPACE_STATE, n + i));
+  for (size_t i = 0; i < rates->count; i++) generator_copy(generator, target_slot(2 * n + i), rates->nodes[i]);
+  return ir;
 }
 
 /* Appends the accelerations if some node depends on them; otherwise only the factors of the blocks. */
-static void append_needed_accelerations(const struct Program *program, struct Values *values, const Node *nodes,
-                                        size_t count) {
+static void append_needed_accelerations(const struct Program *program, struct CodeGenerator *generator,
+                                        const Node *nodes, size_t count) {
   bool needed = false;
-  for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(values->graph, nodes[i], ACCELERATION);
-  if (needed) append_accelerations(values, program->equations, &program->blocks, true);
-  else append_factors(values, &program->blocks);
+  for (size_t i = 0; i < count && !needed; i++) needed = graph_depends_on(generator->graph, nodes[i], ACCELERATION);
+  if (needed) append_accelerations(generator, program->equations, &program->blocks, true);
+  else append_factors(generator, &program->blocks);
 }
 
 /* The location of each row of K in the blocks that are factored at run time. */
@@ -69,7 +69,7 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
  * Appends the directional derivatives of the first count accelerations and constraint forces along the seed, to the
  * targets from first on. further: nodes that are computed afterwards and may depend on accelerations.
  */
-static void append_along(const struct Program *program, struct Values *values, size_t first, size_t count,
+static void append_along(const struct Program *program, struct CodeGenerator *generator, size_t first, size_t count,
                          const Node *further, size_t further_count) {
   const struct Equations *equations = program->equations;
   const Node *along = program->expressions->along;
@@ -80,171 +80,173 @@ static void append_along(const struct Program *program, struct Values *values, s
   struct NodeList all = {0};
   append_nodes(&all, needed.nodes, needed.count);
   append_nodes(&all, further, further_count);
-  append_needed_accelerations(program, values, all.nodes, all.count);
-  values_compute(values, needed.nodes, needed.count, false);
+  append_needed_accelerations(program, generator, all.nodes, all.count);
+  generator_compute(generator, needed.nodes, needed.count, false);
   struct BlockRows rows = block_rows_create(&program->blocks, row_total);
-  for (size_t b = 0; b < program->blocks.count; b++) append_solution(values, &program->blocks, b, along);
+  for (size_t b = 0; b < program->blocks.count; b++) append_solution(generator, &program->blocks, b, along);
   for (size_t i = 0; i < count; i++)
-    routine_copy(values->routine, target_slot(first + i),
-                 rows.number[i] > 0 ? rows.right_side[i] : values_slot(values, along[i]));
+    ir_copy(generator->ir, target_slot(first + i),
+            rows.number[i] > 0 ? rows.right_side[i] : generator_slot(generator, along[i]));
 }
 
-static struct Routine *directional_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
+static struct IrFunction *build_directional(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
   const struct Expressions *expressions = program->expressions;
   size_t n = program->equations->count;
   size_t rates = program->equations->rates.count;
-  append_along(program, values, n, n, expressions->rates_along, rates);
-  hold_solutions(values, &program->blocks, expressions->unknowns_along);
-  values_compute(values, expressions->rates_along, rates, false);
-  for (size_t i = 0; i < n; i++) routine_copy(values->routine, target_slot(i), slot_in(SPACE_SEED_STATE, n + i));
-  for (size_t i = 0; i < rates; i++) values_copy(values, target_slot(2 * n + i), expressions->rates_along[i]);
-  return routine;
+  append_along(program, generator, n, n, expressions->rates_along, rates);
+  hold_solutions(generator, &program->blocks, expressions->unknowns_along);
+  generator_compute(generator, expressions->rates_along, rates, false);
+  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_in(SPACE_SEED_STATE, n + i));
+  for (size_t i = 0; i < rates; i++) generator_copy(generator, target_slot(2 * n + i), expressions->rates_along[i]);
+  return ir;
 }
 
 /* Solves for the multipliers of the blocks that are factored at run time; their symbols then name the solutions. */
-static void append_multipliers(const struct Program *program, struct Values *values) {
+static void append_multipliers(const struct Program *program, struct CodeGenerator *generator) {
   const struct WeightedGradient *gradient = program->expressions->weighted_gradient;
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     const struct InertiaBlock *block = looped->block;
     for (size_t i = 0; i < block->count; i++)
-      values_compute(values, &gradient->right_side[block->coordinates[i]], 1, false);
-    append_solution(values, &program->blocks, b, gradient->right_side);
+      generator_compute(generator, &gradient->right_side[block->coordinates[i]], 1, false);
+    append_solution(generator, &program->blocks, b, gradient->right_side);
     for (size_t i = 0; i < block->count; i++)
-      values_hold(values, gradient->multiplier[block->coordinates[i]],
-                  slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      generator_define(generator, gradient->multiplier[block->coordinates[i]],
+                       slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 
-static struct Routine *weighted_gradient_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
+static struct IrFunction *build_weighted_gradient(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
   const struct WeightedGradient *gradient = program->expressions->weighted_gradient;
-  append_needed_accelerations(program, values, gradient->elements, gradient->count);
-  append_multipliers(program, values);
-  values_compute(values, gradient->elements, gradient->count, false);
-  for (size_t i = 0; i < gradient->count; i++) values_copy(values, target_slot(i), gradient->elements[i]);
-  return routine;
+  append_needed_accelerations(program, generator, gradient->elements, gradient->count);
+  append_multipliers(program, generator);
+  generator_compute(generator, gradient->elements, gradient->count, false);
+  for (size_t i = 0; i < gradient->count; i++) generator_copy(generator, target_slot(i), gradient->elements[i]);
+  return ir;
 }
 
 /*
  * Appends a column of the Jacobian: copies its right sides, which a column has for all rows of a block or for none,
  * then solves each block and copies the solutions.
  */
-static void append_jacobian_column(const struct Program *program, struct Values *values, size_t column,
+static void append_jacobian_column(const struct Program *program, struct CodeGenerator *generator, size_t column,
                                    struct BlockRows *rows) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   size_t n = program->equations->count, first = jacobian->start[column], end = jacobian->start[column + 1];
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e];
     bool in_block = row >= n && row < 2 * n && rows->number[row - n] > 0;
-    values_copy(values, in_block ? rows->right_side[row - n] : target_slot(e), jacobian->value[e]);
+    generator_copy(generator, in_block ? rows->right_side[row - n] : target_slot(e), jacobian->value[e]);
   }
   for (size_t e = first; e < end; e++) {
     size_t row = jacobian->row[e], number = row >= n && row < 2 * n ? rows->number[row - n] : 0;
     if (number == 0) continue;
-    if (rows->solved[number - 1] != column + 1) routine_append(values->routine, SOLVE, (Slot)(number - 1), 0, 0, 0);
+    if (rows->solved[number - 1] != column + 1) ir_append(generator->ir, SOLVE, (Slot)(number - 1), 0, 0, 0);
     rows->solved[number - 1] = column + 1;
-    routine_copy(values->routine, target_slot(e), rows->right_side[row - n]);
+    ir_copy(generator->ir, target_slot(e), rows->right_side[row - n]);
   }
 }
 
 /* Copies the right sides of the constraints in this column; *next runs through the list, which is sorted by columns. */
-static void append_constraint_right_sides(const struct Program *program, struct Values *values, size_t column,
+static void append_constraint_right_sides(const struct Program *program, struct CodeGenerator *generator, size_t column,
                                           const struct BlockRows *rows, size_t *next) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
   for (; *next < jacobian->right_side_count && jacobian->right_sides[*next].column == column; (*next)++) {
     const struct ConstraintRightSide *right_side = &jacobian->right_sides[*next];
-    values_copy(values, rows->right_side[program->equations->count + right_side->constraint], right_side->value);
+    generator_copy(generator, rows->right_side[program->equations->count + right_side->constraint], right_side->value);
   }
 }
 
-static struct Routine *jacobian_routine(const struct Program *program, struct Values *values) {
+static struct IrFunction *build_jacobian(const struct Program *program, struct CodeGenerator *generator) {
   const struct JacobianExpressions *jacobian = program->expressions->jacobian;
-  struct Routine *routine = values_begin(values);
+  struct IrFunction *ir = generator_begin(generator);
   struct BlockRows rows = block_rows_create(&program->blocks, row_count(program->equations));
   struct NodeList targets = {0};
   size_t next_right_side = 0;
   append_nodes(&targets, jacobian->value, jacobian->count);
   for (size_t i = 0; i < jacobian->right_side_count; i++) append_node(&targets, jacobian->right_sides[i].value);
-  append_needed_accelerations(program, values, targets.nodes, targets.count);
-  values_compute(values, targets.nodes, targets.count, false);
+  append_needed_accelerations(program, generator, targets.nodes, targets.count);
+  generator_compute(generator, targets.nodes, targets.count, false);
   for (size_t column = 0; column < program->interface->state_count; column++) {
-    append_constraint_right_sides(program, values, column, &rows, &next_right_side);
-    append_jacobian_column(program, values, column, &rows);
+    append_constraint_right_sides(program, generator, column, &rows, &next_right_side);
+    append_jacobian_column(program, generator, column, &rows);
   }
-  return routine;
+  return ir;
 }
 
 /* Builds linear(): row i holds row i of A, row i of B, and c_i. */
-static struct Routine *linear_routine(const struct Program *program, struct Values *values) {
+static struct IrFunction *build_linear(const struct Program *program, struct CodeGenerator *generator) {
   const struct LinearSystem *linear = program->expressions->linear;
-  struct Routine *routine = values_begin(values);
+  struct IrFunction *ir = generator_begin(generator);
   size_t states = linear->states, inputs = linear->inputs, columns = states + inputs + 1;
   for (size_t i = 0; i < states; i++) {
-    for (size_t j = 0; j < states; j++) values_copy(values, target_slot(i * columns + j), linear->a[i * states + j]);
+    for (size_t j = 0; j < states; j++)
+      generator_copy(generator, target_slot(i * columns + j), linear->a[i * states + j]);
     for (size_t j = 0; j < inputs; j++)
-      values_copy(values, target_slot(i * columns + states + j), linear->b[i * inputs + j]);
-    values_copy(values, target_slot(i * columns + states + inputs), linear->c[i]);
+      generator_copy(generator, target_slot(i * columns + states + j), linear->b[i * inputs + j]);
+    generator_copy(generator, target_slot(i * columns + states + inputs), linear->c[i]);
   }
-  return routine;
+  return ir;
 }
 
 /* Builds start values or their directional derivatives. Uses no parameter constants, as prepare() may fail. */
-static struct Routine *starts_routine(const struct Program *program, struct Values *values, const Node *nodes) {
+static struct IrFunction *build_starts(const struct Program *program, struct CodeGenerator *generator,
+                                       const Node *nodes) {
   const struct Interface *interface = program->interface;
-  struct Routine *routine = values_begin(values);
+  struct IrFunction *ir = generator_begin(generator);
   size_t count = interface->state_count;
-  values_compute(values, nodes, count, true);
+  generator_compute(generator, nodes, count, true);
   for (size_t i = 0; i < count; i++)
     if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
-      values_copy(values, target_slot(i), nodes[i]);
-  return routine;
+      generator_copy(generator, target_slot(i), nodes[i]);
+  return ir;
 }
 
-static struct Routine *initial_state_routine(const struct Program *program, struct Values *values) {
-  return starts_routine(program, values, program->expressions->initial);
+static struct IrFunction *build_initial_state(const struct Program *program, struct CodeGenerator *generator) {
+  return build_starts(program, generator, program->expressions->initial);
 }
 
-static struct Routine *initial_state_along_routine(const struct Program *program, struct Values *values) {
-  return starts_routine(program, values, program->expressions->initial_along);
+static struct IrFunction *build_initial_state_along(const struct Program *program, struct CodeGenerator *generator) {
+  return build_starts(program, generator, program->expressions->initial_along);
 }
 
-static struct Routine *accelerations_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
-  append_accelerations(values, program->equations, &program->blocks, true);
+static struct IrFunction *build_accelerations(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
+  append_accelerations(generator, program->equations, &program->blocks, true);
   for (size_t i = 0; i < row_count(program->equations); i++)
-    routine_copy(values->routine, target_slot(i), slot_in(SPACE_ACCELERATION, i));
-  return routine;
+    ir_copy(generator->ir, target_slot(i), slot_in(SPACE_ACCELERATION, i));
+  return ir;
 }
 
-static struct Routine *accelerations_along_routine(const struct Program *program, struct Values *values) {
-  struct Routine *routine = values_begin(values);
-  append_along(program, values, 0, row_count(program->equations), NULL, 0);
-  if (program->blocks.count > 0) append_least_forces_along(program, values);
-  return routine;
+static struct IrFunction *build_accelerations_along(const struct Program *program, struct CodeGenerator *generator) {
+  struct IrFunction *ir = generator_begin(generator);
+  append_along(program, generator, 0, row_count(program->equations), NULL, 0);
+  if (program->blocks.count > 0) append_least_forces_along(program, generator);
+  return ir;
 }
 
-struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count) {
-  struct Routine *routine = values_begin(values);
-  values_compute(values, nodes, count, false);
-  for (size_t i = 0; i < count; i++) values_copy(values, target_slot(i), nodes[i]);
-  return routine;
+struct IrFunction *ir_of_targets(struct CodeGenerator *generator, const Node *nodes, size_t count) {
+  struct IrFunction *ir = generator_begin(generator);
+  generator_compute(generator, nodes, count, false);
+  for (size_t i = 0; i < count; i++) generator_copy(generator, target_slot(i), nodes[i]);
+  return ir;
 }
 
-static struct Routine *indicators_routine(const struct Program *program, struct Values *values) {
+static struct IrFunction *build_indicators(const struct Program *program, struct CodeGenerator *generator) {
   const struct SwitchingExpressions *switching = program->equations->switching;
-  return targets_routine(values, switching->indicators, switching->indicator_count);
+  return ir_of_targets(generator, switching->indicators, switching->indicator_count);
 }
 
-static struct Routine *rounding_bounds_routine(const struct Program *program, struct Values *values) {
+static struct IrFunction *build_rounding_bounds(const struct Program *program, struct CodeGenerator *generator) {
   const struct SwitchingExpressions *switching = program->equations->switching;
-  return targets_routine(values, switching->rounding_bounds, switching->indicator_count);
+  return ir_of_targets(generator, switching->rounding_bounds, switching->indicator_count);
 }
 
-static struct Routine *switching_values_routine(const struct Program *program, struct Values *values) {
+static struct IrFunction *build_switching_values(const struct Program *program, struct CodeGenerator *generator) {
   const struct SwitchingExpressions *switching = program->equations->switching;
-  return targets_routine(values, switching->values, switching->value_count);
+  return ir_of_targets(generator, switching->values, switching->value_count);
 }
 
 static bool starts_follow(const struct Program *program) {
@@ -308,61 +310,61 @@ static bool has_results(const struct Program *program) {
 const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_PREPARE] = {"Values that depend on parameters alone", "prepare",
                           "const Real *p, Real *parameter_constants", "parameter_constants", RETURNS_STATUS,
-                          IN_WORKSPACE, IN_LAGRANGIAN, NULL, prepare_routine},
+                          IN_WORKSPACE, IN_LAGRANGIAN, NULL, build_prepare},
     [FUNCTION_INITIAL_STATE] = {"Start values that follow from parameters", "initial_state",
                                 "const struct Point *point, Real *state", "state", RETURNS_NOTHING, IN_WORKSPACE,
-                                IN_LAGRANGIAN, starts_follow, initial_state_routine},
+                                IN_LAGRANGIAN, starts_follow, build_initial_state},
     [FUNCTION_INITIAL_STATE_ALONG] = {"Start values along a direction", "initial_state_along",
                                       "const struct Point *point, const struct Seed *seed, Real *state", "state",
                                       RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, starts_follow,
-                                      initial_state_along_routine},
+                                      build_initial_state_along},
     [FUNCTION_DERIVATIVES] = {"d state / dt", "derivatives", "const struct Point *point, Real *derivative",
-                              "derivative", RETURNS_STATUS, IN_TARGET, IN_LAGRANGIAN, moves, derivatives_routine},
+                              "derivative", RETURNS_STATUS, IN_TARGET, IN_LAGRANGIAN, moves, build_derivatives},
     [FUNCTION_DIRECTIONAL] = {"d state / dt along a direction", "directional",
                               "const struct Point *point, const struct Seed *seed, Real *derivative", "derivative",
-                              RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, moves, directional_routine},
+                              RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, moves, build_directional},
     [FUNCTION_WEIGHTED_GRADIENT] = {"The gradient of a weighted sum of the derivatives and outputs",
                                     "weighted_gradient",
                                     "const struct Point *point, const struct Seed *seed, Real *gradient", "gradient",
                                     RETURNS_STATUS, IN_WORKSPACE, IN_LAGRANGIAN, has_weighted_gradient,
-                                    weighted_gradient_routine},
+                                    build_weighted_gradient},
     [FUNCTION_JACOBIAN] = {"Jacobian matrix", "jacobian", "const struct Point *point, Real *values", "values",
-                           RETURNS_STATUS, IN_WORKSPACE, IN_IMPLICIT, has_jacobian, jacobian_routine},
+                           RETURNS_STATUS, IN_WORKSPACE, IN_IMPLICIT, has_jacobian, build_jacobian},
     [FUNCTION_LINEAR] = {"A, B and c", "linear", "const Real *p, const Real *c, Real *matrix", "matrix",
-                         RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, is_exact, linear_routine},
+                         RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, is_exact, build_linear},
     [FUNCTION_ACCELERATIONS] = {"Accelerations and the forces of constraints", "accelerations",
                                 "const struct Point *point, Real *acceleration", "acceleration", RETURNS_STATUS,
-                                IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, accelerations_routine},
+                                IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, build_accelerations},
     [FUNCTION_ACCELERATIONS_ALONG] = {"The same along a direction", "accelerations_along",
                                       "const struct Point *point, const struct Seed *seed, Real *acceleration",
                                       "acceleration", RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_constrained,
-                                      accelerations_along_routine},
+                                      build_accelerations_along},
     [FUNCTION_CORRECT_POSITIONS] = {"Projection of the coordinates onto the constraints", "correct_positions",
                                     "const struct Point *point, const struct Seed *seed, Real *correction",
                                     "correction", RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_constrained,
-                                    correct_positions_routine},
+                                    build_correct_positions},
     [FUNCTION_CORRECT_VELOCITIES] = {"The same for the velocities", "correct_velocities",
                                      "const struct Point *point, Real *correction", "correction", RETURNS_STATUS,
-                                     IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, correct_velocities_routine},
+                                     IN_WORKSPACE, IN_CONSTRAINTS, is_constrained, build_correct_velocities},
     [FUNCTION_RESPOND] = {"Response to impulses of contacts and frictions", "respond",
                           "const struct Point *point, const Real *da, Real *response", "response", RETURNS_STATUS,
-                          IN_WORKSPACE, IN_CONSTRAINTS, has_contacts, responses_routine},
+                          IN_WORKSPACE, IN_CONSTRAINTS, has_contacts, build_responses},
     [FUNCTION_START_POSITIONS] = {"The same where fixed coordinates stay", "start_positions",
                                   "const struct Point *point, const struct Seed *seed, Real *correction", "correction",
                                   RETURNS_STATUS, IN_WORKSPACE, IN_CONSTRAINTS, is_fixed_at_start,
-                                  start_positions_routine},
+                                  build_start_positions},
     [FUNCTION_START_VELOCITIES] = {"And for the velocities", "start_velocities",
                                    "const struct Point *point, Real *correction", "correction", RETURNS_STATUS,
-                                   IN_WORKSPACE, IN_CONSTRAINTS, is_fixed_at_start, start_velocities_routine},
+                                   IN_WORKSPACE, IN_CONSTRAINTS, is_fixed_at_start, build_start_velocities},
     [FUNCTION_INDICATORS] = {"Event indicators", "indicators",
                              "const struct Point *point, const Real *a, Real *indicator", "indicator", RETURNS_NOTHING,
-                             IN_ARGUMENT, IN_SWITCHES, switches, indicators_routine},
+                             IN_ARGUMENT, IN_SWITCHES, switches, build_indicators},
     [FUNCTION_ROUNDING_BOUNDS] = {"Rounding error bounds of the event indicators", "rounding_bounds",
                                   "const struct Point *point, const Real *a, Real *uncertainty", "uncertainty",
-                                  RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, rounding_bounds_routine},
+                                  RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, switches, build_rounding_bounds},
     [FUNCTION_SWITCHING_VALUES] = {"Values that determine the modes", "switching_values",
                                    "const struct Point *point, const Real *a, Real *value", "value", RETURNS_NOTHING,
-                                   IN_ARGUMENT, IN_SWITCHES, switches, switching_values_routine},
+                                   IN_ARGUMENT, IN_SWITCHES, switches, build_switching_values},
     [FUNCTION_START] = {"d state / dt, and the first coefficients of all series", "start",
                         "const struct Point *point, Real *derivative, Series *restrict w", "derivative", RETURNS_STATUS,
                         IN_TARGET, IN_TAYLOR, has_series, NULL},

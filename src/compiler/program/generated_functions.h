@@ -1,7 +1,7 @@
 /* The functions that lagc generates: declaration, field in struct Lagrangian, and builder of the instructions. */
 #pragma once
 
-#include "program/values/values.h"
+#include "program/codegen/code_generator.h"
 
 struct Program;
 
@@ -23,12 +23,12 @@ enum FunctionName {
   FUNCTION_START_POSITIONS,
   FUNCTION_START_VELOCITIES,
   /* before: struct Lagrangian; from here on: struct SwitchTable, as statements unless switches_are_table */
-  LAGRANGIAN_ROUTINES,
-  FUNCTION_INDICATORS = LAGRANGIAN_ROUTINES,
+  LAGRANGIAN_IR_FUNCTIONS,
+  FUNCTION_INDICATORS = LAGRANGIAN_IR_FUNCTIONS,
   FUNCTION_ROUNDING_BOUNDS,
   FUNCTION_SWITCHING_VALUES,
-  ROUTINE_COUNT, /* from here on: functions with several instruction lists, or one of several of their kind */
-  FUNCTION_START = ROUTINE_COUNT,
+  IR_FUNCTION_COUNT, /* from here on: functions with several instruction lists, or one of several of their kind */
+  FUNCTION_START = IR_FUNCTION_COUNT,
   FUNCTION_SERIES,
   FUNCTION_LIMIT,
   FUNCTION_OUTPUT_SERIES,
@@ -59,7 +59,7 @@ struct GeneratedFunction {
   enum FunctionGroup group;                         /* the struct that has its field, of the same name */
   bool (*is_needed)(const struct Program *program); /* true if the system needs it; NULL: every system does */
   /* Builds its instruction list; NULL for a function that has several. */
-  struct Routine *(*build)(const struct Program *program, struct Values *values);
+  struct IrFunction *(*build)(const struct Program *program, struct CodeGenerator *generator);
 };
 
 extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
@@ -68,4 +68,4 @@ extern const struct GeneratedFunction generated_functions[FUNCTION_COUNT];
 bool has_function(const struct Program *program, enum FunctionName name);
 
 /* Builds an instruction list that computes the nodes and copies them to the targets 0 .. count - 1. */
-struct Routine *targets_routine(struct Values *values, const Node *nodes, size_t count);
+struct IrFunction *ir_of_targets(struct CodeGenerator *generator, const Node *nodes, size_t count);

@@ -40,17 +40,17 @@ static struct Row *rows_create(const struct Program *program) {
 }
 
 /* Solves K (w; y) = (0; F) for the block, whose right side then holds w. */
-static void append_origins(const struct Program *program, struct Values *values, size_t number,
+static void append_origins(const struct Program *program, struct CodeGenerator *generator, size_t number,
                            const struct Row *rows) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   size_t n = program->equations->count;
   for (size_t i = 0; i < looped->block->count; i++) {
     size_t row = looped->block->coordinates[i];
     Slot right_side = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i);
-    if (row < n) values_copy(values, right_side, ZERO);
-    else routine_copy(values->routine, right_side, rows[row - n].force);
+    if (row < n) generator_copy(generator, right_side, ZERO);
+    else ir_copy(generator->ir, right_side, rows[row - n].force);
   }
-  routine_append(values->routine, SOLVE, (Slot)number, 0, 0, 0);
+  ir_append(generator->ir, SOLVE, (Slot)number, 0, 0, 0);
 }
 
 static Slot right_side_of(const struct Program *program, size_t coordinate) {
@@ -62,18 +62,18 @@ static Slot right_side_of(const struct Program *program, size_t coordinate) {
 }
 
 /* Computes dJ w into local variables. */
-static void append_changes(const struct Program *program, struct Values *values, struct Row *rows) {
+static void append_changes(const struct Program *program, struct CodeGenerator *generator, struct Row *rows) {
   const struct Elements *jacobian = &program->equations->constraints->jacobian;
   const Node *along = program->expressions->constraints_along;
-  values_compute(values, along, jacobian->count, false);
+  generator_compute(generator, along, jacobian->count, false);
   for (size_t k = 0; k < jacobian->count; k++) {
     if (along[k] == ZERO) continue;
     struct Row *row = &rows[jacobian->positions[k].row];
     if (!row->is_looped) continue;
-    Slot term = routine_local(values->routine), right_side = right_side_of(program, jacobian->positions[k].column);
-    routine_append(values->routine, PRODUCT, term, values_slot(values, along[k]), right_side, 0);
-    Slot sum = row->has_change ? routine_local(values->routine) : term;
-    if (row->has_change) routine_append(values->routine, SUM, sum, row->change, term, 0);
+    Slot term = ir_new_local(generator->ir), right_side = right_side_of(program, jacobian->positions[k].column);
+    ir_append(generator->ir, PRODUCT, term, generator_slot(generator, along[k]), right_side, 0);
+    Slot sum = row->has_change ? ir_new_local(generator->ir) : term;
+    if (row->has_change) ir_append(generator->ir, SUM, sum, row->change, term, 0);
     row->change = sum;
     row->has_change = true;
   }
@@ -86,25 +86,24 @@ static bool any_changes(const struct Program *program) {
   return any;
 }
 
-void append_least_forces_along(const struct Program *program, struct Values *values) {
+void append_least_forces_along(const struct Program *program, struct CodeGenerator *generator) {
   struct Row *rows = rows_create(program);
   size_t count = program->equations->constraints->count;
   const struct LoopedBlocks *blocks = &program->blocks;
   bool has_change = any_changes(program);
   for (size_t b = 0; b < blocks->count; b++)
-    if (has_change && blocks->items[b].block->constraint_count > 0) append_origins(program, values, b, rows);
-  append_changes(program, values, rows);
+    if (has_change && blocks->items[b].block->constraint_count > 0) append_origins(program, generator, b, rows);
+  append_changes(program, generator, rows);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].has_change)
-      routine_append(values->routine, DIFFERENCE, rows[j].right_side, rows[j].target, rows[j].change, 0);
-    else routine_copy(values->routine, rows[j].right_side, rows[j].target);
+    if (rows[j].has_change) ir_append(generator->ir, DIFFERENCE, rows[j].right_side, rows[j].target, rows[j].change, 0);
+    else ir_copy(generator->ir, rows[j].right_side, rows[j].target);
   }
   for (size_t b = 0; b < blocks->count; b++)
-    if (blocks->items[b].block->constraint_count > 0) routine_append(values->routine, LEAST_FORCES, (Slot)b, 0, 0, 0);
+    if (blocks->items[b].block->constraint_count > 0) ir_append(generator->ir, LEAST_FORCES, (Slot)b, 0, 0, 0);
   for (size_t j = 0; j < count; j++) {
     if (!rows[j].is_looped) continue;
-    if (rows[j].has_change) routine_append(values->routine, SUM, rows[j].target, rows[j].right_side, rows[j].change, 0);
-    else routine_copy(values->routine, rows[j].target, rows[j].right_side);
+    if (rows[j].has_change) ir_append(generator->ir, SUM, rows[j].target, rows[j].right_side, rows[j].change, 0);
+    else ir_copy(generator->ir, rows[j].target, rows[j].right_side);
   }
 }

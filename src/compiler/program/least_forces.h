@@ -8,4 +8,4 @@
  * targets must hold one solution of the differentiated equations, and SPACE_ACCELERATION the accelerations and
  * least-norm forces at the point.
  */
-void append_least_forces_along(const struct Program *program, struct Values *values);
+void append_least_forces_along(const struct Program *program, struct CodeGenerator *generator);

@@ -21,43 +21,44 @@ enum {
 /* Up to this many recurrences an order, one loop computes all products; a longer one exceeds the instruction cache. */
 enum { RECURRENCES_TOGETHER = 40 };
 
-static void create_results(struct Program *program, struct Values *values) {
+static void create_results(struct Program *program, struct CodeGenerator *generator) {
   const struct Interface *interface = program->interface;
   const struct Expressions *expressions = program->expressions;
   program->groups = result_groups_of(expressions);
-  program->result = allocate(interface->result_count, sizeof(struct Routine *));
-  program->result_along = allocate(interface->result_count, sizeof(struct Routine *));
+  program->result = allocate(interface->result_count, sizeof(struct IrFunction *));
+  program->result_along = allocate(interface->result_count, sizeof(struct IrFunction *));
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
     if (entry->kind != VARIABLE_RESULT) continue;
     size_t index = entry->index;
     if (program->groups.leader[index] == index) {
       struct NodeList members = group_members(&program->groups, expressions->result, index);
-      program->result[index] = targets_routine(values, members.nodes, members.count);
+      program->result[index] = ir_of_targets(generator, members.nodes, members.count);
     }
-    if (is_unknown(entry)) program->result_along[index] = targets_routine(values, &expressions->result_along[index], 1);
+    if (is_unknown(entry))
+      program->result_along[index] = ir_of_targets(generator, &expressions->result_along[index], 1);
   }
 }
 
 /* A method that takes only the first terms needs the series for the step limits; without limits it needs none. */
-static void create_series(struct Program *program, struct Values *values) {
+static void create_series(struct Program *program, struct CodeGenerator *generator) {
   const struct Expressions *expressions = program->expressions;
-  if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, values);
+  if (expressions->series != NULL) program->series = series_program_of_motion(expressions, &program->blocks, generator);
   if (program->series != NULL && program->equations->method->series != ALL_TERMS && program->series->limit.count == 0)
     program->series = NULL;
-  if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, values);
-  if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, values);
+  if (expressions->output_series != NULL) program->output_series = series_program_of_outputs(expressions, generator);
+  if (expressions->watched_series != NULL) program->watched_series = series_program_of_watched(expressions, generator);
 }
 
 static void visit_series(const struct SeriesProgram *series, enum FunctionName start, enum FunctionName order,
-                         RoutineVisitor *visit, void *context) {
+                         IrVisitor *visit, void *context) {
   if (series != NULL && series->start != NULL) visit(context, start, series->start);
   if (series != NULL && series->order != NULL) visit(context, order, series->order);
 }
 
-void program_visit(const struct Program *program, RoutineVisitor *visit, void *context) {
-  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
-    if (program->routines[i] != NULL) visit(context, i, program->routines[i]);
+void program_visit(const struct Program *program, IrVisitor *visit, void *context) {
+  for (enum FunctionName i = 0; i < IR_FUNCTION_COUNT; i++)
+    if (program->ir_functions[i] != NULL) visit(context, i, program->ir_functions[i]);
   for (size_t i = 0; i < program->interface->result_count; i++) {
     if (program->result[i] != NULL) visit(context, FUNCTION_RESULT, program->result[i]);
     if (program->result_along[i] != NULL) visit(context, FUNCTION_RESULT_ALONG, program->result_along[i]);
@@ -67,9 +68,9 @@ void program_visit(const struct Program *program, RoutineVisitor *visit, void *c
   visit_series(program->watched_series, FUNCTION_WATCHED_LIMIT, FUNCTION_WATCHED_LIMIT, visit, context);
 }
 
-static void add_count(void *context, enum FunctionName name, const struct Routine *routine) {
+static void add_count(void *context, enum FunctionName name, const struct IrFunction *ir) {
   size_t *count = context;
-  if (name != FUNCTION_LINEAR) *count += routine->count;
+  if (name != FUNCTION_LINEAR) *count += ir->count;
 }
 
 size_t instruction_count(const struct Program *program) {
@@ -78,8 +79,8 @@ size_t instruction_count(const struct Program *program) {
   return count;
 }
 
-static size_t count_of(const struct Routine *routine) {
-  return routine != NULL ? routine->count : 0;
+static size_t count_of(const struct IrFunction *ir) {
+  return ir != NULL ? ir->count : 0;
 }
 
 bool program_solves_by_statements(const struct Program *program, size_t number) {
@@ -106,8 +107,8 @@ static void choose_form(struct Program *program, enum CodeForm form) {
     program->products = series->recurrences <= RECURRENCES_TOGETHER ? PRODUCTS_TOGETHER : PRODUCTS_LISTED;
   size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
   program->derivatives_are_table =
-      all || (program->is_table && count_of(program->routines[FUNCTION_DERIVATIVES]) > limit);
-  bool is_long = count_of(program->routines[FUNCTION_DIRECTIONAL]) > DIRECTIONAL_STATEMENT_LIMIT;
+      all || (program->is_table && count_of(program->ir_functions[FUNCTION_DERIVATIVES]) > limit);
+  bool is_long = count_of(program->ir_functions[FUNCTION_DIRECTIONAL]) > DIRECTIONAL_STATEMENT_LIMIT;
   program->directional_is_table = all || (program->is_table && (is_long || !has_columns_in_parts(program)));
 }
 
@@ -130,12 +131,12 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
   struct NodeList targets = expressions_targets(expressions);
   program->parameter_constants = parameter_constants_create(expressions->model->graph, targets);
   program->blocks = looped_blocks_of(expressions->equations);
-  struct Values *values =
-      values_create(expressions->model->graph, program->parameter_constants, expressions->equations->count);
-  for (enum FunctionName i = 0; i < ROUTINE_COUNT; i++)
-    if (has_function(program, i)) program->routines[i] = generated_functions[i].build(program, values);
-  create_results(program, values);
-  create_series(program, values);
+  struct CodeGenerator *generator =
+      generator_create(expressions->model->graph, program->parameter_constants, expressions->equations->count);
+  for (enum FunctionName i = 0; i < IR_FUNCTION_COUNT; i++)
+    if (has_function(program, i)) program->ir_functions[i] = generated_functions[i].build(program, generator);
+  create_results(program, generator);
+  create_series(program, generator);
   choose_form(program, form);
   choose_parts_of_runtime(program);
   return program;

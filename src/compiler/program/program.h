@@ -1,4 +1,4 @@
-/* The program of an FMU: the instruction lists (struct Routine) of the functions in include/lagrangian.h. */
+/* The program of an FMU: the instruction lists (struct IrFunction) of the functions in include/lagrangian.h. */
 #pragma once
 
 #include "program/expressions/accelerations.h"
@@ -27,13 +27,13 @@ struct Program {
   const struct Expressions *expressions;
   struct ParameterConstants *parameter_constants;
   struct LoopedBlocks blocks;
-  struct Routine *routines[ROUTINE_COUNT]; /* NULL for a function that the system does not need */
+  struct IrFunction *ir_functions[IR_FUNCTION_COUNT]; /* NULL for a function that the system does not need */
   struct ResultGroups groups;
   /*
    * Of each result that leads a group: the code of the whole group. result_along, of outputs and calculated
    * parameters: the directional derivative of the one variable; NULL for others.
    */
-  struct Routine **result, **result_along;
+  struct IrFunction **result, **result_along;
   struct SeriesProgram *series, *output_series;
   struct SeriesProgram *watched_series; /* NULL without limits on the search for events */
   bool is_table;                        /* too long to compile quickly as statements, see program.c */
@@ -53,8 +53,8 @@ struct Program *program_create(const struct Expressions *expressions, enum CodeF
 bool program_solves_by_statements(const struct Program *program, size_t block);
 
 /* Calls visit for each instruction list and its function, in the order in which they are built. */
-typedef void RoutineVisitor(void *context, enum FunctionName name, const struct Routine *routine);
-void program_visit(const struct Program *program, RoutineVisitor *visit, void *context);
+typedef void IrVisitor(void *context, enum FunctionName name, const struct IrFunction *ir);
+void program_visit(const struct Program *program, IrVisitor *visit, void *context);
 
 /* Returns the number of instructions of all functions except linear(), which only copies. */
 size_t instruction_count(const struct Program *program);

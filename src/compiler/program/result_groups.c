@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "base/sorting.h"
-#include "program/values/form.h"
+#include "program/codegen/fused_operations.h"
 
 /*
  * LONG_ENOUGH: objects that need fewer nodes stay by themselves. SIZE_LIMIT: results in a group, whose values stand in

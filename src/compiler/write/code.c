@@ -66,10 +66,10 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (lu != NULL) fprintf(file, "#include \"support/%s.c\"\n", lu);
   if (program->is_table) include_source(file, "support/instructions.c");
   if (program->is_table || program->blocks.count > 0) include_source(file, "support/ldlt.c");
-  if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
+  if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
   if (has_nonsymmetric_block(program)) include_source(file, "support/nonsymmetric.c");
-  if (program->routines[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
-  if (program->routines[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
+  if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
+  if (program->ir_functions[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   if (has_planes(switches)) include_room(file, "planes");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
@@ -105,7 +105,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("#include <math.h>\n\n#include \"lagrangian.h\"\n", file);
   if (program->is_table) fputs("#include \"instructions.h\"\n", file);
   if (program->blocks.count > 0) fputs("#include \"ldlt.h\"\n", file);
-  if (program->routines[FUNCTION_ACCELERATIONS] != NULL)
+  if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
   if (has_nonsymmetric_block(program)) fputs("#include \"nonsymmetric.h\"\n", file);
   if (has_operations(program, LOGISTIC, LOG_COSH)) fputs("#include \"bounded_functions.h\"\n", file);
@@ -220,23 +220,23 @@ static bool is_in_statements(const struct Program *program, enum FunctionName na
 }
 
 /*
- * Writes the functions of struct Lagrangian that have one routine. Returns the workspace needed by functions that are
- * split into parts.
+ * Writes the functions of struct Lagrangian that have one instruction list. Returns the workspace that functions in
+ * parts need.
  */
-static size_t write_routines(FILE *file, const struct Program *program, const struct Encoding *tables) {
+static size_t write_ir_functions(FILE *file, const struct Program *program, const struct Encoding *tables) {
   size_t shared = 0;
-  for (enum FunctionName i = 0; i < LAGRANGIAN_ROUTINES; i++) {
-    const struct Routine *routine = program->routines[i];
-    if (routine == NULL) continue;
-    if (tables == NULL) statements_function(file, program, i, "", routine);
+  for (enum FunctionName i = 0; i < LAGRANGIAN_IR_FUNCTIONS; i++) {
+    const struct IrFunction *ir = program->ir_functions[i];
+    if (ir == NULL) continue;
+    if (tables == NULL) statements_function(file, program, i, "", ir);
     else if (is_in_statements(program, i)) shared = larger(shared, statements_in_parts(file, program, i));
-    else instruction_tables_function(file, tables, i, routine);
+    else instruction_tables_function(file, tables, i, ir);
   }
   return shared;
 }
 
 static void write_as_statements(FILE *file, const struct Program *program) {
-  write_routines(file, program, NULL);
+  write_ir_functions(file, program, NULL);
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
@@ -247,7 +247,7 @@ static void write_as_statements(FILE *file, const struct Program *program) {
 static void write_as_tables(FILE *file, const struct Program *program) {
   struct Encoding *tables = encoding_create(program);
   instruction_tables_shared(file, tables);
-  size_t shared = write_routines(file, program, tables);
+  size_t shared = write_ir_functions(file, program, tables);
   if (program->series != NULL && program->series_is_table) instruction_tables_series(file, tables);
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);

@@ -53,9 +53,9 @@ static void write_words(FILE *file, const char *name, const struct Words *words)
   fputs("};\n", file);
 }
 
-static void write_table(FILE *file, const struct Encoding *encoding, const char *name, const struct Routine *routine) {
+static void write_table(FILE *file, const struct Encoding *encoding, const char *name, const struct IrFunction *ir) {
   struct Words words = {0};
-  encode(encoding, routine, &words);
+  encode(encoding, ir, &words);
   write_words(file, name, &words);
   fputs("\n", file);
 }
@@ -70,11 +70,11 @@ static void set_base(FILE *file, const char *space, const char *source) {
 }
 
 void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
-                                 const struct Routine *routine) {
+                                 const struct IrFunction *ir) {
   const struct Program *program = encoding->program;
   const struct GeneratedFunction *text = &generated_functions[name];
-  write_table(file, encoding, text->name, routine);
-  write_head(file, name, "", routine->operation_count);
+  write_table(file, encoding, text->name, ir);
+  write_head(file, name, "", ir->operation_count);
   if (!takes(name, "*point"))
     fprintf(file, "  const struct Point values = {.parameter = p%s};\n  const struct Point *point = &values;\n",
             takes(name, "*c,") ? ", .parameter_constants = c" : "");
@@ -94,9 +94,9 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
 }
 
 static void write_results(FILE *file, const struct Encoding *encoding, enum FunctionName name,
-                          struct Routine *const *routines, const struct ResultGroups *groups) {
+                          struct IrFunction *const *ir_functions, const struct ResultGroups *groups) {
   const struct GeneratedFunction *text = &generated_functions[name];
-  struct RoutineTables tables = encode_all(encoding, routines, groups);
+  struct IrTables tables = encode_all(encoding, ir_functions, groups);
   const char *type = tables.largest_slot <= UINT8_MAX ? "unsigned char" : "uint16_t";
   write_words(file, text->name, &tables.words);
   write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, groups->count);

@@ -7,9 +7,9 @@
 /* Writes the constants, functions and blocks that all tables share. */
 void instruction_tables_shared(FILE *file, const struct Encoding *encoding);
 
-/* Writes a function of one routine. */
+/* Writes a function of one instruction list. */
 void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
-                                 const struct Routine *routine);
+                                 const struct IrFunction *ir);
 
 /* Writes result() and result_along(). */
 void instruction_tables_results(FILE *file, const struct Encoding *encoding);

@@ -137,10 +137,10 @@ static void write_statement(FILE *file, const struct Program *program, const str
   write_expression(file, program, instruction, target, opening);
 }
 
-void write_statements(FILE *file, const struct Program *program, const struct Routine *routine, const char *target) {
-  for (size_t i = 0; i < routine->count; i++) {
+void write_statements(FILE *file, const struct Program *program, const struct IrFunction *ir, const char *target) {
+  for (size_t i = 0; i < ir->count; i++) {
     fputs("  ", file);
-    write_statement(file, program, &routine->instructions[i], target, "(");
+    write_statement(file, program, &ir->instructions[i], target, "(");
     fputs(";\n", file);
   }
 }
@@ -149,10 +149,10 @@ static bool is_product(const struct Instruction *instruction) {
   return opcode_factors(instruction->opcode) != NULL;
 }
 
-void write_statements_around(FILE *file, const struct Program *program, const struct Routine *routine) {
+void write_statements_around(FILE *file, const struct Program *program, const struct IrFunction *ir) {
   size_t products = 0;
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     const char *opening = "(";
     if (is_product(instruction) && program->products == PRODUCTS_LISTED) opening = "_around(*next++, ";
     else if (is_product(instruction)) opening = format_text("_around(m[%zu], ", products++);
@@ -162,10 +162,10 @@ void write_statements_around(FILE *file, const struct Program *program, const st
   }
 }
 
-size_t write_products(FILE *file, const struct Program *program, const struct Routine *routine) {
+size_t write_products(FILE *file, const struct Program *program, const struct IrFunction *ir) {
   size_t products = 0;
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     if (!is_product(instruction)) continue;
     if (products == 0) fputs("/* The products of an order: number and factors */\n#define SERIES_PRODUCTS(EACH)", file);
     fprintf(file, " \\\n  EACH(%zu, ", products++);
@@ -176,11 +176,11 @@ size_t write_products(FILE *file, const struct Program *program, const struct Ro
   return products;
 }
 
-size_t write_factors(FILE *file, const struct Program *program, const struct Routine *routine) {
+size_t write_factors(FILE *file, const struct Program *program, const struct IrFunction *ir) {
   size_t products = 0;
   fputs("  const struct SeriesFactors factors[] = {\n", file);
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     if (!is_product(instruction)) continue;
     fputs("      SERIES_FACTORS(", file);
     write_text(file, program, instruction, opcode_factors(instruction->opcode), NULL, "(");

@@ -18,17 +18,17 @@ static void note_use(struct Local *locals, Slot slot, size_t part, size_t *share
 }
 
 /* Returns the end of the part. It has only instructions that do not depend on the direction, or none of them. */
-static size_t end_of_part(const struct Routine *routine, size_t steady_count, size_t first) {
-  size_t end = first + PART_LENGTH < routine->count ? first + PART_LENGTH : routine->count;
+static size_t end_of_part(const struct IrFunction *ir, size_t steady_count, size_t first) {
+  size_t end = first + PART_LENGTH < ir->count ? first + PART_LENGTH : ir->count;
   return first < steady_count && end > steady_count ? steady_count : end;
 }
 
-static struct Local *find_shared(const struct Routine *routine, size_t steady_count, size_t *shared_count) {
-  struct Local *locals = allocate(routine->local_count, sizeof *locals);
-  for (size_t i = 0, part = 0, end = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+static struct Local *find_shared(const struct IrFunction *ir, size_t steady_count, size_t *shared_count) {
+  struct Local *locals = allocate(ir->local_count, sizeof *locals);
+  for (size_t i = 0, part = 0, end = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     if (i == end) {
-      end = end_of_part(routine, steady_count, i);
+      end = end_of_part(ir, steady_count, i);
       part++;
     }
     for (int j = 0; j < opcode_arity(instruction->opcode); j++)
@@ -47,17 +47,17 @@ static Slot placed(const struct Local *locals, bool keeps_accelerations, Slot sl
   return slot_in((enum Space)SPACE_SHARED, locals[index_in(slot)].shared - 1);
 }
 
-static struct Routine *part_of(const struct Routine *routine, const struct Local *locals, bool keeps_accelerations,
-                               size_t first, size_t end) {
-  struct Routine *part = routine_create();
+static struct IrFunction *part_of(const struct IrFunction *ir, const struct Local *locals, bool keeps_accelerations,
+                                  size_t first, size_t end) {
+  struct IrFunction *part = ir_create();
   for (size_t i = first; i < end; i++) {
-    struct Instruction instruction = routine->instructions[i];
+    struct Instruction instruction = ir->instructions[i];
     Slot *operands = instruction.operands;
     for (int j = 0; j < opcode_arity(instruction.opcode); j++)
       operands[j] = placed(locals, keeps_accelerations, operands[j]);
     if (opcode_has_result(instruction.opcode))
       instruction.result = placed(locals, keeps_accelerations, instruction.result);
-    routine_append(part, instruction.opcode, instruction.result, operands[0], operands[1], operands[2]);
+    ir_append(part, instruction.opcode, instruction.result, operands[0], operands[1], operands[2]);
     part->instructions[part->count - 1].function = instruction.function;
   }
   return part;
@@ -77,35 +77,35 @@ static bool note_along(const struct Instruction *instruction, bool *is_along) {
 }
 
 /* Returns the instructions reordered: first those that do not depend on the direction, steady_count of them. */
-static struct Routine *with_steady_first(const struct Routine *routine, size_t *steady_count) {
-  struct Routine *sorted = routine_create();
-  bool *is_along = allocate(routine->local_count, sizeof *is_along);
-  *sorted = *routine;
-  sorted->instructions = allocate(routine->count, sizeof *sorted->instructions);
+static struct IrFunction *with_steady_first(const struct IrFunction *ir, size_t *steady_count) {
+  struct IrFunction *sorted = ir_create();
+  bool *is_along = allocate(ir->local_count, sizeof *is_along);
+  *sorted = *ir;
+  sorted->instructions = allocate(ir->count, sizeof *sorted->instructions);
   size_t count = 0;
-  for (size_t i = 0; i < routine->count; i++)
-    if (!note_along(&routine->instructions[i], is_along)) sorted->instructions[count++] = routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++)
+    if (!note_along(&ir->instructions[i], is_along)) sorted->instructions[count++] = ir->instructions[i];
   *steady_count = count;
-  for (size_t i = 0; i < routine->count; i++)
-    if (note_along(&routine->instructions[i], is_along)) sorted->instructions[count++] = routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++)
+    if (note_along(&ir->instructions[i], is_along)) sorted->instructions[count++] = ir->instructions[i];
   return sorted;
 }
 
-struct Parts parts_of(struct Routine *routine, size_t accelerations) {
-  struct Parts parts = {.items = allocate(2 + routine->count / PART_LENGTH, sizeof(struct Routine *))};
-  bool has_blocks = routine_uses(routine, SPACE_RIGHT_SIDE) || routine_uses(routine, SPACE_MASS);
-  if (has_blocks || routine->count <= 2 * (size_t)PART_LENGTH) {
-    parts.items[parts.count++] = routine;
+struct Parts parts_of(struct IrFunction *ir, size_t accelerations) {
+  struct Parts parts = {.items = allocate(2 + ir->count / PART_LENGTH, sizeof(struct IrFunction *))};
+  bool has_blocks = ir_uses(ir, SPACE_RIGHT_SIDE) || ir_uses(ir, SPACE_MASS);
+  if (has_blocks || ir->count <= 2 * (size_t)PART_LENGTH) {
+    parts.items[parts.count++] = ir;
     return parts;
   }
   size_t steady_count = 0;
-  if (routine_uses(routine, SPACE_SEED_STATE)) routine = with_steady_first(routine, &steady_count);
+  if (ir_uses(ir, SPACE_SEED_STATE)) ir = with_steady_first(ir, &steady_count);
   parts.shared_count = accelerations;
-  const struct Local *locals = find_shared(routine, steady_count, &parts.shared_count);
-  for (size_t first = 0, end; first < routine->count; first = end) {
-    end = end_of_part(routine, steady_count, first);
+  const struct Local *locals = find_shared(ir, steady_count, &parts.shared_count);
+  for (size_t first = 0, end; first < ir->count; first = end) {
+    end = end_of_part(ir, steady_count, first);
     if (first < steady_count) parts.steady_count++;
-    parts.items[parts.count++] = part_of(routine, locals, accelerations > 0, first, end);
+    parts.items[parts.count++] = part_of(ir, locals, accelerations > 0, first, end);
   }
   return parts;
 }

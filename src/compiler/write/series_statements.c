@@ -20,10 +20,10 @@ static void begin_orders(FILE *file, const struct Program *program, size_t produ
 }
 
 static void write_series(FILE *file, const struct Program *program) {
-  const struct Routine *order = program->series->order;
+  const struct IrFunction *order = program->series->order;
   size_t products = program->products == PRODUCTS_TOGETHER ? write_products(file, program, order) : 0;
   write_head(file, FUNCTION_SERIES, "", order->operation_count);
-  declare_time(file, routine_uses(order, SPACE_TIME_ROW));
+  declare_time(file, ir_uses(order, SPACE_TIME_ROW));
   statements_declare_point(file, program, order);
   if (program->blocks.count > 0)
     fprintf(file, "  const Real *mass = w[%zu];\n  Real side[%zu];\n", program->series->mass_row,
@@ -74,9 +74,9 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
 
 static void write_limit(FILE *file, const struct Program *program) {
   const struct LimitChecks *checks = &program->series->limit;
-  const struct Routine spaces = {.spaces = spaces_of(checks)}; /* for its spaces only */
+  const struct IrFunction spaces = {.spaces = spaces_of(checks)}; /* for its spaces only */
   write_head(file, FUNCTION_LIMIT, "", checks->count);
-  declare_time(file, routine_uses(&spaces, SPACE_TIME_ROW));
+  declare_time(file, ir_uses(&spaces, SPACE_TIME_ROW));
   statements_declare_point(file, program, &spaces);
   for (size_t i = 0; i < checks->count; i++) write_check(file, program, &checks->items[i]);
   fputs("}\n\n", file);
@@ -90,12 +90,12 @@ void statements_series(FILE *file, const struct Program *program) {
 
 void statements_output_series(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->output_series;
-  struct Routine both = *series->start; /* with the spaces of both, for the declarations */
+  struct IrFunction both = *series->start; /* with the spaces of both, for the declarations */
   both.spaces |= series->order->spaces;
   write_head(file, FUNCTION_OUTPUT_SERIES, "", series->start->operation_count);
-  declare_time(file, routine_uses(&both, SPACE_TIME_ROW));
+  declare_time(file, ir_uses(&both, SPACE_TIME_ROW));
   statements_declare_point(file, program, &both);
-  if (routine_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  Real a[%zu];\n", program->equations->count);
+  if (ir_uses(&both, SPACE_ACCELERATION)) fprintf(file, "  Real a[%zu];\n", program->equations->count);
   write_statements(file, program, series->start, "y");
   fputs("  for (int k = 1; k <= order && k + 1 < SERIES_LENGTH; k++) {\n", file);
   write_statements(file, program, series->order, NULL);
@@ -104,10 +104,10 @@ void statements_output_series(FILE *file, const struct Program *program) {
 
 void statements_watched_limit(FILE *file, const struct Program *program) {
   const struct SeriesProgram *series = program->watched_series;
-  struct Routine all = *series->start; /* with the spaces of all, for the declarations */
+  struct IrFunction all = *series->start; /* with the spaces of all, for the declarations */
   all.spaces |= series->order->spaces | spaces_of(&series->limit);
   write_head(file, FUNCTION_WATCHED_LIMIT, "", series->start->operation_count);
-  declare_time(file, routine_uses(&all, SPACE_TIME_ROW));
+  declare_time(file, ir_uses(&all, SPACE_TIME_ROW));
   statements_declare_point(file, program, &all);
   write_statements(file, program, series->start, NULL);
   fputs("  for (int k = 1; k <= limit->order; k++) {\n", file);

@@ -4,10 +4,10 @@
 #include "write/instruction_text.h"
 #include "write/parts.h"
 
-/* True if the routine reads elements from .. to - 1 of the space. */
-static bool reads(const struct Routine *routine, enum Space space, size_t from, size_t to) {
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+/* True if the function reads elements from .. to - 1 of the space. */
+static bool reads(const struct IrFunction *ir, enum Space space, size_t from, size_t to) {
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
       Slot slot = instruction->operands[j];
       if (space_of(slot) == space && index_in(slot) >= from && index_in(slot) < to) return true;
@@ -20,57 +20,56 @@ static void declare(FILE *file, bool is_used, const char *name, const char *sour
   if (is_used) fprintf(file, "  const Real *%s = %s;\n", name, source);
 }
 
-void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine) {
+void statements_declare_point(FILE *file, const struct Program *program, const struct IrFunction *ir) {
   size_t n = program->equations->count;
-  declare(file, reads(routine, SPACE_STATE, 0, n), "q", "point->state");
-  declare(file, reads(routine, SPACE_STATE, n, program->interface->state_count), "v",
-          format_text("point->state + %zu", n));
-  declare(file, routine_uses(routine, SPACE_INPUT), "u", "point->input");
-  declare(file, routine_uses(routine, SPACE_PARAMETER), "p", "point->parameter");
-  declare(file, routine_uses(routine, SPACE_PARAMETER_CONSTANTS), "c", "point->parameter_constants");
-  declare(file, reads(routine, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
-  declare(file, reads(routine, SPACE_SEED_STATE, n, program->interface->state_count), "dv",
+  declare(file, reads(ir, SPACE_STATE, 0, n), "q", "point->state");
+  declare(file, reads(ir, SPACE_STATE, n, program->interface->state_count), "v", format_text("point->state + %zu", n));
+  declare(file, ir_uses(ir, SPACE_INPUT), "u", "point->input");
+  declare(file, ir_uses(ir, SPACE_PARAMETER), "p", "point->parameter");
+  declare(file, ir_uses(ir, SPACE_PARAMETER_CONSTANTS), "c", "point->parameter_constants");
+  declare(file, reads(ir, SPACE_SEED_STATE, 0, n), "dq", "seed->state");
+  declare(file, reads(ir, SPACE_SEED_STATE, n, program->interface->state_count), "dv",
           format_text("seed->state + %zu", n));
-  declare(file, routine_uses(routine, SPACE_SEED_INPUT), "du", "seed->input");
-  declare(file, routine_uses(routine, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
-  declare(file, routine_uses(routine, SPACE_SEED_RESULT), "dy", "seed->result");
+  declare(file, ir_uses(ir, SPACE_SEED_INPUT), "du", "seed->input");
+  declare(file, ir_uses(ir, SPACE_SEED_PARAMETER), "dp", "seed->parameter");
+  declare(file, ir_uses(ir, SPACE_SEED_RESULT), "dy", "seed->result");
 }
 
 /* Declares the arrays of the blocks; functions of series keep the factors in w. */
-static void declare_block_spaces(FILE *file, const struct Program *program, const struct Routine *routine) {
-  if (routine_uses(routine, SPACE_RIGHT_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.right_side_count);
-  if (!routine_uses(routine, SPACE_MASS)) return;
-  if (routine_uses(routine, SPACE_ROW)) fprintf(file, "  Real *mass = w[%zu];\n", program->series->mass_row);
+static void declare_block_spaces(FILE *file, const struct Program *program, const struct IrFunction *ir) {
+  if (ir_uses(ir, SPACE_RIGHT_SIDE)) fprintf(file, "  Real side[%zu];\n", program->blocks.right_side_count);
+  if (!ir_uses(ir, SPACE_MASS)) return;
+  if (ir_uses(ir, SPACE_ROW)) fprintf(file, "  Real *mass = w[%zu];\n", program->series->mass_row);
   else fprintf(file, "  Real mass[%zu];\n", program->blocks.mass_count);
 }
 
 void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
-                         const struct Routine *routine) {
+                         const struct IrFunction *ir) {
   const struct GeneratedFunction *text = &generated_functions[name];
   size_t n = program->equations->count;
-  write_head(file, name, suffix, routine->operation_count);
-  if (takes(name, "*point")) statements_declare_point(file, program, routine);
-  if (routine_uses(routine, (enum Space)SPACE_SHARED)) fputs("  Real *s = point->work;\n", file);
-  declare_block_spaces(file, program, routine);
-  bool has_accelerations = routine_uses(routine, SPACE_ACCELERATION);
+  write_head(file, name, suffix, ir->operation_count);
+  if (takes(name, "*point")) statements_declare_point(file, program, ir);
+  if (ir_uses(ir, (enum Space)SPACE_SHARED)) fputs("  Real *s = point->work;\n", file);
+  declare_block_spaces(file, program, ir);
+  bool has_accelerations = ir_uses(ir, SPACE_ACCELERATION);
   if (text->accelerations == IN_TARGET && has_accelerations) fprintf(file, "  Real *a = %s + %zu;\n", text->target, n);
   if (text->accelerations == IN_WORKSPACE && has_accelerations)
     fprintf(file, "  Real a[%zu];\n", row_count(program->equations));
-  write_statements(file, program, routine, text->target);
+  write_statements(file, program, ir, text->target);
   fputs(text->returned == RETURNS_STATUS ? "  return 0;\n}\n\n" : "}\n\n", file);
 }
 
 size_t statements_in_parts(FILE *file, const struct Program *program, enum FunctionName name) {
   const struct GeneratedFunction *text = &generated_functions[name];
   bool keeps_accelerations = text->accelerations == IN_WORKSPACE;
-  struct Parts parts = parts_of(program->routines[name], keeps_accelerations ? row_count(program->equations) : 0);
+  struct Parts parts = parts_of(program->ir_functions[name], keeps_accelerations ? row_count(program->equations) : 0);
   if (parts.count == 1) {
     statements_function(file, program, name, "", parts.items[0]);
     return 0;
   }
   for (size_t i = 0; i < parts.count; i++)
     statements_function(file, program, name, format_text("_%zu", i + 1), parts.items[i]);
-  write_head(file, name, "", program->routines[name]->operation_count);
+  write_head(file, name, "", program->ir_functions[name]->operation_count);
   /* called by address, as compilers inline functions with a single call */
   fprintf(file, "  static int (*const parts[])(%s) = {", text->arguments);
   for (size_t i = 0; i < parts.count; i++) fprintf(file, "%s_%zu, ", text->name, i + 1);

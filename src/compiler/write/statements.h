@@ -1,14 +1,14 @@
-/* Writes routines as C functions, a statement for each instruction. */
+/* Writes functions as C functions, a statement for each instruction. */
 #pragma once
 
 #include "write/function_text.h"
 
-/* Declares names for the parts of the point and the direction that the routine reads. */
-void statements_declare_point(FILE *file, const struct Program *program, const struct Routine *routine);
+/* Declares names for the parts of the point and the direction that the function reads. */
+void statements_declare_point(FILE *file, const struct Program *program, const struct IrFunction *ir);
 
-/* Writes a function of one routine; suffix extends its name. */
+/* Writes a function of one instruction list; suffix extends its name. */
 void statements_function(FILE *file, const struct Program *program, enum FunctionName name, const char *suffix,
-                         const struct Routine *routine);
+                         const struct IrFunction *ir);
 
 /* Writes a function with a status, in parts if it is long. Returns the length of point->work that the parts share. */
 size_t statements_in_parts(FILE *file, const struct Program *program, enum FunctionName name);

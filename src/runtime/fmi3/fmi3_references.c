@@ -41,7 +41,7 @@ void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size
 }
 
 const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct Values values) {
+                                  size_t nvr, struct CodeGenerator values) {
   struct Instance *instance = &component->instance;
   size_t count;
   if (!check_array(instance, vr, nvr, "valueReferences") ||

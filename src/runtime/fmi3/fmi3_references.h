@@ -8,7 +8,7 @@
 #include "fmi3/fmi3_component.h"
 
 /* An array of a caller, and its number of values. */
-struct Values {
+struct CodeGenerator {
   const void *array;
   size_t count;
 };
@@ -23,7 +23,7 @@ static inline unsigned slot_of_reference(fmi3ValueReference reference) {
  * after logging an error, if arguments are wrong or the number of values differs.
  */
 const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct Values values);
+                                  size_t nvr, struct CodeGenerator values);
 
 /* Returns workspace for count elements; NULL after logging an error, without memory. */
 void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size);

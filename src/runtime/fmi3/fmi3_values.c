@@ -10,7 +10,7 @@ static const unsigned *enter_with_values(fmi3Instance c, enum Function function,
                                          const fmi3ValueReference vr[], size_t nvr, const void *values,
                                          size_t nValues) {
   if (enter(c, function, name) == NULL) return NULL;
-  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct Values){values, nValues});
+  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct CodeGenerator){values, nValues});
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 values[],

@@ -65,20 +65,21 @@ struct NodeList accelerations_targets(const struct Graph *graph, const struct Eq
   return targets;
 }
 
-void append_pivot_check(struct Values *values, const struct Pivot *pivot) {
-  Slot number = (Slot)pivot->coordinate + 1, value = values_slot(values, pivot->value);
-  Slot diagonal = values_slot(values, pivot->diagonal), scale = values_slot(values, pivot->scale);
-  if (value != diagonal) routine_append(values->routine, CHECK_PIVOT, number, value, diagonal, 0);
-  if (diagonal != scale) routine_append(values->routine, CHECK_DIAGONAL, number, diagonal, scale, 0);
-  if (value == diagonal && diagonal == scale) routine_append(values->routine, CHECK_POSITIVE, number, value, 0, 0);
+void append_pivot_check(struct CodeGenerator *generator, const struct Pivot *pivot) {
+  Slot number = (Slot)pivot->coordinate + 1, value = generator_slot(generator, pivot->value);
+  Slot diagonal = generator_slot(generator, pivot->diagonal), scale = generator_slot(generator, pivot->scale);
+  if (value != diagonal) ir_append(generator->ir, CHECK_PIVOT, number, value, diagonal, 0);
+  if (diagonal != scale) ir_append(generator->ir, CHECK_DIAGONAL, number, diagonal, scale, 0);
+  if (value == diagonal && diagonal == scale) ir_append(generator->ir, CHECK_POSITIVE, number, value, 0, 0);
 }
 
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *right_side) {
+void append_solution(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number,
+                     const Node *right_side) {
   const struct LoopedBlock *looped = &blocks->items[number];
   for (size_t i = 0; i < looped->block->count; i++)
-    values_copy(values, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
-                right_side[looped->block->coordinates[i]]);
-  routine_append(values->routine, SOLVE, (Slot)number, 0, 0, 0);
+    generator_copy(generator, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
+                   right_side[looped->block->coordinates[i]]);
+  ir_append(generator->ir, SOLVE, (Slot)number, 0, 0, 0);
 }
 
 /* Returns the arithmetic operations of one factorization and one solution of the block. */
@@ -90,28 +91,28 @@ static size_t factor_operations(const struct InertiaBlock *block) {
   return operations;
 }
 
-void append_masses(struct Values *values, const struct LoopedBlock *looped) {
+void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
-    values_copy(values, slot_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+    generator_copy(generator, slot_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    values_copy(values, slot_in(SPACE_MASS, first + i), block->nonsymmetric[i]);
+    generator_copy(generator, slot_in(SPACE_MASS, first + i), block->nonsymmetric[i]);
 }
 
-void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t number) {
-  routine_append(values->routine, FACTOR, (Slot)number, 0, 0, 0);
-  values->routine->operation_count += factor_operations(blocks->items[number].block);
+void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number) {
+  ir_append(generator->ir, FACTOR, (Slot)number, 0, 0, 0);
+  generator->ir->operation_count += factor_operations(blocks->items[number].block);
 }
 
-void append_factors(struct Values *values, const struct LoopedBlocks *blocks) {
+void append_factors(struct CodeGenerator *generator, const struct LoopedBlocks *blocks) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct InertiaBlock *block = blocks->items[b].block;
     struct NodeList elements = {0};
     append_elements(&elements, block);
-    values_compute(values, elements.nodes, elements.count, false);
-    append_masses(values, &blocks->items[b]);
-    append_factor(values, blocks, b);
+    generator_compute(generator, elements.nodes, elements.count, false);
+    append_masses(generator, &blocks->items[b]);
+    append_factor(generator, blocks, b);
   }
 }
 
@@ -121,46 +122,46 @@ static bool has_least_forces(const struct InertiaBlock *block) {
 }
 
 /* Factors a block, solves it, and copies the solution to SPACE_ACCELERATION. */
-static void append_block(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                         size_t number, bool with_forces) {
+static void append_block(struct CodeGenerator *generator, const struct Equations *equations,
+                         const struct LoopedBlocks *blocks, size_t number, bool with_forces) {
   const struct LoopedBlock *looped = &blocks->items[number];
   const struct InertiaBlock *block = looped->block;
-  append_masses(values, looped);
-  append_factor(values, blocks, number);
-  append_solution(values, blocks, number, equations->right_side);
-  if (with_forces && has_least_forces(block)) routine_append(values->routine, LEAST_FORCES, (Slot)number, 0, 0, 0);
+  append_masses(generator, looped);
+  append_factor(generator, blocks, number);
+  append_solution(generator, blocks, number, equations->right_side);
+  if (with_forces && has_least_forces(block)) ir_append(generator->ir, LEAST_FORCES, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
-      routine_copy(values->routine, slot_in(SPACE_ACCELERATION, block->coordinates[i]),
-                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      ir_copy(generator->ir, slot_in(SPACE_ACCELERATION, block->coordinates[i]),
+              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
 }
 
-void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol) {
+void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      values_hold(values, symbol[looped->block->coordinates[i]],
-                  slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      generator_define(generator, symbol[looped->block->coordinates[i]],
+                       slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 
-void hold_unknowns(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                   const Node *symbol) {
-  if (!rates_use_unknowns(values->graph, equations)) return;
+void hold_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
+                   const struct LoopedBlocks *blocks, const Node *symbol) {
+  if (!rates_use_unknowns(generator->graph, equations)) return;
   for (size_t b = 0; b < blocks->count; b++)
-    if (has_least_forces(blocks->items[b].block)) routine_append(values->routine, LEAST_FORCES, (Slot)b, 0, 0, 0);
-  hold_solutions(values, blocks, symbol);
+    if (has_least_forces(blocks->items[b].block)) ir_append(generator->ir, LEAST_FORCES, (Slot)b, 0, 0, 0);
+  hold_solutions(generator, blocks, symbol);
 }
 
-void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                          bool with_forces) {
+void append_accelerations(struct CodeGenerator *generator, const struct Equations *equations,
+                          const struct LoopedBlocks *blocks, bool with_forces) {
   const struct Inertia *inertia = equations->inertia;
-  struct NodeList targets = accelerations_targets(values->graph, equations, with_forces);
-  values_compute(values, targets.nodes, targets.count, false);
+  struct NodeList targets = accelerations_targets(generator->graph, equations, with_forces);
+  generator_compute(generator, targets.nodes, targets.count, false);
   for (size_t i = 0; i < inertia->pivot_count; i++)
-    if (!pivot_is_parameter_constants(values->graph, &inertia->pivots[i]))
-      append_pivot_check(values, &inertia->pivots[i]);
+    if (!pivot_is_parameter_constants(generator->graph, &inertia->pivots[i]))
+      append_pivot_check(generator, &inertia->pivots[i]);
   for (size_t i = 0; i < (with_forces ? row_count(equations) : equations->count); i++)
-    if (!is_looped(equations, i)) values_copy(values, slot_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
-  for (size_t block = 0; block < blocks->count; block++) append_block(values, equations, blocks, block, with_forces);
+    if (!is_looped(equations, i)) generator_copy(generator, slot_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
+  for (size_t block = 0; block < blocks->count; block++) append_block(generator, equations, blocks, block, with_forces);
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mechanics/equations.h"
-#include "program/values/values.h"
+#include "program/codegen/code_generator.h"
 
 /* A block of K that is factored at run time, and its ranges in SPACE_MASS and SPACE_RIGHT_SIDE. */
 struct LoopedBlock {
@@ -31,33 +31,34 @@ struct NodeList accelerations_targets(const struct Graph *graph, const struct Eq
 bool pivot_is_parameter_constants(const struct Graph *graph, const struct Pivot *pivot);
 
 /* Appends the check that makes the function return an error where the pivot vanishes; the pivot must be computed. */
-void append_pivot_check(struct Values *values, const struct Pivot *pivot);
+void append_pivot_check(struct CodeGenerator *generator, const struct Pivot *pivot);
 
 /*
  * Computes the accelerations into SPACE_ACCELERATION, and the constraint forces of least norm if with_forces. The
  * factors of the blocks stay in SPACE_MASS.
  */
-void append_accelerations(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                          bool with_forces);
+void append_accelerations(struct CodeGenerator *generator, const struct Equations *equations,
+                          const struct LoopedBlocks *blocks, bool with_forces);
 
 /* Declares the solution of append_solution() as the value of each row's symbol, until the next solution. */
-void hold_solutions(struct Values *values, const struct LoopedBlocks *blocks, const Node *symbol);
+void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol);
 
 /*
  * Does the same after append_accelerations() for the unknowns, if rates of first-order states depend on them;
  * constraint forces become those of least norm.
  */
-void hold_unknowns(struct Values *values, const struct Equations *equations, const struct LoopedBlocks *blocks,
-                   const Node *symbol);
+void hold_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
+                   const struct LoopedBlocks *blocks, const Node *symbol);
 
 /* Copies the elements of the block, which must be computed, to SPACE_MASS. */
-void append_masses(struct Values *values, const struct LoopedBlock *looped);
+void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped);
 
 /* Appends the factorization of the block, whose elements must be in SPACE_MASS. */
-void append_factor(struct Values *values, const struct LoopedBlocks *blocks, size_t block);
+void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t block);
 
 /* Computes and factors all blocks, if the accelerations themselves are not needed. */
-void append_factors(struct Values *values, const struct LoopedBlocks *blocks);
+void append_factors(struct CodeGenerator *generator, const struct LoopedBlocks *blocks);
 
 /* Solves a factored block in place of its right side. side: an element for each row of K, computed. */
-void append_solution(struct Values *values, const struct LoopedBlocks *blocks, size_t number, const Node *right_side);
+void append_solution(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number,
+                     const Node *right_side);

@@ -83,7 +83,7 @@ static struct StepMetadata step_metadata_of(const struct Program *program) {
 struct Lagrangian metadata_of(const struct Program *program, size_t work_count) {
   const struct Interface *interface = program->interface;
   const struct SeriesProgram *series = program->series, *output_series = program->output_series;
-  size_t scratch = program->is_table ? program->routines[FUNCTION_PREPARE]->local_count : 0;
+  size_t scratch = program->is_table ? program->ir_functions[FUNCTION_PREPARE]->local_count : 0;
   struct Lagrangian metadata = {
       .name = program->model->name,
       .coordinate_count = program->equations->count,

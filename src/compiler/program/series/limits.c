@@ -191,9 +191,9 @@ static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct 
     *taken = (struct LimitCheck){.rule = check->rule, .function = check->function, .share = check->share};
     taken->row = series_row(builder, check->rows[0]);
     if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
-    if (check->exponent != ZERO) taken->exponent = values_slot(builder->values, check->exponent);
+    if (check->exponent != ZERO) taken->exponent = generator_slot(builder->generator, check->exponent);
     taken->is_gated = check->guard_condition != ZERO;
-    if (taken->is_gated) taken->guard_condition = values_slot(builder->values, check->guard_condition);
+    if (taken->is_gated) taken->guard_condition = generator_slot(builder->generator, check->guard_condition);
   }
   return checks;
 }
@@ -206,11 +206,11 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
     list.guard_conditions = guard_conditions != NULL ? &guard_conditions[node] : NULL;
-    struct Form form = form_of(builder->needs, node);
-    if (form.kind == FORM_POWER) check_power(&list, node);
-    else if (form.kind == FORM_FUNCTION) check_function(&list, node);
-    else if (form.kind == FORM_QUOTIENT && can_have_row(builder, form.right))
-      check_division(&list, form.left, form.right);
+    struct FusedOperation fused = fused_operation_of(builder->needs, node);
+    if (fused.kind == FUSED_POWER) check_power(&list, node);
+    else if (fused.kind == FUSED_FUNCTION) check_function(&list, node);
+    else if (fused.kind == FUSED_QUOTIENT && can_have_row(builder, fused.right))
+      check_division(&list, fused.left, fused.right);
   }
   if (guard_conditions != NULL) release(guard_conditions);
   find_covered(&list);

@@ -17,7 +17,7 @@
 
 #include "algebra/functions.h"
 #include "program/series/series_builder.h"
-#include "program/values/values.h"
+#include "program/codegen/code_generator.h"
 
 bool is_constant_series(const struct SeriesBuilder *builder, Node node) {
   return graph_is_constant_in_time(builder->graph, node);
@@ -44,12 +44,12 @@ Slot series_row(struct SeriesBuilder *builder, Node node) {
 }
 
 static void append(struct SeriesBuilder *builder, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c) {
-  routine_append(builder->order, opcode, result, a, b, c);
+  ir_append(builder->order, opcode, result, a, b, c);
 }
 
 /* Returns the slot of a value that is constant in time. */
 static Slot value_of(const struct SeriesBuilder *builder, Node node) {
-  return values_slot(builder->values, node);
+  return generator_slot(builder->generator, node);
 }
 
 static Slot new_local(struct SeriesBuilder *builder) {
@@ -214,26 +214,26 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
   }
 }
 
-static void append_sum(struct SeriesBuilder *builder, Node node, struct Form form) {
+static void append_sum(struct SeriesBuilder *builder, Node node, struct FusedOperation fused) {
   Slot result = series_coefficient(builder, node);
-  Slot left = series_coefficient(builder, form.left), right = series_coefficient(builder, form.right);
-  bool is_difference = form.kind == FORM_DIFFERENCE;
-  if (is_constant_series(builder, form.right)) append(builder, SERIES_COPY, result, left, 0, 0);
-  else if (is_constant_series(builder, form.left))
+  Slot left = series_coefficient(builder, fused.left), right = series_coefficient(builder, fused.right);
+  bool is_difference = fused.kind == FUSED_DIFFERENCE;
+  if (is_constant_series(builder, fused.right)) append(builder, SERIES_COPY, result, left, 0, 0);
+  else if (is_constant_series(builder, fused.left))
     append(builder, is_difference ? SERIES_NEGATION : SERIES_COPY, result, right, 0, 0);
   else append(builder, is_difference ? SERIES_DIFFERENCE : SERIES_SUM, result, left, right, 0);
 }
 
 void append_recurrence(struct SeriesBuilder *builder, Node node) {
-  struct Form form = form_of(builder->needs, node);
+  struct FusedOperation fused = fused_operation_of(builder->needs, node);
   Slot result = series_coefficient(builder, node);
-  switch (form.kind) {
-  case FORM_NEGATION: append(builder, SERIES_NEGATION, result, series_coefficient(builder, form.left), 0, 0); return;
-  case FORM_SUM:
-  case FORM_DIFFERENCE: append_sum(builder, node, form); return;
-  case FORM_PRODUCT: append_product(builder, result, form.left, form.right); return;
-  case FORM_QUOTIENT: append_quotient(builder, node, form.left, form.right); return;
-  case FORM_POWER: append_power(builder, node, form.left, form.right); return;
-  case FORM_FUNCTION: append_function(builder, node); return;
+  switch (fused.kind) {
+  case FUSED_NEGATION: append(builder, SERIES_NEGATION, result, series_coefficient(builder, fused.left), 0, 0); return;
+  case FUSED_SUM:
+  case FUSED_DIFFERENCE: append_sum(builder, node, fused); return;
+  case FUSED_PRODUCT: append_product(builder, result, fused.left, fused.right); return;
+  case FUSED_QUOTIENT: append_quotient(builder, node, fused.left, fused.right); return;
+  case FUSED_POWER: append_power(builder, node, fused.left, fused.right); return;
+  case FUSED_FUNCTION: append_function(builder, node); return;
   }
 }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "program/expressions/series_plan.h"
-#include "program/values/form.h"
+#include "program/codegen/fused_operations.h"
 #include "algebra/node_list.h"
-#include "program/values/routine.h"
-#include "program/values/values.h"
+#include "program/codegen/ir.h"
+#include "program/codegen/code_generator.h"
 
 /* Provisional spaces: slots are final only when it is known which nodes have rows. */
 enum {
@@ -21,8 +21,8 @@ struct SeriesBuilder {
   const struct SeriesPlan *plan;
   size_t coordinates;
   struct Needs *needs;
-  const struct Values *values; /* for the slots of values that are constant in time */
-  struct Routine *order;
+  const struct CodeGenerator *generator; /* for the slots of values that are constant in time */
+  struct IrFunction *order;
   struct NodeList nodes; /* the computed nodes, ascending */
   bool *is_computed;     /* for each node of the graph, as the next two */
   bool *has_row;         /* all its coefficients are kept */

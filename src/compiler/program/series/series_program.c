@@ -28,23 +28,23 @@ static void find_computed(struct SeriesBuilder *builder) {
     if (!below[i] || is_fetched(needs, node)) continue;
     builder->is_computed[node] = true;
     if (is_integrated_power(builder, node)) continue;
-    struct Form form = form_of(needs, node);
-    below[cone_slot(cone, form.left)] = true;
-    if (form.arity == 2) below[cone_slot(cone, form.right)] = true;
+    struct FusedOperation fused = fused_operation_of(needs, node);
+    below[cone_slot(cone, fused.left)] = true;
+    if (fused.arity == 2) below[cone_slot(cone, fused.right)] = true;
   }
   for (size_t i = 0; i < cone->count; i++)
     if (builder->is_computed[cone->nodes[i]]) append_node(&builder->nodes, cone->nodes[i]);
 }
 
-static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const struct Values *values) {
-  size_t size = values->graph->count;
+static struct SeriesBuilder *builder_create(const struct SeriesPlan *plan, const struct CodeGenerator *generator) {
+  size_t size = generator->graph->count;
   struct SeriesBuilder *builder = allocate(1, sizeof *builder);
-  *builder = (struct SeriesBuilder){.graph = values->graph,
+  *builder = (struct SeriesBuilder){.graph = generator->graph,
                                     .plan = plan,
-                                    .coordinates = values->coordinates,
-                                    .values = values,
-                                    .needs = needs_create(values->graph),
-                                    .order = routine_create(),
+                                    .coordinates = generator->coordinates,
+                                    .generator = generator,
+                                    .needs = needs_create(generator->graph),
+                                    .order = ir_create(),
                                     .is_computed = allocate(size, sizeof(bool)),
                                     .has_row = allocate(size, sizeof(bool)),
                                     .is_done = allocate(size, sizeof(bool)),
@@ -59,10 +59,10 @@ static void append_next(struct SeriesBuilder *builder, Node node);
 
 /* Appends the operands first; auxiliary nodes may have higher numbers than the nodes that need them. */
 static void append_operands(struct SeriesBuilder *builder, Node node) {
-  struct Form form = form_of(builder->needs, node);
+  struct FusedOperation fused = fused_operation_of(builder->needs, node);
   if (!is_integrated_power(builder, node)) {
-    append_next(builder, form.left);
-    if (form.arity == 2) append_next(builder, form.right);
+    append_next(builder, fused.left);
+    if (fused.arity == 2) append_next(builder, fused.right);
   }
   enum Operation operation = builder->graph->vertices[node].operation;
   if (operation == POWER || operation == MINIMUM || operation == MAXIMUM)
@@ -123,7 +123,7 @@ static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder,
 /* Appends sum - (M_ij a_j)_k without the term with a_k, which is solved for. */
 static Slot append_rest(struct SeriesBuilder *builder, Slot sum, Node mass, size_t coordinate) {
   Slot rest = slot_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
-  routine_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
+  ir_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
   return rest;
 }
 
@@ -142,16 +142,16 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
       if (!is_constant_series(builder, nonsymmetric))
         sum = append_rest(builder, sum, nonsymmetric, block->coordinates[block->forces[k]]);
     }
-    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), sum, 0, 0);
+    ir_append(builder->order, SERIES_COPY, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), sum, 0, 0);
   }
-  routine_append(builder->order, SERIES_SOLVE, (Slot)number, 0, 0, 0);
+  ir_append(builder->order, SERIES_SOLVE, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
-    routine_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
-                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), 0, 0);
+    ir_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
+              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), 0, 0);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Slot derivative) {
-  routine_append(builder->order, SERIES_STATE, slot_in(SPACE_STATE_ROW, state), derivative, 0, 0);
+  ir_append(builder->order, SERIES_STATE, slot_in(SPACE_STATE_ROW, state), derivative, 0, 0);
 }
 
 /* Appends the coefficients k + 1 of the state from the coefficients k of its derivative. */
@@ -170,7 +170,7 @@ struct Rows {
   const struct SeriesBuilder *builder;
   size_t *row; /* for each node with has_row of the builder: its row */
   size_t acceleration_row, further_row;
-  struct Routine *order;
+  struct IrFunction *order;
   Slot *local; /* for each node with has_local: its local variable */
   bool *has_local;
   Slot *factor; /* of each local variable that belongs to no node; 0: not assigned yet */
@@ -181,13 +181,13 @@ static Slot resolved(struct Rows *rows, Slot slot) {
   switch ((int)space_of(slot)) {
   case SPACE_OF_NODES:
     if (rows->builder->has_row[index]) return slot_in(SPACE_ROW, rows->row[index]);
-    if (!rows->has_local[index]) rows->local[index] = routine_local(rows->order);
+    if (!rows->has_local[index]) rows->local[index] = ir_new_local(rows->order);
     rows->has_local[index] = true;
     return rows->local[index];
   case SPACE_OF_ACCELERATIONS: return slot_in(SPACE_ROW, rows->acceleration_row + index);
   case SPACE_OF_RATES: return slot_in(SPACE_ROW, rows->further_row + index);
   case SPACE_OF_FACTORS:
-    if (rows->factor[index] == 0) rows->factor[index] = routine_local(rows->order);
+    if (rows->factor[index] == 0) rows->factor[index] = ir_new_local(rows->order);
     return rows->factor[index];
   default: return slot;
   }
@@ -198,7 +198,7 @@ static Slot resolved(struct Rows *rows, Slot slot) {
  * such as an argument that is linear in time.
  */
 static bool *find_used(const struct SeriesBuilder *builder) {
-  const struct Routine *open = builder->order;
+  const struct IrFunction *open = builder->order;
   bool *is_used = allocate(open->count, sizeof *is_used);
   bool *is_read = allocate(builder->graph->count, sizeof *is_read);
   for (size_t i = open->count; i-- > 0;) {
@@ -213,17 +213,17 @@ static bool *find_used(const struct SeriesBuilder *builder) {
 }
 
 /* Returns the instructions of an order with final slots. */
-static struct Routine *resolve(struct Rows *rows) {
-  const struct Routine *open = rows->builder->order;
+static struct IrFunction *resolve(struct Rows *rows) {
+  const struct IrFunction *open = rows->builder->order;
   bool *is_used = find_used(rows->builder);
-  rows->order = routine_create();
+  rows->order = ir_create();
   for (size_t i = 0; i < open->count; i++) {
     const struct Instruction *from = &open->instructions[i];
     if (!is_used[i]) continue;
     Slot operands[OPERAND_LIMIT] = {0};
     for (int j = 0; j < opcode_arity(from->opcode); j++) operands[j] = resolved(rows, from->operands[j]);
     Slot result = from->opcode == SERIES_SOLVE ? from->result : resolved(rows, from->result);
-    routine_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
+    ir_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
   }
   return rows->order;
 }
@@ -259,46 +259,46 @@ static void complete(struct SeriesProgram *program, struct Rows *rows) {
 }
 
 /* Computes the nodes that have rows and do not depend on accelerations. */
-static void compute_before_blocks(const struct SeriesBuilder *builder, struct Values *values) {
+static void compute_before_blocks(const struct SeriesBuilder *builder, struct CodeGenerator *generator) {
   struct NodeList targets = {0};
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
     if (builder->has_row[node] && !has_accelerations(builder, node)) append_node(&targets, node);
   }
-  values_compute(values, targets.nodes, targets.count, false);
+  generator_compute(generator, targets.nodes, targets.count, false);
 }
 
 /* Computes the nodes that have rows, and further nodes. */
-static void compute_first(const struct SeriesBuilder *builder, struct Values *values, const Node *further,
+static void compute_first(const struct SeriesBuilder *builder, struct CodeGenerator *generator, const Node *further,
                           size_t count) {
   struct NodeList targets = {0};
   append_nodes(&targets, further, count);
   for (size_t i = 0; i < builder->nodes.count; i++)
     if (builder->has_row[builder->nodes.nodes[i]]) append_node(&targets, builder->nodes.nodes[i]);
-  values_compute(values, targets.nodes, targets.count, false);
+  generator_compute(generator, targets.nodes, targets.count, false);
 }
 
 /* Copies coefficient 0 of all rows, and computes the inverses. */
-static void copy_first(const struct Rows *rows, struct Values *values) {
+static void copy_first(const struct Rows *rows, struct CodeGenerator *generator) {
   const struct SeriesBuilder *builder = rows->builder;
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
-    if (builder->has_row[node]) values_copy(values, slot_in(SPACE_ROW, rows->row[node]), node);
+    if (builder->has_row[node]) generator_copy(generator, slot_in(SPACE_ROW, rows->row[node]), node);
   }
   for (size_t i = 0; i < builder->needs->cone->count; i++) {
     Node node = builder->needs->cone->nodes[i];
     if (builder->inverse[node] == 0) continue;
     Slot row = slot_in(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
-    routine_append(values->routine, RECIPROCAL, row, values_slot(values, node), 0, 0);
+    ir_append(generator->ir, RECIPROCAL, row, generator_slot(generator, node), 0, 0);
   }
 }
 
 struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
-                                               struct Values *values) {
+                                               struct CodeGenerator *generator) {
   const struct Equations *equations = expressions->equations;
   size_t n = equations->count;
   struct SeriesProgram *program = allocate(1, sizeof *program);
-  struct SeriesBuilder *builder = builder_create(expressions->series, values);
+  struct SeriesBuilder *builder = builder_create(expressions->series, generator);
   program->limit = limits_of(builder);
   append_nodes_before_blocks(builder);
   for (size_t i = 0; i < blocks->count; i++) append_block(builder, equations, &blocks->items[i], i);
@@ -307,21 +307,21 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
   complete(program, &rows);
 
-  program->start = values_begin(values);
-  compute_before_blocks(builder, values);
-  append_accelerations(values, equations, blocks, false);
-  hold_unknowns(values, equations, blocks, expressions->unknowns);
-  compute_first(builder, values, equations->rates.nodes, equations->rates.count);
-  copy_first(&rows, values);
-  for (size_t i = 0; i < n; i++) routine_copy(program->start, target_slot(i), slot_in(SPACE_STATE, n + i));
+  program->start = generator_begin(generator);
+  compute_before_blocks(builder, generator);
+  append_accelerations(generator, equations, blocks, false);
+  hold_unknowns(generator, equations, blocks, expressions->unknowns);
+  compute_first(builder, generator, equations->rates.nodes, equations->rates.count);
+  copy_first(&rows, generator);
+  for (size_t i = 0; i < n; i++) ir_copy(program->start, target_slot(i), slot_in(SPACE_STATE, n + i));
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
-                   slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
-    values_copy(values, target_slot(2 * n + i), equations->rates.nodes[i]);
+    generator_copy(generator, target_slot(2 * n + i), equations->rates.nodes[i]);
   return program;
 }
 
@@ -331,38 +331,40 @@ static bool uses_accelerations(const struct SeriesPlan *plan, const struct Graph
   return false;
 }
 
-struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct Values *values) {
+struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions,
+                                                struct CodeGenerator *generator) {
   const struct SeriesPlan *plan = expressions->output_series;
   size_t count = expressions->model->outputs.count, n = expressions->equations->count;
   struct SeriesProgram *program = allocate(1, sizeof *program);
-  struct SeriesBuilder *builder = builder_create(plan, values);
-  bool with_accelerations = uses_accelerations(plan, values->graph);
+  struct SeriesBuilder *builder = builder_create(plan, generator);
+  bool with_accelerations = uses_accelerations(plan, generator->graph);
   for (size_t i = 0; with_accelerations && i < n; i++)
-    routine_append(builder->order, SERIES_SLOPE, acceleration_row(i), slot_in(SPACE_STATE_ROW, n + i), 0, 0);
+    ir_append(builder->order, SERIES_SLOPE, acceleration_row(i), slot_in(SPACE_STATE_ROW, n + i), 0, 0);
   append_nodes_of_order(builder);
   for (size_t i = 0; i < count; i++)
-    routine_append(builder->order, SERIES_COPY, slot_in(SPACE_TARGET_ROW, i),
-                   series_coefficient(builder, expressions->result[i]), 0, 0);
+    ir_append(builder->order, SERIES_COPY, slot_in(SPACE_TARGET_ROW, i),
+              series_coefficient(builder, expressions->result[i]), 0, 0);
   struct Rows rows = rows_create(builder, with_accelerations ? n : 0, 0, program);
   complete(program, &rows);
 
-  program->start = values_begin(values);
+  program->start = generator_begin(generator);
   for (size_t i = 0; with_accelerations && i < n; i++) {
     Slot acceleration = slot_in(SPACE_ACCELERATION, i);
-    routine_append(program->start, FIRST_SLOPE, acceleration, slot_in(SPACE_STATE_ROW, n + i), 0, 0);
-    routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
+    ir_append(program->start, FIRST_SLOPE, acceleration, slot_in(SPACE_STATE_ROW, n + i), 0, 0);
+    ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
   }
-  compute_first(builder, values, expressions->result, count);
-  copy_first(&rows, values);
-  for (size_t i = 0; i < count; i++) values_copy(values, slot_in(SPACE_TARGET_ROW, i), expressions->result[i]);
+  compute_first(builder, generator, expressions->result, count);
+  copy_first(&rows, generator);
+  for (size_t i = 0; i < count; i++) generator_copy(generator, slot_in(SPACE_TARGET_ROW, i), expressions->result[i]);
   return program;
 }
 
-struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values) {
+struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions,
+                                                struct CodeGenerator *generator) {
   const struct SeriesPlan *plan = expressions->watched_series;
   struct SeriesProgram *program = allocate(1, sizeof *program);
-  struct SeriesBuilder *builder = builder_create(plan, values);
-  size_t forces = uses_accelerations(plan, values->graph) ? row_count(expressions->equations) : 0;
+  struct SeriesBuilder *builder = builder_create(plan, generator);
+  size_t forces = uses_accelerations(plan, generator->graph) ? row_count(expressions->equations) : 0;
   program->limit = limits_of(builder);
   /* Nodes that no limit needs have no row. */
   for (size_t i = 0; i < builder->nodes.count; i++)
@@ -370,10 +372,10 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   struct Rows rows = rows_create(builder, forces, 0, program);
   complete(program, &rows);
 
-  program->start = values_begin(values);
-  compute_first(builder, values, NULL, 0);
-  copy_first(&rows, values);
+  program->start = generator_begin(generator);
+  compute_first(builder, generator, NULL, 0);
+  copy_first(&rows, generator);
   for (size_t i = 0; i < forces; i++)
-    routine_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), slot_in(SPACE_ACCELERATION, i));
+    ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), slot_in(SPACE_ACCELERATION, i));
   return program->limit.count > 0 ? program : NULL;
 }

@@ -10,8 +10,8 @@
 
 /* The instruction lists of a set of series, and their workspace. */
 struct SeriesProgram {
-  struct Routine *start; /* of the motion: also computes d state / dt */
-  struct Routine *order;
+  struct IrFunction *start; /* of the motion: also computes d state / dt */
+  struct IrFunction *order;
   struct LimitChecks limit;
   size_t row_count;
   size_t mass_row;         /* first row of the factors of K */
@@ -22,10 +22,10 @@ struct SeriesProgram {
 
 /* Returns the program of the motion. */
 struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
-                                               struct Values *values);
+                                               struct CodeGenerator *generator);
 
 /* Returns the program of the outputs, which are the first results. Accelerations are derivatives of the velocities. */
-struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct Values *values);
+struct SeriesProgram *series_program_of_outputs(const struct Expressions *expressions, struct CodeGenerator *generator);
 
 /* Returns the program of the limits on the search for events, given accelerations and forces; NULL without limits. */
-struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct Values *values);
+struct SeriesProgram *series_program_of_watched(const struct Expressions *expressions, struct CodeGenerator *generator);

@@ -1,5 +1,5 @@
 /*
- * Encodes routines as tables of 32-bit words for the interpreter in src/runtime/support/instructions.c. Instructions
+ * Encodes functions as tables of 32-bit words for the interpreter in src/runtime/support/instructions.c. Instructions
  * with the same opcode, function and spaces form a run, whose header is decoded once; the interpreter loops over its
  * instructions. Compile time is then independent of the length of the code.
  */
@@ -21,12 +21,12 @@ static bool is_in_tables(const struct Program *program, enum FunctionName name) 
   return program->switches_are_table || generated_functions[name].group != IN_SWITCHES;
 }
 
-/* Collects the constants and functions that a routine in tables uses. */
-static void note(void *target, enum FunctionName name, const struct Routine *routine) {
+/* Collects the constants and functions that a function in tables uses. */
+static void note(void *target, enum FunctionName name, const struct IrFunction *ir) {
   struct Encoding *encoding = target;
   if (!is_in_tables(encoding->program, name)) return;
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     if (instruction->opcode == CALL || instruction->opcode == CALL_OF_TWO)
       encoding->function[instruction->function] = 1;
     for (int j = 0; j < opcode_arity(instruction->opcode); j++)
@@ -47,12 +47,12 @@ static void note_limit(struct Encoding *encoding, const struct SeriesProgram *se
  * Updates the largest number of local variables. prepare() keeps its own after its results, and statements declare
  * theirs.
  */
-static void find_most_locals(void *target, enum FunctionName name, const struct Routine *routine) {
+static void find_most_locals(void *target, enum FunctionName name, const struct IrFunction *ir) {
   struct Encoding *encoding = target;
   const struct Program *program = encoding->program;
   bool has_own =
       name == FUNCTION_PREPARE || (!program->switches_are_table && generated_functions[name].group == IN_SWITCHES);
-  if (!has_own && routine->local_count > encoding->local_count) encoding->local_count = routine->local_count;
+  if (!has_own && ir->local_count > encoding->local_count) encoding->local_count = ir->local_count;
 }
 
 struct Encoding *encoding_create(const struct Program *program) {
@@ -88,9 +88,9 @@ static void append_word(struct Words *words, uint32_t word) {
 }
 
 /* Appends one run: instructions first .. end - 1 of the schedule. */
-static void append_run(struct Words *words, const struct Encoding *encoding, const struct Routine *routine,
+static void append_run(struct Words *words, const struct Encoding *encoding, const struct IrFunction *ir,
                        const size_t *schedule, size_t first, size_t end) {
-  const struct Instruction *instructions = routine->instructions;
+  const struct Instruction *instructions = ir->instructions;
   enum Opcode opcode = instructions[schedule[first]].opcode;
   append_word(words, opcode);
   append_word(words, (uint32_t)(end - first));
@@ -104,26 +104,26 @@ static void append_run(struct Words *words, const struct Encoding *encoding, con
   }
 }
 
-void encode(const struct Encoding *encoding, const struct Routine *routine, struct Words *words) {
-  size_t *schedule = schedule_create(routine, &encoding->program->blocks);
-  for (size_t first = 0, end = 0; first < routine->count; first = end) {
-    const struct Instruction *instruction = &routine->instructions[schedule[first]];
-    while (end < routine->count && same_run(instruction, &routine->instructions[schedule[end]])) end++;
-    append_run(words, encoding, routine, schedule, first, end);
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct Words *words) {
+  size_t *schedule = schedule_create(ir, &encoding->program->blocks);
+  for (size_t first = 0, end = 0; first < ir->count; first = end) {
+    const struct Instruction *instruction = &ir->instructions[schedule[first]];
+    while (end < ir->count && same_run(instruction, &ir->instructions[schedule[end]])) end++;
+    append_run(words, encoding, ir, schedule, first, end);
   }
   append_word(words, END);
 }
 
-struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
-                                const struct ResultGroups *groups) {
-  struct RoutineTables tables = {.start = allocate(groups->count, sizeof *tables.start), .slot = groups->slot};
+struct IrTables encode_all(const struct Encoding *encoding, struct IrFunction *const *ir_functions,
+                           const struct ResultGroups *groups) {
+  struct IrTables tables = {.start = allocate(groups->count, sizeof *tables.start), .slot = groups->slot};
   for (size_t i = 0; i < groups->count; i++) {
     size_t leader = groups->leader[i];
     tables.start[i] = leader < i ? tables.start[leader] : tables.words.count;
     if (tables.slot[i] > tables.largest_slot) tables.largest_slot = tables.slot[i];
-    if (routines[i] == NULL) continue;
-    encode(encoding, routines[i], &tables.words);
-    tables.operation_count += routines[i]->operation_count;
+    if (ir_functions[i] == NULL) continue;
+    encode(encoding, ir_functions[i], &tables.words);
+    tables.operation_count += ir_functions[i]->operation_count;
   }
   append_word(&tables.words, END);
   return tables;

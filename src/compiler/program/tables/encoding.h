@@ -1,4 +1,4 @@
-/* Encodes routines as instruction tables; include/instructions.h describes the format. */
+/* Encodes functions as instruction tables; include/instructions.h describes the format. */
 #pragma once
 
 #include "program/program.h"
@@ -9,7 +9,7 @@ struct Encoding {
   size_t *number; /* for each node: 1 + the index of a constant in numbers, 0 for none */
   struct NodeList numbers;
   size_t function[OPERATION_COUNT]; /* 1 + the function's index among those of the same arity, 0 for none */
-  size_t local_count;               /* the largest number of local variables of a routine in tables */
+  size_t local_count;               /* the largest number of local variables of a function in tables */
 };
 
 /* Collects the constants and functions that the tables of a program use. */
@@ -24,20 +24,20 @@ struct Words {
   size_t count;
 };
 
-/* Appends the table of a routine, terminated by END. */
-void encode(const struct Encoding *encoding, const struct Routine *routine, struct Words *words);
+/* Appends the table of a function, terminated by END. */
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct Words *words);
 
-/* Consecutive tables of several routines. */
-struct RoutineTables {
+/* Consecutive tables of several functions. */
+struct IrTables {
   struct Words words;
-  size_t *start;      /* of each routine: the offset of its table, or of its leader's */
-  const size_t *slot; /* of each routine: its index among the targets of the leader's table */
+  size_t *start;      /* of each function: the offset of its table, or of its leader's */
+  const size_t *slot; /* of each function: its index among the targets of the leader's table */
   size_t largest_slot, operation_count;
 };
 
-/* Encodes the routines that lead a group; routines may be NULL. */
-struct RoutineTables encode_all(const struct Encoding *encoding, struct Routine *const *routines,
-                                const struct ResultGroups *groups);
+/* Encodes the functions that lead a group; functions may be NULL. */
+struct IrTables encode_all(const struct Encoding *encoding, struct IrFunction *const *ir_functions,
+                           const struct ResultGroups *groups);
 
 /* Returns the check with the slots that tables use. */
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check);

@@ -25,10 +25,10 @@ static void extend(struct Accesses *accesses, Slot slot) {
   if (index_in(slot) >= accesses->count[space_of(slot)]) accesses->count[space_of(slot)] = index_in(slot) + 1;
 }
 
-static struct Accesses accesses_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
+static struct Accesses accesses_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks) {
   struct Accesses accesses = {0};
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     if (opcode_has_result(instruction->opcode)) extend(&accesses, instruction->result);
     for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(&accesses, instruction->operands[j]);
   }
@@ -92,7 +92,7 @@ static bool may_return(enum Opcode opcode) {
   return opcode == FACTOR || opcode_metadata(opcode)->result == NUMBER;
 }
 
-/* An instruction with its level, and its number in the routine, by which equal ones keep their order. */
+/* An instruction with its level, and its number in the function, by which equal ones keep their order. */
 struct ScheduledInstruction {
   size_t level, number;
   uint32_t spaces;
@@ -116,20 +116,20 @@ uint32_t spaces_of(const struct Instruction *instruction) {
   return spaces;
 }
 
-size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks) {
-  struct Accesses accesses = accesses_create(routine, blocks);
-  struct ScheduledInstruction *scheduled = allocate(routine->count, sizeof *scheduled);
-  size_t *order = allocate(routine->count, sizeof *order);
+size_t *schedule_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks) {
+  struct Accesses accesses = accesses_create(ir, blocks);
+  struct ScheduledInstruction *scheduled = allocate(ir->count, sizeof *scheduled);
+  size_t *order = allocate(ir->count, sizeof *order);
   size_t last_check = 0;
-  for (size_t i = 0; i < routine->count; i++) {
-    const struct Instruction *instruction = &routine->instructions[i];
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
     bool checks = may_return(instruction->opcode);
     size_t level = level_of(&accesses, instruction, blocks, checks ? last_check : 0);
     if (checks) last_check = level;
     scheduled[i] = (struct ScheduledInstruction){level, i, spaces_of(instruction), instruction};
   }
-  if (routine->count > 0) qsort(scheduled, routine->count, sizeof *scheduled, compare);
-  for (size_t i = 0; i < routine->count; i++) order[i] = scheduled[i].number;
+  if (ir->count > 0) qsort(scheduled, ir->count, sizeof *scheduled, compare);
+  for (size_t i = 0; i < ir->count; i++) order[i] = scheduled[i].number;
   for (int space = 0; space < SPACE_COUNT; space++) release(accesses.of[space]);
   release(scheduled);
   return order;

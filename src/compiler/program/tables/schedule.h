@@ -1,12 +1,12 @@
 /*
- * The order of a routine's instructions in a table: long runs of equal instructions, as far as data dependences allow.
+ * The order of a function's instructions in a table: long runs of equal instructions, as far as data dependences allow.
  */
 #pragma once
 
 #include "program/expressions/accelerations.h"
 
-/* Returns the indices of the routine's instructions in the order of execution. */
-size_t *schedule_create(const struct Routine *routine, const struct LoopedBlocks *blocks);
+/* Returns the indices of the function's instructions in the order of execution. */
+size_t *schedule_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks);
 
 /* Returns the spaces of result and operands, packed as in a table; equal for all instructions of a run. */
 uint32_t spaces_of(const struct Instruction *instruction);

@@ -258,7 +258,7 @@ static void check_rims(const struct Robot *robot, const struct RobotOptions *opt
 
 /* Reports unknown links that should touch the ground, and those without a suitable shape. */
 static void check_ground_contact(const struct Robot *robot, const struct RobotOptions *options,
-                           struct Diagnostics *diagnostics) {
+                                 struct Diagnostics *diagnostics) {
   const char *rest = options->ground_contact;
   if (!options->has_ground || rest == NULL) return;
   for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {

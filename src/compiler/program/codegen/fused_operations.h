@@ -3,11 +3,19 @@
 
 #include "algebra/cone.h"
 
-enum FormKind { FORM_SUM, FORM_DIFFERENCE, FORM_PRODUCT, FORM_QUOTIENT, FORM_NEGATION, FORM_POWER, FORM_FUNCTION };
+enum FusedKind {
+  FUSED_SUM,
+  FUSED_DIFFERENCE,
+  FUSED_PRODUCT,
+  FUSED_QUOTIENT,
+  FUSED_NEGATION,
+  FUSED_POWER,
+  FUSED_FUNCTION
+};
 
 /* An operation with one or two operands, as it is computed. */
-struct Form {
-  enum FormKind kind;
+struct FusedOperation {
+  enum FusedKind kind;
   Node left, right;
   int arity;
 };
@@ -33,4 +41,4 @@ void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool 
 bool is_fetched(const struct Needs *needs, Node node);
 
 /* Returns a member's operation, with a + (-b) fused into a - b, and a * (1 / b) into a / b if 1 / b has one use. */
-struct Form form_of(const struct Needs *needs, Node node);
+struct FusedOperation fused_operation_of(const struct Needs *needs, Node node);

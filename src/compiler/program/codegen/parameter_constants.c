@@ -1,4 +1,4 @@
-#include "program/values/parameter_constants.h"
+#include "program/codegen/parameter_constants.h"
 
 #include "base/memory.h"
 

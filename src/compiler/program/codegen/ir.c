@@ -1,4 +1,4 @@
-#include "program/values/routine.h"
+#include "program/codegen/ir.h"
 
 #include "base/memory.h"
 
@@ -87,35 +87,35 @@ int opcode_arity(enum Opcode opcode) {
   return arity;
 }
 
-struct Routine *routine_create(void) {
-  return allocate(1, sizeof(struct Routine));
+struct IrFunction *ir_create(void) {
+  return allocate(1, sizeof(struct IrFunction));
 }
 
-static void append(struct Routine *routine, struct Instruction instruction) {
-  routine->instructions = make_room(routine->instructions, routine->count, sizeof *routine->instructions);
-  routine->instructions[routine->count++] = instruction;
-  routine->operation_count += metadata[instruction.opcode].operations;
-  if (opcode_has_result(instruction.opcode)) routine->spaces |= 1u << space_of(instruction.result);
-  for (int i = 0; i < opcode_arity(instruction.opcode); i++) routine->spaces |= 1u << space_of(instruction.operands[i]);
+static void append(struct IrFunction *ir, struct Instruction instruction) {
+  ir->instructions = make_room(ir->instructions, ir->count, sizeof *ir->instructions);
+  ir->instructions[ir->count++] = instruction;
+  ir->operation_count += metadata[instruction.opcode].operations;
+  if (opcode_has_result(instruction.opcode)) ir->spaces |= 1u << space_of(instruction.result);
+  for (int i = 0; i < opcode_arity(instruction.opcode); i++) ir->spaces |= 1u << space_of(instruction.operands[i]);
 }
 
-void routine_append(struct Routine *routine, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c) {
-  append(routine, (struct Instruction){.opcode = opcode, .result = result, .operands = {a, b, c}});
+void ir_append(struct IrFunction *ir, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c) {
+  append(ir, (struct Instruction){.opcode = opcode, .result = result, .operands = {a, b, c}});
 }
 
-void routine_copy(struct Routine *routine, Slot to, Slot from) {
-  routine_append(routine, COPY, to, from, 0, 0);
+void ir_copy(struct IrFunction *ir, Slot to, Slot from) {
+  ir_append(ir, COPY, to, from, 0, 0);
 }
 
-void routine_append_call(struct Routine *routine, enum Operation function, Slot result, Slot a, Slot b) {
+void ir_append_call(struct IrFunction *ir, enum Operation function, Slot result, Slot a, Slot b) {
   enum Opcode opcode = operation_arity(function) == 2 ? CALL_OF_TWO : CALL;
-  append(routine, (struct Instruction){.opcode = opcode, .function = function, .result = result, .operands = {a, b}});
+  append(ir, (struct Instruction){.opcode = opcode, .function = function, .result = result, .operands = {a, b}});
 }
 
-Slot routine_local(struct Routine *routine) {
-  return slot_in(SPACE_LOCAL, routine->local_count++);
+Slot ir_new_local(struct IrFunction *ir) {
+  return slot_in(SPACE_LOCAL, ir->local_count++);
 }
 
-bool routine_uses(const struct Routine *routine, enum Space space) {
-  return (routine->spaces >> space & 1u) != 0;
+bool ir_uses(const struct IrFunction *ir, enum Space space) {
+  return (ir->spaces >> space & 1u) != 0;
 }

@@ -1,8 +1,8 @@
-#include "program/values/form.h"
+#include "program/codegen/fused_operations.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "program/values/parameter_constants.h"
+#include "program/codegen/parameter_constants.h"
 
 struct Needs *needs_create(const struct Graph *graph) {
   struct Needs *needs = allocate(1, sizeof *needs);
@@ -54,20 +54,20 @@ static bool is_negation(const struct Needs *needs, Node node) {
   return !is_fetched(needs, node) && coefficient_of(needs->graph, node, &base) == -1.0;
 }
 
-struct Form form_of(const struct Needs *needs, Node node) {
+struct FusedOperation fused_operation_of(const struct Needs *needs, Node node) {
   const struct Vertex *vertices = needs->graph->vertices, *vertex = &vertices[node];
   Node left = vertex->left, right = vertex->right;
   switch (vertex->operation) {
   case ADD:
-    if (is_negation(needs, right)) return (struct Form){FORM_DIFFERENCE, left, vertices[right].right, 2};
-    if (is_negation(needs, left)) return (struct Form){FORM_DIFFERENCE, right, vertices[left].right, 2};
-    return (struct Form){FORM_SUM, left, right, 2};
+    if (is_negation(needs, right)) return (struct FusedOperation){FUSED_DIFFERENCE, left, vertices[right].right, 2};
+    if (is_negation(needs, left)) return (struct FusedOperation){FUSED_DIFFERENCE, right, vertices[left].right, 2};
+    return (struct FusedOperation){FUSED_SUM, left, right, 2};
   case MULTIPLY:
-    if (is_negation(needs, node)) return (struct Form){FORM_NEGATION, right, ZERO, 1};
-    if (is_inverse_for_one(needs, right)) return (struct Form){FORM_QUOTIENT, left, vertices[right].left, 2};
-    if (is_inverse_for_one(needs, left)) return (struct Form){FORM_QUOTIENT, right, vertices[left].left, 2};
-    return (struct Form){FORM_PRODUCT, left, right, 2};
-  case POWER: return (struct Form){FORM_POWER, left, right, 2};
-  default: return (struct Form){FORM_FUNCTION, left, right, operation_arity(vertex->operation)};
+    if (is_negation(needs, node)) return (struct FusedOperation){FUSED_NEGATION, right, ZERO, 1};
+    if (is_inverse_for_one(needs, right)) return (struct FusedOperation){FUSED_QUOTIENT, left, vertices[right].left, 2};
+    if (is_inverse_for_one(needs, left)) return (struct FusedOperation){FUSED_QUOTIENT, right, vertices[left].left, 2};
+    return (struct FusedOperation){FUSED_PRODUCT, left, right, 2};
+  case POWER: return (struct FusedOperation){FUSED_POWER, left, right, 2};
+  default: return (struct FusedOperation){FUSED_FUNCTION, left, right, operation_arity(vertex->operation)};
   }
 }

@@ -1,5 +1,5 @@
 /*
- * The intermediate representation: a routine holds the instructions of one function of the generated code, each result
+ * The intermediate representation: an IrFunction holds the instructions of one generated function, each result
  * before its uses. include/instructions.h has the instruction set.
  */
 #pragma once
@@ -21,7 +21,7 @@ struct Instruction {
 };
 
 /* The instructions of a function, in an order in which each result precedes its uses. */
-struct Routine {
+struct IrFunction {
   struct Instruction *instructions;
   size_t count;
   size_t local_count;
@@ -78,17 +78,17 @@ bool opcode_has_result(enum Opcode opcode);
 
 int opcode_arity(enum Opcode opcode);
 
-struct Routine *routine_create(void);
+struct IrFunction *ir_create(void);
 
 /* Appends an instruction; operands beyond the opcode's arity are ignored. */
-void routine_append(struct Routine *routine, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c);
+void ir_append(struct IrFunction *ir, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c);
 
-void routine_copy(struct Routine *routine, Slot to, Slot from);
+void ir_copy(struct IrFunction *ir, Slot to, Slot from);
 
-void routine_append_call(struct Routine *routine, enum Operation function, Slot result, Slot a, Slot b);
+void ir_append_call(struct IrFunction *ir, enum Operation function, Slot result, Slot a, Slot b);
 
 /* Returns a new local variable. */
-Slot routine_local(struct Routine *routine);
+Slot ir_new_local(struct IrFunction *ir);
 
 /* True if any operand or result is in the space. */
-bool routine_uses(const struct Routine *routine, enum Space space);
+bool ir_uses(const struct IrFunction *ir, enum Space space);
