@@ -93,7 +93,7 @@ MADE = {"gallery.md", "python.md"}  # pages that are no files of the tree
 FIRST = "DoublePendulum"  # system that the laboratory shows first
 # Files to which pages link.
 BESIDE = ("fmu/systems.gif", "fmu/tutorials/laboratory.png", "fmu/tutorials/crane-blocks.svg", "fmu/system.xsd", "scripts/coupling/slaves.py", "scripts/coupling/BalancedCart/SystemStructure.ssd", *(f"fmu/{name}/system.xml" for name in (
-    "BristleFriction", "ChainPendulum", "DigitalServo", "FourBar", "GantryCrane", "HydraulicCylinder", "PidController", "Rope", "SpinningBeam", "StateFeedback",
+    "BristleFriction", "ChainPendulum", "DigitalServo", "FourBar", "GantryCrane", "HangingCable", "HydraulicCylinder", "PidController", "Rope", "SpinningBeam", "StateFeedback",
     "WormGear")))  # fmt: skip
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }

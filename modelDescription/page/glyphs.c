@@ -38,12 +38,13 @@ static void add_index(struct Glyphs *glyphs, const char *text, size_t length) {
     glyphs->indices[glyphs->index_count++] = (struct Span){text, length};
 }
 
-/* Splits names such as x_end and omegaCoupler into base and index. */
+/* Splits names such as x_end, omegaCoupler and rhoA into base and index. */
 static void split_word(struct Glyphs *glyphs) {
   struct Span *base = &glyphs->base;
   const char *text = base->text;
-  for (size_t i = 1; i + 1 < base->length; i++) {
-    bool underscore = text[i] == '_', capital = isupper((unsigned char)text[i]) && greek_letter((struct Span){text, i});
+  for (size_t i = 1; i < base->length; i++) {
+    bool underscore = text[i] == '_' && i + 1 < base->length;
+    bool capital = isupper((unsigned char)text[i]) && greek_letter((struct Span){text, i}) != NULL;
     if (!underscore && !capital) continue;
     size_t start = underscore ? i + 1 : i;
     add_index(glyphs, text + start, base->length - start);

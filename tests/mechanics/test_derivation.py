@@ -60,6 +60,7 @@ def test_every_system_is_compared():
     variants = {"LongChain", "BouncingSpring"}  # ChainPendulum with more rods, ElasticPendulum with another solver
     variants.add("Rope")  # too large for SymPy; see test_rope.py
     variants |= {"Actuator", "Network"}  # with states of first order; see test_states.py
+    variants.add("HangingCable")  # see test_hanging_cable.py
     variants |= {"PidController", "BristleFriction", "HydraulicCylinder", "GantryCrane", "SpinningBeam", "DigitalServo", "HalfCar"}  # see test_systems_with_states.py, test_spinning_beam.py
     variants.add("RobotArm")  # against Newton and Euler; see test_bodies_in_space.py
     variants |= {name for name in fmu.moving_names() if fmu.is_constrained(name)}  # see test_constraints.py

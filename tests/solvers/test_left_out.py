@@ -11,16 +11,16 @@ from linked import linked_members, sizes
 
 EXACT = ["Motor", "ParticleCartesian", "SimplePendulumLinear", "InvertedPendulumCartLinear", "InvertedPendulumCartTorqueLinear"]
 NONE = ["StateFeedback", "SpringDamper"]
-AUTO = ["BristleFriction", "DampedPendulum", "DigitalServo", "ElasticPendulum", "FlyballGovernor", "FourBar", "GantryCrane", "Gyrocompass", "HalfCar", "HydraulicCylinder",
-        "MotorPendulum", "RobotArm", "Rope", "SeatSuspension", "SpinningBeam", "WormGear"]  # fmt: skip
+AUTO = ["BristleFriction", "DampedPendulum", "DigitalServo", "ElasticPendulum", "FlyballGovernor", "FourBar", "GantryCrane", "Gyrocompass", "HalfCar", "HangingCable",
+        "HydraulicCylinder", "MotorPendulum", "RobotArm", "Rope", "SeatSuspension", "SpinningBeam", "WormGear"]  # fmt: skip
 LARGE = ["Rope"]  # equations as tables, and a sparse Jacobian
 CHAINS = ["Bricard", "RobotArm"]  # bodies in space, with five or six joints
 STOPPED = ["GantryCrane", "HydraulicCylinder", "WormGear"]  # both methods of auto, and contacts or friction
-BEAMS = ["SpinningBeam"]  # energies that are integrals
+BEAMS = ["HangingCable", "SpinningBeam"]  # energies that are integrals
 TABLES = LARGE + CHAINS + BEAMS  # their series are tables, which always receive time
 TIMED = ["BristleFriction", "DigitalServo", "Gyrocompass", "HalfCar", "RotatingPivotPendulum", "SpinningBeam", "VibratingTable"]
-FACTORED = ["ChainPendulum", "RobotArm", "SpinningBeam"]  # by a loop, since their mass matrices are full and large
-LONG = ["NFourBar", "Rope"]  # many coordinates
+FACTORED = ["ChainPendulum", "HangingCable", "RobotArm", "SpinningBeam"]  # by a loop, since their mass matrices are full and large
+LONG = ["HangingCable", "NFourBar", "Rope"]  # many coordinates
 ERK = ["BeadOnHoop"]  # of tests/systems
 BDF = ["FurutaPendulum"]
 
