@@ -21,14 +21,15 @@ static void write_display_units(xmlTextWriterPtr writer, const struct Interface 
   for (size_t i = 0; i < variable_count; i++) {
     const struct InterfaceVariable *variable = &interface->variables[i];
     struct Dimension dimension;
-    double factor;
+    struct UnitScale scale;
     if (variable->display_unit == NULL || variable->unit == NULL || strcmp(variable->unit, unit) != 0) continue;
     if (contains(written, count, variable->display_unit)) continue;
     written[count++] = variable->display_unit;
-    display_unit_parse(variable->display_unit, &dimension, &factor);
+    display_unit_parse(variable->display_unit, &dimension, &scale);
     xmlTextWriterStartElement(writer, BAD_CAST "DisplayUnit");
     write_attribute(writer, "name", variable->display_unit);
-    write_number(writer, "factor", 1.0 / factor); /* display value = factor * value in the unit */
+    write_number(writer, "factor", 1.0 / scale.factor); /* display value = factor * value in the unit + offset */
+    if (scale.offset != 0) write_number(writer, "offset", -scale.offset / scale.factor);
     xmlTextWriterEndElement(writer);
   }
 }

@@ -21,11 +21,12 @@ SYSTEM = """<system name="Shown" description="Rod" author="A. Author &amp; B. Au
     <coordinate name="theta[i]" velocity="omega[i]" unit="rad" displayUnit="deg" velocityDisplayUnit="deg/s" start="i"/>
     <kinetic>m*l^2*omega[i]^2/2</kinetic><force coordinate="theta[i]">tau</force>
   </for>
+  <state name="heat" unit="K" displayUnit="degC" start="293.15" rate="0"/>
   <output name="speed" unit="rad/s" displayUnit="rpm">omega[1] + n</output>
 </system>"""
 # Value in SI units of one of each unit.
-UNITS = {"mm": 1e-3, "g": 1e-3, "cm": 1e-2, "rpm": 2 * math.pi / 60, "N.mm": 1e-3, "deg": math.pi / 180, "deg/s": math.pi / 180}
-SHOWN = dict(l="mm", m="g", w="cm", n="rpm", tau="N.mm", theta="deg", omega="deg/s", speed="rpm")
+UNITS = {"mm": 1e-3, "g": 1e-3, "cm": 1e-2, "rpm": 2 * math.pi / 60, "N.mm": 1e-3, "deg": math.pi / 180, "deg/s": math.pi / 180, "degC": 1}
+SHOWN = dict(l="mm", m="g", w="cm", n="rpm", tau="N.mm", theta="deg", omega="deg/s", speed="rpm", heat="degC")
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +42,8 @@ def test_importers_get_them(archives):
         description = fmpy.read_model_description(str(archive))
         factors = {shown.name: (unit.name, shown.factor) for unit in description.unitDefinitions for shown in unit.displayUnits}
         assert {name: 1 / float(factor) for name, (_, factor) in factors.items()} == pytest.approx(UNITS, rel=1e-15)
+        offsets = {shown.name: float(shown.offset or 0) for unit in description.unitDefinitions for shown in unit.displayUnits}
+        assert offsets == {name: -273.15 if name == "degC" else 0 for name in UNITS}
         shown = {variable.name.split("[")[0]: variable.displayUnit for variable in description.modelVariables if variable.displayUnit}
         assert {name: unit.name if hasattr(unit, "name") else unit for name, unit in shown.items()} == SHOWN
         for variable in description.modelVariables:
@@ -63,7 +66,7 @@ def test_elements_that_are_shown_alike_are_an_array(archives):
 
 
 @pytest.mark.parametrize("unit, message", [
-    ('unit="m" displayUnit="furlong"', "displayUnit 'furlong' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN"),
+    ('unit="m" displayUnit="furlong"', "displayUnit 'furlong' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm, kN or degC"),
     ('unit="m" displayUnit="m"', "displayUnit 'm' is not known"),
     ('unit="m" displayUnit="deg"', "displayUnit 'deg' is for values in rad; expected this as the unit"),
     ('unit="Hz" displayUnit="rpm"', "displayUnit 'rpm' is for values in rad/s; expected this as the unit"),

@@ -9,20 +9,11 @@
 #include "read/expressions/parser.h"
 #include "read/names/words.h"
 
-/* One of the unit is factor times the coherent unit of its dimension, and its zero is there at the offset. */
-struct Scale {
-  struct Dimension dimension;
-  double factor, offset;
-};
-
-static bool scale_of(const char *unit, struct Scale *scale) {
+/* A value x in the unit is factor * x + offset in the coherent unit of its dimension. */
+static bool scale_of(const char *unit, struct Dimension *dimension, struct UnitScale *scale) {
   const char *problem;
-  *scale = (struct Scale){.factor = 1};
-  if (is_celsius(unit)) {
-    scale->offset = CELSIUS_ZERO;
-    unit = "K";
-  }
-  return unit_parse(unit, &scale->dimension, &problem) || display_unit_parse(unit, &scale->dimension, &scale->factor);
+  *scale = (struct UnitScale){.factor = 1};
+  return unit_parse(unit, dimension, &problem) || display_unit_parse(unit, dimension, scale);
 }
 
 /* Returns the unit after the number at the beginning of a text; NULL if either is missing. */
@@ -35,12 +26,13 @@ static const char *unit_behind(const char *text, double *number) {
 }
 
 /* Cycles are no radians: 1 Hz is 2 pi rad/s, which nobody can see in the dimensions. */
-static bool is_cycle_for_angle(const char *unit, struct Scale own, struct Scale expected) {
-  return strstr(unit, "Hz") != NULL && own.dimension.exponent[RADIAN] != expected.dimension.exponent[RADIAN];
+static bool is_cycle_for_angle(const char *unit, struct Dimension own, struct Dimension expected) {
+  return strstr(unit, "Hz") != NULL && own.exponent[RADIAN] != expected.exponent[RADIAN];
 }
 
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value) {
-  struct Scale own, expected;
+  struct Dimension own, expected;
+  struct UnitScale from, to;
   double number;
   const char *behind = unit_behind(text, &number);
   if (behind == NULL) {
@@ -52,15 +44,15 @@ bool value_read(const char *text, const char *unit, struct Diagnostics *diagnost
     *value = number;
     return isfinite(number);
   }
-  if (!scale_of(behind, &own)) {
+  if (!scale_of(behind, &own, &from)) {
     report_error(diagnostics, 0, "the unit '%s' of '%s' is not known; expected a value in %s", behind, text, unit);
     return false;
   }
-  bool is_known = scale_of(unit, &expected);
-  if (!is_known || !dimension_agrees(own.dimension, expected.dimension) || is_cycle_for_angle(behind, own, expected)) {
+  bool is_known = scale_of(unit, &expected, &to);
+  if (!is_known || !dimension_agrees(own, expected) || is_cycle_for_angle(behind, own, expected)) {
     report_error(diagnostics, 0, "'%s' is in %s; expected a value in %s", text, behind, unit);
     return false;
   }
-  *value = (number * own.factor + own.offset - expected.offset) / expected.factor;
+  *value = (number * from.factor + from.offset - to.offset) / to.factor;
   return true;
 }

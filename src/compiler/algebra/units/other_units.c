@@ -9,6 +9,8 @@
 
 #include "base/memory.h"
 
+#define CELSIUS_ZERO 273.15 /* K */
+
 /* 1 of the unit is factor * pi^pi_power of the SI unit. */
 struct OtherUnit {
   const char *name, *si;
@@ -150,18 +152,22 @@ static char *translation_of(const char *text, struct Translation *translation) {
   return close_text(&stream);
 }
 
-bool display_unit_parse(const char *text, struct Dimension *dimension, double *factor) {
-  struct Translation translation;
-  char *si = translation_of(text, &translation);
-  const char *problem;
-  bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, dimension, &problem);
-  *factor = translation.factor * pow(acos(-1.0), translation.pi_power);
-  return is_known && isnormal(*factor);
-}
-
-bool is_celsius(const char *text) {
+static bool is_celsius(const char *text) {
   static const char sign[] = {'\xc2', '\xb0', 'C', '\0'};
   return strcmp(text, "degC") == 0 || strcmp(text, sign) == 0;
+}
+
+bool display_unit_parse(const char *text, struct Dimension *dimension, struct UnitScale *scale) {
+  const char *problem;
+  if (is_celsius(text)) {
+    *scale = (struct UnitScale){.factor = 1, .offset = CELSIUS_ZERO};
+    return unit_parse("K", dimension, &problem);
+  }
+  struct Translation translation;
+  char *si = translation_of(text, &translation);
+  bool is_known = translation.has_other && !translation.is_wrong && unit_parse(si, dimension, &problem);
+  *scale = (struct UnitScale){.factor = translation.factor * pow(acos(-1.0), translation.pi_power)};
+  return is_known && isnormal(scale->factor);
 }
 
 char *unit_remedy(const char *text) {

@@ -29,12 +29,13 @@ static bool is_same_dimension(struct Dimension first, struct Dimension second) {
 
 char *display_unit_attribute(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension dimension) {
   struct Dimension shown;
-  double factor;
+  struct UnitScale scale;
   char *text = attribute(node, name);
   if (text == NULL) return NULL;
-  if (!display_unit_parse(text, &shown, &factor))
+  if (!display_unit_parse(text, &shown, &scale))
     report_error(reader->diagnostics, line_of(node),
-                 "%s '%s' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm or kN", name, text);
+                 "%s '%s' is not known; expected a unit that is not SI, such as deg, rpm, deg/s, mm, kN or degC", name,
+                 text);
   else if (!is_same_dimension(shown, dimension))
     report_error(reader->diagnostics, line_of(node), "%s '%s' is for values in %s; expected this as the unit", name,
                  text, unit_text(shown));
