@@ -30,7 +30,8 @@ class Control {
     this.slider.setAttribute("aria-label", variable.name);
     this.words = document.createElement("div");
     this.words.className = "words";
-    this.element.append(name, this.number, this.slider, this.words);
+    const description = Object.assign(document.createElement("span"), { className: "description", textContent: variable.description ?? "" });
+    this.element.append(name, this.number, description, this.slider, this.words);
     this.show();
     this.slider.addEventListener("input", () => this.choose(this.valueAt(this.slider.value / 1000), act));
     this.number.addEventListener("change", () => Number.isFinite(this.number.valueAsNumber) && this.choose(this.number.valueAsNumber, act));

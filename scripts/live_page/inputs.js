@@ -28,9 +28,10 @@ function addKeys() {
   };
   document.addEventListener("keydown", (event) => answer(event, PUSH));
   document.addEventListener("keyup", (event) => answer(event, 0));
-  const actions = { " ": play, ".": () => move("step"), ",": () => move("back"), r: () => move("reset") };
+  const actions = { " ": play, ".": () => move("step"), ",": () => move("back"), r: () => move("reset"), f: togglePresentation };
   document.addEventListener("keydown", (event) => {
-    if (isTyping(event) || event.target.tagName === "BUTTON" || !actions[event.key]) return;
+    const presses = event.target.tagName === "BUTTON" && event.key === " "; // the space bar presses the button itself
+    if (isTyping(event) || presses || event.ctrlKey || event.metaKey || !actions[event.key]) return;
     event.preventDefault();
     actions[event.key]();
   });

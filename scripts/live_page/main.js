@@ -21,7 +21,7 @@ const sections = new History(shownVariables.length); // a sample at the end of e
 const controls = new Map(); // by the index of the variable
 const plots = [];
 const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
-let worker, scene = null, playing = false, viewed = null, pace = [0, 0];
+let worker, scene = null, energyBar = null, playing = false, viewed = null, pace = [0, 0];
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
 let resetDue = null; // timer of a delayed reset, which collects several settings
@@ -198,6 +198,8 @@ function frame(now) {
       if (at === history.length - 1) pullOn();
       scene.draw(history, at);
     }
+    energyBar?.draw(at);
+    drawPresented(at);
     const first = history.placeOf(history.time(history.length - 1) - shownWindow);
     for (const plot of plots) plot.draw(first, history.length, at);
   }
@@ -245,6 +247,8 @@ function addActions() {
     $("licenseWords").querySelector("pre").textContent = data.licenses;
     $("licenseWords").showModal();
   });
+  $("present").addEventListener("click", togglePresentation);
+  document.addEventListener("fullscreenchange", endPresentation);
   window.addEventListener("resize", () => scene && scene.objects && scene.resize());
 }
 
@@ -309,6 +313,14 @@ function showTitle() {
   const title = file.documentElement.getAttribute("description") || description.name;
   document.title = title;
   document.querySelector("h1").textContent = title;
+  $("scene").setAttribute("aria-label", `${title}, as it moves`);
+}
+
+function addEnergyBar() {
+  const columns = ["kineticEnergy", "potentialEnergy"].map((name) => columnOf.get(name));
+  if (columns.includes(undefined)) return;
+  energyBar = new EnergyBar($("energies"), history, columns);
+  $("energies").hidden = false;
 }
 
 async function begin() {
@@ -323,6 +335,7 @@ async function begin() {
     await load(data.renderer);
     scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf);
     addPulling();
+    addEnergyBar();
     scene.wished = { trails: true, names: false, turning: false, forces: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", sceneParts.length === 0);

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import mpmath
+import numpy as np
 import pytest
 
 import fmu
@@ -267,6 +268,40 @@ def test_equations_and_system(browser, page_file, tmp_path):
 
     expected = starts(BUILD / "systems" / "DoublePendulum" / "modelDescription.xml") | {"l1": "1.25", "theta2": "-0.5", "omega1": "3"}
     assert starts(tmp_path / "derived" / "modelDescription.xml") == expected
+
+
+def test_presentation(browser, page_file):
+    """The key F shows the values of the last sample and the equations in large type; F again ends it."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.evaluate("live.run(2)")
+        page.wait_for_function("live.history.length > 1")
+        page.click("#fit")  # a button has the focus
+        page.keyboard.press("f")
+        page.frame_locator("#presentation iframe").locator("math").first.wait_for()
+        assert page.locator("#controls, #plots, footer").evaluate_all("nodes => nodes.every(node => getComputedStyle(node).display === 'none')")
+        assert page.evaluate("getComputedStyle(document.body).fontSize") == "24px"
+        page.wait_for_function("document.querySelector('#presentation td:nth-child(2)').textContent !== ''")
+        rows = page.locator("#presentation tr").evaluate_all("rows => rows.map(row => [...row.children].map(cell => cell.textContent))")
+        values = dict(zip(page.evaluate("live.names"), page.evaluate("Array.from(live.history.samples.at(-1)[0])")))
+        assert [row[0] for row in rows] == ["theta1", "theta2", "omega1", "omega2"] and rows[0][2] == "rad"
+        assert [float(row[1].replace("\u2212", "-")) for row in rows] == pytest.approx([values[row[0]] for row in rows], rel=1e-3)
+        page.keyboard.press("f")
+        page.wait_for_function("!document.body.classList.contains('presented') && getComputedStyle(document.querySelector('footer')).display === 'flex'")
+
+
+def test_energy_bar(browser, page_file):
+    """Kinetic energy and potential energy above its lowest value so far, as shares of their largest sum; the sum is constant here."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.click("#play")
+        page.wait_for_function("live.history.length > 100")
+        page.click("#play")
+        page.wait_for_timeout(300)
+        names, samples = page.evaluate("live.names"), np.array(page.evaluate("live.history.samples.map(([run]) => Array.from(run))"))
+        kinetic, potential = (samples[:, names.index(f"{kind}Energy")] for kind in ("kinetic", "potential"))
+        widths = page.locator("#energies i").evaluate_all("parts => parts.map(part => parseFloat(part.style.width))")
+        above = potential[-1] - potential.min()
+        assert widths[0] / widths[1] == pytest.approx(kinetic[-1] / above, rel=1e-3) and 50 < sum(widths) <= 100.001
+        assert page.locator("#scene").get_attribute("aria-label") == "Two point masses on two massless rods, as it moves"
 
 
 def test_a_section(browser, page_file):
