@@ -127,7 +127,7 @@ endfunction()
 #   PLATFORMS     linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux, and for FMI 3 wasm32, compiled by zig;
 #                 default: this machine, by the project's compiler
 #   FMI_VERSIONS  2, 3 or both; default: 2
-#   SOLVER        a method of <solver> in place of the own one of a system with coordinates, a linearization or a robot
+#   SOLVER        a method of <solver> in place of the own one of a system with coordinates or states
 #   FORM          statements or tables; default: chosen by the system's size
 #   ARRAYS        variables that <for> repeats are arrays in FMI 3.0, not scalars
 # The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME; the prefixes avoid clashes with other targets.
@@ -153,12 +153,7 @@ function(lagrange_add_fmu name system)
   set(dependencies ${system})
   append_named_files(dependencies ${system})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${dependencies})
-  set(text "")
-  foreach(file IN LISTS dependencies)
-    file(READ ${file} part)
-    string(APPEND text "${part}")
-  endforeach()
-  if(fmu_SOLVER AND text MATCHES "<(coordinate|linearization|robot)[ \t\r\n]")
+  if(fmu_SOLVER)
     set(solver --solver ${fmu_SOLVER})
   endif()
   if(fmu_FORM)

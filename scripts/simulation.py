@@ -54,11 +54,14 @@ class Motion:
     values: np.ndarray  # the same, with the positions of drawn elements, energies and the number of events, if the FMU has them
 
 
+NOTES = ("moved to fulfil the constraints", "is redundant")  # in the FMU's messages on start values and on forces that the motion does not determine
+
+
 def print_problem(*words):
-    """Print a log message of FMI 2.0 or 3.0, if it is a warning, an error, or about start values that initialization changed."""
+    """Print a log message of FMI 2.0 or 3.0, if it is a warning, an error, or one of NOTES about the start."""
     *_, status, _, message = words
     text = message.decode().replace("%%", "%")
-    if status > 0 or "moved to fulfil the constraints" in text:
+    if status > 0 or any(note in text for note in NOTES):
         print(text, file=sys.stderr)
 
 

@@ -14,7 +14,7 @@ bool lane_events_create(struct LaneEvents *events, struct LaneSteps *steps) {
   *events = (struct LaneEvents){.steps = steps};
   if (!lane_events_are_needed()) return true;
   events->run = single_run_create(LANES, steps->tolerance, steps->length);
-  events->acceleration = aligned_alloc(sizeof(Lanes), rows * sizeof(Lanes));
+  events->acceleration = lane_rows(rows, &events->memory);
   if (events->run == NULL || events->acceleration == NULL) {
     lane_events_destroy(events);
     return false;
@@ -25,7 +25,7 @@ bool lane_events_create(struct LaneEvents *events, struct LaneSteps *steps) {
 
 void lane_events_destroy(struct LaneEvents *events) {
   single_run_destroy(events->run);
-  free(events->acceleration);
+  free(events->memory);
 }
 
 static struct LaneView view_of(const struct LaneSteps *steps, int lane) {

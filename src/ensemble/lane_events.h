@@ -15,6 +15,7 @@ struct LaneEvents {
   struct LaneSteps *steps;
   Mask happens;        /* an event ends the lane's step */
   Lanes time;          /* time of the event, else the end of the step */
+  void *memory;        /* memory of all rows */
   Lanes *acceleration; /* of the coordinates, then the forces of the constraints */
   Lanes *indicator;    /* CHEBYSHEV_NODES rows */
 };

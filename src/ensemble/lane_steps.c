@@ -12,6 +12,15 @@ extern const struct Solver solver_auto;
 
 /* --- Memory ------------------------------------------------------------------------------------------------------- */
 
+Lanes *lane_rows(size_t count, void **memory) {
+  size_t size = (count + 1) * sizeof(Lanes);
+  char *block = malloc(size);
+  *memory = block;
+  if (block == NULL) return NULL;
+  memset(block, 0, size);
+  return (void *)(block + (sizeof(Lanes) - (uintptr_t)block % sizeof(Lanes)));
+}
+
 /* Returns the next count rows of a block. */
 static Lanes *take(Lanes **block, size_t count) {
   Lanes *rows = *block;
@@ -28,11 +37,9 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   size_t series = states + inputs + lagrangian.taylor.rows;
   size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.parameter_constants_count +
                 lagrangian.work_count + inputs + 6 * states;
-  size_t size = (rows + 1) * sizeof(Lanes);
-  char *memory = malloc(size);
-  if (memory == NULL) return false;
-  memset(memory, 0, size);
-  Lanes *block = (void *)(memory + (sizeof(Lanes) - (uintptr_t)memory % sizeof(Lanes)));
+  void *memory;
+  Lanes *block = lane_rows(rows, &memory);
+  if (block == NULL) return false;
   struct SeriesRule rule = rule_for(local_tolerance(tolerance));
   *steps = (struct LaneSteps){
       .memory = memory, .order = (int)rule.order, .margin = rule.margin, .tolerance = tolerance, .length = length};

@@ -30,6 +30,9 @@ struct LaneSteps {
   Lanes path, steps;          /* of recent steps that the coefficients limit: sum of the state's changes, and number */
 };
 
+/* Allocates rows of 0, aligned; free(*memory) releases them. Returns NULL if memory is exhausted. */
+Lanes *lane_rows(size_t count, void **memory);
+
 /* Allocates all rows. Returns false if memory is exhausted. */
 bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length);
 void lane_steps_destroy(struct LaneSteps *steps);

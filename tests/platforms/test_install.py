@@ -22,6 +22,11 @@ pytestmark = pytest.mark.release
 
 BEAD = (ROOT / "tests" / "systems" / "BeadOnHoop" / "system.xml").read_text()  # solver erk
 PENDULUM = ROOT / "fmu" / "SimplePendulum" / "system.xml"
+# Systems whose solver is not that of a <coordinate>: of MJCF, of a state, and without any.
+SWING = """<mujoco model="Swing"><worldbody><body name="rod"><joint name="hinge" axis="0 1 0"/>
+<geom type="capsule" fromto="0 0 0 0 0 -1" size="0.02"/></body></worldbody></mujoco>"""
+DECAY = '<system name="Decay"><state name="s" rate="-s" start="1"/><output name="y">s</output></system>'
+GAIN = '<system name="Gain"><input name="u" unit="1"/><output name="y" unit="1">2*u</output></system>'
 
 
 @functools.cache
@@ -63,9 +68,12 @@ def test_foreign_project(tmp_path):
       lagrange_add_fmu(BeadOnHoop bead.xml)
       lagrange_add_fmu(MyFmu mine.xml PLATFORMS linux64 win64 SOLVER auto FMI_VERSIONS 2 3)
       lagrange_add_fmu(ThirdFmu third.xml FMI_VERSIONS 3)
+      lagrange_add_fmu(Swing swing.xml SOLVER auto)
+      lagrange_add_fmu(Decay decay.xml SOLVER auto)
+      lagrange_add_fmu(Gain gain.xml SOLVER auto)
     """
     text = PENDULUM.read_text()
-    systems = {"system.xml": text, "bead.xml": BEAD}
+    systems = {"system.xml": text, "bead.xml": BEAD, "swing.xml": SWING, "decay.xml": DECAY, "gain.xml": GAIN}
     systems |= {f"{file}.xml": text.replace('"SimplePendulum"', f'"{name}"', 1) for file, name in (("mine", "MyFmu"), ("third", "ThirdFmu"))}
     folder = tmp_path / "a project"
     result = configure(folder, lines, systems=systems)
@@ -73,7 +81,7 @@ def test_foreign_project(tmp_path):
     result = build(folder)
     assert result.returncode == 0, result.stdout + result.stderr
     archives = {path.stem: path for path in (folder / "build" / "fmu").iterdir()}
-    assert sorted(archives) == ["BeadOnHoop", "MyFmu", "SimplePendulum"]
+    assert sorted(archives) == ["BeadOnHoop", "Decay", "Gain", "MyFmu", "SimplePendulum", "Swing"]
     third = {path.stem: path for path in (folder / "build" / "fmi3").iterdir()}
     assert sorted(third) == ["MyFmu", "ThirdFmu"]
     for name in ("SimplePendulum", "BeadOnHoop"):
@@ -84,8 +92,9 @@ def test_foreign_project(tmp_path):
     for archive in (archives["MyFmu"], *third.values()):
         np.testing.assert_allclose(simulate(archive), simulate(fmu.archive("SimplePendulum")), rtol=1e-7, atol=1e-9)
         assert validate_fmu(str(archive)) == []
-    description = (Path(fmpy.extract(archives["MyFmu"], tmp_path / "mine")) / "modelDescription.xml").read_text()
-    assert "solverHandovers" in description, "it has the solver auto"
+    for name in archives:
+        description = (Path(fmpy.extract(archives[name], tmp_path / name)) / "modelDescription.xml").read_text()
+        assert ("solverHandovers" in description) == (name in ("MyFmu", "Swing", "Decay")), f"SOLVER auto for {name}"
 
 
 @pytest.mark.parametrize(

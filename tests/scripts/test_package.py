@@ -201,6 +201,12 @@ def test_start_values_moved_by_initialization_are_reported(command, tmp_path):
     assert succeed(result) and "moved to fulfil the constraints: phi from 0.4 to 0.449082" in result.stderr
 
 
+def test_redundant_constraints_are_named(command, tmp_path):
+    """Bricard's loop of six hinges moves, although its constraints leave no freedom by their number."""
+    result = command("run", fmu.archive("Bricard"), "--stop-time", "0.1", cwd=tmp_path)
+    assert succeed(result) and result.stderr.count("is redundant; the forces are those of least norm") == 1
+
+
 @pytest.mark.parametrize("template", ["pendulum", "cart", "robot", "bounce", "linkage"])
 def test_templates(template, command, tmp_path):
     succeed(command("new", "Mine", "--template", template, cwd=tmp_path))

@@ -85,8 +85,11 @@ CASES = [
     ("negative length", 3, sole('<cylinder radius="1" length="-2"/>'), 3, 'length="-2" of <cylinder>; expected a number above 0'),
     ("radius that is no number", 3, sole('<capsule radius="nan" length="2"/>'), 3, 'radius="nan" of <capsule>; expected a number such as 2'),
     ("xacro macro", 2, '<link name="stand"/><xacro:wheel xmlns:xacro="http://www.ros.org/wiki/xacro" name="w"/>', 2,
-     "<wheel> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it"),
-    ("xacro expression", 13, elbow(origin='<origin xyz="0 0 ${-length}"/>'), 13, "<origin> has macros or expressions of xacro"),
+     "<xacro:wheel> is of xacro, whose macros and expressions are not expanded here; expected plain URDF, as 'xacro robot.urdf > robot.urdf' writes it"),
+    ("xacro without its namespace", 2, '<link name="stand"/><xacro:wheel name="w"/>', 2, "<xacro:wheel> is of xacro"),
+    ("xacro expression", 13, elbow(origin='<origin xyz="0 0 ${-length}"/>'), 13, "<origin> is of xacro"),
+    ("xacro substitution", 13, elbow(origin='<origin xyz="0 0 $(arg length)"/>'), 13, "<origin> is of xacro"),
+    ("another prefix", 2, '<link name="stand"/><gz:wheel name="w"/>', 2, "'gz:wheel' has a prefix; expected the name alone"),
 ]  # fmt: skip
 
 

@@ -38,6 +38,17 @@ def built():
     build_systems("contacts_of_mjcf", SYSTEMS, files=files)
 
 
+@pytest.mark.parametrize("gravity, acceleration", [("0 0 -1.62", 1.62), ("3 0 -4", 5), ("0 0 0", 9.81)])
+def test_stiffness_follows_gravity(gravity, acceleration, tmp_path):
+    """The stiffness bears the weight at 1 mm in the gravity of the file, or in that of the Earth if the file has none."""
+    ball = '<body name="b"><freejoint/><geom name="ball" type="sphere" size="0.1" mass="2"/></body>'
+    (tmp_path / "world.xml").write_text(f'<mujoco model="w"><option gravity="{gravity}"/><worldbody>{ball}<geom type="plane" size="1 1 1"/></worldbody></mujoco>')
+    (tmp_path / "system.xml").write_text('<system name="S"><include file="world.xml" as="r" ground="true"/></system>')
+    assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
+    [stiffness] = re.findall('name="r.ground_stiffness"[^>]*>\\s*<Real[^>]* start="([^"]*)"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    assert float(stiffness) == pytest.approx(2 * acceleration / 1e-3, abs=1)
+
+
 def slides(instance, coefficients):
     """Check that from rest each box slides by Coulomb's law, or falls freely; the ground yields by less than 1 mm."""
     for name, friction in coefficients.items():

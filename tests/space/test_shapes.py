@@ -324,3 +324,19 @@ def test_messages(tmp_path, text, message):
     (tmp_path / "system.xml").write_text(SLOPE.replace("<experiment", f'<shape name="floor2" type="plane"/>{text}<experiment'))
     found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
     assert found.returncode == 1 and message in found.stderr
+
+
+OTHERS = {"sphere": 'type="sphere" radius="0.4"', "box": 'type="box" sizeX="1" sizeY="1" sizeZ="1"', "can": 'type="cylinder" radius="0.4" length="1"'}
+
+
+@pytest.mark.parametrize("height, warns", [(0.1, True), (1.0, False)])
+@pytest.mark.parametrize("other", OTHERS)
+def test_centres_inside(other, height, warns, tmp_path):
+    """A ball with its centre in the other shape has no normal; that shape is rotated, so that rounding must not invent one."""
+    z = 0 if warns and other == "sphere" else height
+    (tmp_path / "system.xml").write_text(f"""<system name="S"><coordinate name="z" velocity="v" unit="m" start="{z}"/>
+    <particle name="p" mass="1" z="z"/><frame name="tilted"><rotate axis="y" angle="0.3"/></frame><shape name="ball" in="p" type="sphere" radius="0.1"/>
+    <shape name="other" in="tilted" {OTHERS[other]}/><contact name="c" between="ball" and="other" stiffness="100"/></system>""")
+    result = subprocess.run([LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True)
+    message = "system.xml:3: warning: the distance of 'ball' and 'other' without their radii is 0 at the start values; expected a number above 0"
+    assert result.returncode == 0 and (message in result.stderr) == warns

@@ -136,9 +136,28 @@ static void check_expectations(const struct Reader *reader, const double *values
   }
 }
 
+/* Returns the values of all nodes at the start, where piecewise functions have the pieces of the start. */
+static double *values_at_start(const struct Model *model) {
+  enum { ROUNDS = 4 }; /* pieces within pieces follow one another */
+  const struct Switches *switches = &model->switches;
+  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  bool again = switches->branch_count > 0;
+  for (int round = 0; round < ROUNDS && again; round++) {
+    again = false;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double sign = values[switches->branches[i].indicator];
+      double *mode = &symbols[model->graph->vertices[switches->branches[i].mode].left];
+      again |= *mode != (double)((sign > 0.0) - (sign < 0.0));
+      *mode = (double)((sign > 0.0) - (sign < 0.0));
+    }
+    if (again) values = graph_evaluate(model->graph, symbols);
+  }
+  return values;
+}
+
 static void warn_at_start(const struct Reader *reader) {
   const struct Model *model = reader->model;
-  double *symbols = start_values(model), *values = graph_evaluate(model->graph, symbols);
+  double *values = values_at_start(model);
   for (size_t i = 0; i < model->mechanism.body_count; i++) {
     const struct Body *body = &model->mechanism.bodies[i];
     warn_of_inertia(reader, body, "mass", body->mass.node, values);

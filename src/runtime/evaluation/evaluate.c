@@ -51,7 +51,8 @@ static void log_not_finite(struct Instance *instance, enum Status status, double
     log_message(
         instance, status,
         "time %g: the accelerations are not finite, as when something is divided by 0, exp or cosh gets a large "
-        "argument, or an integral leaves the range that lagc has named; try other parameters, inputs or start values",
+        "argument, the centre of a ball is in another shape, or an integral leaves the range that lagc has named; try "
+        "other parameters, inputs or start values",
         time);
 }
 

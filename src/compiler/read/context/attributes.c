@@ -148,7 +148,7 @@ void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *wha
   append_expectation(reader, (struct Expectation){value, line, what, is_required, false});
 }
 
-void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value) {
+void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required) {
   long line = scope_line(reader->scope, line_of(node));
-  append_expectation(reader, (struct Expectation){value, line, what, true, true});
+  append_expectation(reader, (struct Expectation){value, line, what, is_required, true});
 }

@@ -131,8 +131,8 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
 /* Records that a node of parameters should not be negative at the start: an error if required, else a warning. */
 void expect_not_negative(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required);
 
-/* Records that a node of parameters must be positive and finite at the start values. */
-void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value);
+/* Records that a node must be, or if it is not required should be, positive and finite at the start values. */
+void expect_size(struct Reader *reader, xmlNodePtr node, const char *what, Node value, bool is_required);
 
 /* Reports a quantity that does not have the expected unit, such as "kg.m2/s2". */
 void require_unit(struct Reader *reader, long line, const char *what, struct Quantity quantity,

@@ -246,7 +246,7 @@ void read_sample(struct Reader *reader, xmlNodePtr node) {
   struct Sample *sample = &event.sample;
   sample->every = read_time(reader, node, "every");
   sample->offset = read_time(reader, node, "offset");
-  expect_size(reader, node, "every of <sample>", sample->every);
+  expect_size(reader, node, "every of <sample>", sample->every, true);
   sample->base = new_mode(reader, "sample", "base");
   sample->count = new_mode(reader, "sample", "count");
   sample->period = new_mode(reader, "sample", "period");

@@ -15,6 +15,9 @@ static const char ground[] = "ground";
  */
 static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
 
+/* m/s^2: gravitational acceleration that sets the stiffness of a robot without weight. */
+static const double usual_gravity = 9.81;
+
 static void place_element(xmlNodePtr shape, const struct Placement *placement) {
   static const char *const names[] = {"roll", "pitch", "yaw"};
   double angles[3];
@@ -64,7 +67,9 @@ static void write_friction(struct Writer *writer, const struct Robot *robot) {
 void write_ground(struct Writer *writer, const struct Robot *robot) {
   double mass = 0.0;
   for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
-  double stiffness = floor(fmax(mass, 1e-3) * 9.81 / sinking);
+  double gravity = robot_gravity(robot);
+  double stiffness = fmax(mass, 1e-3) * (gravity > 0.0 ? gravity : usual_gravity) / sinking;
+  if (stiffness > 1.0) stiffness = floor(stiffness);
   writer->line = robot->line;
   write_parameter(writer, copy_text("ground_stiffness"), stiffness, "N/m",
                   copy_text("force by depth at each point that touches"));

@@ -131,8 +131,9 @@ static bool has_losses(const struct Robot *robot, const struct RobotOptions *opt
   return false;
 }
 
-static void write_gravity(const struct Writer *writer, const double gravity[3]) {
-  double size = sqrt(gravity[0] * gravity[0] + gravity[1] * gravity[1] + gravity[2] * gravity[2]);
+static void write_gravity(const struct Writer *writer, const struct Robot *robot) {
+  const double *gravity = robot->gravity;
+  double size = robot_gravity(robot);
   bool is_down = gravity[0] == 0 && gravity[1] == 0 && gravity[2] <= 0;
   write_parameter(writer, copy_text("g"), size, "m/s2",
                   copy_text(is_down ? "gravitational acceleration, along -z" : "gravitational acceleration"));
@@ -154,7 +155,7 @@ static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
 static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
-  write_gravity(writer, robot->gravity);
+  write_gravity(writer, robot);
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);

@@ -36,6 +36,11 @@ bool joint_is_single(const struct Joint *joint) {
   return joint->type == REVOLUTE || joint->type == CONTINUOUS || joint->type == PRISMATIC;
 }
 
+double robot_gravity(const struct Robot *robot) {
+  const double *along = robot->gravity;
+  return sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+}
+
 bool carrier_moves(const struct Link *link, bool floats) {
   return floats || link->carrier->joint != NULL;
 }

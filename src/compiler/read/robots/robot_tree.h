@@ -21,5 +21,8 @@ bool joint_moves(const struct Joint *joint);
 /* True if the joint has one coordinate: revolute, continuous or prismatic. */
 bool joint_is_single(const struct Joint *joint);
 
+/* Returns the gravitational acceleration of the file in m/s2. */
+double robot_gravity(const struct Robot *robot);
+
 /* True if the link moves, itself or by the link that it is fixed to. */
 bool carrier_moves(const struct Link *link, bool floats);

@@ -12,6 +12,7 @@
 #include "read/meshes/package_path.h"
 #include "read/robots/description/robot_file.h"
 #include "read/xml/nodes.h"
+#include "read/xml/xml.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
                                               "floating", "planar",   "ball"};
@@ -415,7 +416,9 @@ static xmlNodePtr find_xacro(xmlNodePtr node) {
   if (node->ns != NULL && node->ns->prefix != NULL && strcmp((const char *)node->ns->prefix, "xacro") == 0) return node;
   for (const xmlAttr *given = node->properties; given != NULL; given = given->next)
     for (const xmlNode *text = given->children; text != NULL; text = text->next)
-      if (text->content != NULL && strstr((const char *)text->content, "${") != NULL) return node;
+      if (text->content != NULL &&
+          (strstr((const char *)text->content, "${") != NULL || strstr((const char *)text->content, "$(") != NULL))
+        return node;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     xmlNodePtr found = find_xacro(child);
     if (found != NULL) return found;
@@ -437,10 +440,9 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
         "<include>",
         options->keyframe);
   if (xacro != NULL)
-    report_error(
-        diagnostics, line_of(xacro),
-        "<%s> has macros or expressions of xacro; expected plain URDF, as 'xacro FILE -o robot.urdf' writes it",
-        (const char *)xacro->name);
+    report_error(diagnostics, line_of(xacro), "%s",
+                 xacro_message(xacro->ns != NULL ? (const char *)xacro->ns->prefix : NULL, (const char *)xacro->name,
+                               diagnostics->file));
   for (xmlNodePtr node = root->children; node != NULL && xacro == NULL; node = node->next) {
     if (is_element(node, "link")) read_link(&urdf, node);
     else if (is_element(node, "joint")) read_joint(&urdf, node);

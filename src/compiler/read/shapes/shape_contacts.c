@@ -140,6 +140,16 @@ static bool check_motion(struct Reader *reader, xmlNodePtr node, const struct Sh
   return true;
 }
 
+/* Warns of balls whose centre is in the other shape at the start. */
+static void expect_centres_outside(struct Reader *reader, xmlNodePtr node, const struct ShapeContact *contact) {
+  for (size_t i = 0; i < contact->touches.count; i++)
+    if (contact->touches.items[i].distance != ZERO)
+      expect_size(reader, node,
+                  format_text("the distance of '%s' and '%s' without their radii", contact->first.shape->name,
+                              contact->second.shape->name),
+                  contact->touches.items[i].distance, false);
+}
+
 static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struct ShapeContact *contact) {
   const struct ContactShape *shapes[2];
   long line = line_of(node);
@@ -147,6 +157,7 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   contact->first = contact_side_of(reader, line, shapes[0]);
   contact->second = contact_side_of(reader, line, shapes[1]);
   contact->touches = touches_of(reader, line, &contact->first, &contact->second);
+  expect_centres_outside(reader, node, contact);
   return check_motion(reader, node, contact);
 }
 

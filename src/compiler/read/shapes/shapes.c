@@ -126,7 +126,7 @@ static Node read_size(struct Reader *reader, xmlNodePtr node, const struct Conta
   const char *what = format_text("the %s of the %s '%s'", name, shape_type_names[shape->type], shape->name);
   keep_from_negative(reader, size);
   if (shape->type == SHAPE_BOX) expect_not_negative(reader, node, what, size, true);
-  else expect_size(reader, node, what, size);
+  else expect_size(reader, node, what, size, true);
   return size;
 }
 
@@ -178,7 +178,7 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   shape->length = read_size(reader, node, shape, "length");
   if (shape->type == SHAPE_BOX)
     expect_size(reader, node, format_text("the diagonal of the box '%s'", shape->name),
-                power_number(graph, vector_dot(graph, shape->size, shape->size), 0.5));
+                power_number(graph, vector_dot(graph, shape->size, shape->size), 0.5), true);
 }
 
 const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {

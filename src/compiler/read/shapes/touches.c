@@ -143,7 +143,7 @@ static void touch_plane(const struct Pair *pair, struct Touches *touches) {
     Node height = vector_dot(graph, normal, vector_subtract(graph, centre, ground));
     struct Vector down = vector_scale(graph, negate(graph, points.radius), normal);
     touches->items[touches->count++] =
-        (struct Touch){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius)};
+        (struct Touch){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius), ZERO};
   }
 }
 
@@ -164,19 +164,18 @@ static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
   lowest = rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
   Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
   touches->items[touches->count++] =
-      (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach)};
+      (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach), ZERO};
 }
 
-/* Appends the touch of two balls about the nearest points of two shapes. */
-static void touch_balls(const struct Pair *pair, struct Vector first, struct Vector second, Node second_radius,
+/* Appends the touch of two balls about the nearest points of two shapes: the first point, and the vector to it. */
+static void touch_balls(const struct Pair *pair, struct Vector first, struct Vector between, Node second_radius,
                         struct Touches *touches) {
   struct Graph *graph = pair->graph;
-  struct Vector between = vector_subtract(graph, first, second);
   Node radius = pair->first->shape->radius, distance = length_of(graph, between);
   struct Vector normal = vector_scale(graph, power_number(graph, distance, -1.0), between);
   struct Vector point = vector_subtract(graph, first, vector_scale(graph, radius, normal));
   Node gap = subtract(graph, subtract(graph, distance, radius), second_radius);
-  touches->items[touches->count++] = (struct Touch){point, normal, gap};
+  touches->items[touches->count++] = (struct Touch){point, normal, gap, distance};
 }
 
 /* Clamps a length to the interval of the size `whole` about 0. */
@@ -187,7 +186,9 @@ static Node clamp(const struct Pair *pair, Node length, Node whole) {
 }
 
 static void touch_sphere(const struct Pair *pair, struct Touches *touches) {
-  touch_balls(pair, middle_of(pair, pair->first), middle_of(pair, pair->second), pair->second->shape->radius, touches);
+  struct Vector centre = middle_of(pair, pair->first);
+  struct Vector between = vector_subtract(pair->graph, centre, middle_of(pair, pair->second));
+  touch_balls(pair, centre, between, pair->second->shape->radius, touches);
 }
 
 static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
@@ -197,7 +198,7 @@ static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
   Node along = vector_dot(graph, axis, vector_subtract(graph, centre, middle));
   along = clamp(pair, along, pair->second->shape->length);
   struct Vector nearest = vector_add(graph, middle, vector_scale(graph, along, axis));
-  touch_balls(pair, centre, nearest, pair->second->shape->radius, touches);
+  touch_balls(pair, centre, vector_subtract(graph, centre, nearest), pair->second->shape->radius, touches);
 }
 
 /* Returns the centre of the first shape relative to the second, along the axes of the second. */
@@ -207,32 +208,32 @@ static struct Vector seen_from_second(const struct Pair *pair) {
   return matrix_apply_transposed(pair->graph, &pair->second->shape->rotation, between);
 }
 
-static void touch_nearest(const struct Pair *pair, struct Vector nearest, struct Touches *touches) {
-  struct Vector rotated = rotated_by(pair, pair->second, nearest);
-  struct Vector point = vector_add(pair->graph, middle_of(pair, pair->second), rotated);
-  touch_balls(pair, middle_of(pair, pair->first), point, ZERO, touches);
+/* Both points are relative to the second shape, along its axes: inside of it their difference is 0 without rounding. */
+static void touch_nearest(const struct Pair *pair, struct Vector seen, struct Vector nearest, struct Touches *touches) {
+  struct Vector between = rotated_by(pair, pair->second, vector_subtract(pair->graph, seen, nearest));
+  touch_balls(pair, middle_of(pair, pair->first), between, ZERO, touches);
 }
 
 static void touch_box(const struct Pair *pair, struct Touches *touches) {
-  struct Vector seen = seen_from_second(pair);
-  for (int i = 0; i < 3; i++) seen.along[i] = clamp(pair, seen.along[i], pair->second->shape->size.along[i]);
-  touch_nearest(pair, seen, touches);
+  struct Vector seen = seen_from_second(pair), nearest;
+  for (int i = 0; i < 3; i++) nearest.along[i] = clamp(pair, seen.along[i], pair->second->shape->size.along[i]);
+  touch_nearest(pair, seen, nearest, touches);
 }
 
 static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   const struct ContactShape *shape = pair->second->shape;
-  struct Vector seen = seen_from_second(pair);
+  struct Vector seen = seen_from_second(pair), nearest = seen;
   int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
   struct Vector off = seen;
   off.along[shape->axis] = ZERO;
   Node far = subtract(graph, vector_dot(graph, off, off), power_number(graph, shape->radius, 2.0));
   Node is_outside = branch_of(pair->scope, far, "the cylinder's side", pair->line);
   Node share = choose_node(graph, is_outside, divide(graph, shape->radius, length_of(graph, off)), ONE);
-  seen.along[across] = multiply(graph, share, seen.along[across]);
-  seen.along[beside] = multiply(graph, share, seen.along[beside]);
-  seen.along[shape->axis] = clamp(pair, seen.along[shape->axis], shape->length);
-  touch_nearest(pair, seen, touches);
+  nearest.along[across] = multiply(graph, share, seen.along[across]);
+  nearest.along[beside] = multiply(graph, share, seen.along[beside]);
+  nearest.along[shape->axis] = clamp(pair, seen.along[shape->axis], shape->length);
+  touch_nearest(pair, seen, nearest, touches);
 }
 
 /*
@@ -252,8 +253,8 @@ static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
   Node t = clamp(pair, add(graph, along_w, multiply(graph, s, uw)), pair->second->shape->length);
   s = clamp(pair, subtract(graph, multiply(graph, t, uw), along_u), pair->first->shape->length);
   struct Vector nearest = vector_add(graph, first, vector_scale(graph, s, u));
-  touch_balls(pair, nearest, vector_add(graph, second, vector_scale(graph, t, w)), pair->second->shape->radius,
-              touches);
+  struct Vector other = vector_add(graph, second, vector_scale(graph, t, w));
+  touch_balls(pair, nearest, vector_subtract(graph, nearest, other), pair->second->shape->radius, touches);
 }
 
 typedef void TouchFunction(const struct Pair *pair, struct Touches *touches);

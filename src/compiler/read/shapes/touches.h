@@ -8,6 +8,7 @@ struct Touch {
   struct Vector point;  /* m */
   struct Vector normal; /* unit normal, pointing to the first shape */
   Node gap;             /* m, negative if the shapes overlap */
+  Node distance;        /* m, from the centre of a ball to the other shape: without a normal at 0; ZERO for planes */
 };
 
 struct Touches {

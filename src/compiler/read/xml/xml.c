@@ -5,9 +5,25 @@
 #include <libxml/parser.h>
 
 #include "base/memory.h"
+#include "base/paths.h"
 #include "read/xml/nodes.h"
 #include "read/xml/schema.h"
 #include "read/xml/source_text.h"
+
+char *xacro_message(const char *prefix, const char *name, const char *file) {
+  return format_text(
+      "<%s%s%s> is of xacro, whose macros and expressions are not expanded here; expected plain URDF, as "
+      "'xacro %s > robot.urdf' writes it",
+      prefix != NULL ? prefix : "", prefix != NULL ? ":" : "", name, file_name(file));
+}
+
+/* Returns a message for a prefix without xmlns; NULL to keep the message of libxml2. */
+static char *meaning_of_prefix(const xmlError *error, const char *file) {
+  const char *prefix = error->str1, *name = error->str2;
+  if (error->code != XML_NS_ERR_UNDEFINED_NAMESPACE || prefix == NULL || name == NULL) return NULL;
+  if (strcmp(prefix, "xacro") == 0) return xacro_message(prefix, name, file);
+  return format_text("'%s:%s' has a prefix; expected the name alone", prefix, name);
+}
 
 /* Returns a message for an error of the XML parser in terms of the file; NULL to keep the message of libxml2. */
 static char *meaning_of(const xmlError *error) {
@@ -63,8 +79,9 @@ static char *meaning_of(const xmlError *error) {
 static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   const char *message = error->message != NULL ? error->message : "not readable";
   struct Diagnostics *reported = diagnostics;
-  if (error->domain == XML_FROM_PARSER && reported->errors > 0) return; /* caused by the first error */
-  char *meaning = error->domain == XML_FROM_PARSER ? meaning_of(error) : NULL;
+  bool is_of_parser = error->domain == XML_FROM_PARSER, is_of_prefix = error->domain == XML_FROM_NAMESPACE;
+  if ((is_of_parser || is_of_prefix) && reported->errors > 0) return; /* caused by the first error */
+  char *meaning = is_of_parser ? meaning_of(error) : is_of_prefix ? meaning_of_prefix(error, reported->file) : NULL;
   if (meaning != NULL) message = meaning;
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
