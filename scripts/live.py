@@ -1,4 +1,4 @@
-"""Write the page in which an FMU runs: live.py FMU [PAGE] [--system FILE --build FOLDER [--edit]]"""
+"""Write the page in which an FMU runs: live.py FMU [PAGE] [NAME=VALUE ...] [--system FILE --build FOLDER [--edit]]"""
 
 import argparse
 import sys
@@ -10,6 +10,8 @@ from scripts.live_page.origin import Origin
 from scripts.live_page.page import write_page
 from scripts.one_file import one_file
 from scripts.problem import Problem
+from scripts.quantities import assignment
+from scripts.simulation import settings_of
 
 ROOT = Path(__file__).resolve().parent.parent
 LABORATORY = ROOT / "build" / "laboratory" / "laboratory.wasm"  # made by scripts/build-laboratory
@@ -24,16 +26,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("fmu", type=Path, help="the FMU")
     parser.add_argument("page", type=Path, nargs="?", help="the page to write; default: build/live/NAME.html")
+    parser.add_argument("settings", nargs="*", type=assignment, metavar="NAME=VALUE", help="start values and parameters with which the page begins")
     parser.add_argument("--system", type=Path, help="file of the FMU's system, with which bodies can be pulled and the system can be saved")
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="build folder of the FMU")
     parser.add_argument("--edit", action="store_true", help="show the system in the page, where it can be changed")
     arguments = parser.parse_args()
     if arguments.edit and not arguments.system:
         parser.error("--edit needs --system")
+    if arguments.edit and arguments.settings:
+        parser.error("--edit with NAME=VALUE; expected values in the system itself")
     origin = origin_in(arguments.build, arguments.system) if arguments.system else None
     try:
         page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}{'-edit' if arguments.edit else ''}.html"
-        path = write_editor(arguments.system, LABORATORY, page) if arguments.edit else write_page(arguments.fmu, page, origin)
+        path = write_editor(arguments.system, LABORATORY, page) if arguments.edit else write_page(arguments.fmu, page, origin, settings_of(arguments.fmu, dict(arguments.settings)))
     except Problem as problem:
         sys.exit(f"scripts/live: {problem}")
     print(path.resolve())

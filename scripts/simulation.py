@@ -25,7 +25,7 @@ from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem, Unfinished
 from .signals import signals_of
-from .variables import checked_start, elements, instead, known, names_of, near_file, start_values, startable, units_of
+from .variables import checked_start, elements, instead, known, names_of, near_file, numbers_by_name, start_values, startable, units_of
 from .whole_files import write_whole
 
 
@@ -120,6 +120,14 @@ def _check_options(options, allowed):
     for name in options:
         if name not in allowed:
             raise Problem(f"'{name}' is not an option of this simulation; {instead(name, [*WORDS, *allowed], 'expected one of these')}")
+
+
+def settings_of(fmu, settings):
+    """Return start values and parameters of an FMU, texts with units too, as numbers by name; raise Problem if one cannot be set."""
+    if not settings:
+        return {}
+    description = described(fmu)
+    return checked_start(numbers_by_name(settings), description, startable(description))
 
 
 def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSimulation", **options):

@@ -252,10 +252,11 @@ function addActions() {
   window.addEventListener("resize", () => scene && scene.objects && scene.resize());
 }
 
-// Applies the values in the address after #, name=value&name=value, and returns them.
-function settingsOfAddress() {
+// Applies the page's settings, and those of the address after #, name=value&name=value, which have precedence; returns them.
+function settingsAtStart() {
+  const given = [...Object.entries(data.settings ?? {}), ...new URLSearchParams(location.hash.slice(1))];
   const byName = new Map(description.variables.map((variable, place) => [variable.name, place])), found = [];
-  for (const [name, text] of new URLSearchParams(location.hash.slice(1))) {
+  for (const [name, text] of given) {
     const place = byName.get(name), value = Number(text);
     if (!controls.has(place) || !Number.isFinite(value)) continue;
     controls.get(place).choose(value, () => {});
@@ -304,7 +305,7 @@ async function runFmu() {
   worker.onmessage = (event) => answers[event.data.name](event.data);
   setSpeed();
   const modules = laboratory ? { laboratory: { ...laboratory, bytes: window.parent.laboratoryBytes } } : { modules: apart(await unpacked(data.wasm)) };
-  worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownOnes, set: settingsOfAddress() });
+  worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownOnes, set: settingsAtStart() });
   await started;
 }
 

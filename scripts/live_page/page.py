@@ -122,8 +122,11 @@ def _modules(source, pulled):
     return _interleaved([compile_to_wasm(one) for one in (source, pulled) if one])
 
 
-def page_of(fmu, origin=None):
-    """Return the page of an FMU of FMI 2.0 as text; with an Origin bodies can be pulled, and the system can be saved."""
+def page_of(fmu, origin=None, settings=None):
+    """
+    Return the page of an FMU of FMI 2.0 as text; with an Origin bodies can be pulled, and the system can be saved. `settings` has numbers by name,
+    with which the page begins.
+    """
     with zipfile.ZipFile(fmu) as archive:
         description, equations = (archive.read(name) for name in ("modelDescription.xml", "documentation/index.html"))
     tree = ElementTree.fromstring(description)
@@ -137,6 +140,8 @@ def page_of(fmu, origin=None):
         if found and can_be_pulled(found[0]):
             data["pulled"], pulled = _text(found[0]), found[1]
         data |= _modules(source, pulled)
+    if settings:
+        data["settings"] = {name: float(value) for name, value in settings.items()}
     if origin:
         data["system"] = Path(origin.system).read_text(encoding="utf-8")
     return page_of_data(_title(tree), data)
@@ -164,6 +169,6 @@ def page_of_motion(tree, result, start):
     return page_of_data(_title(tree), data)
 
 
-def write_page(fmu, path, origin=None):
-    """Write the page of an FMU and return its path."""
-    return write_whole(path, page_of(fmu, origin))
+def write_page(fmu, path, origin=None, settings=None):
+    """Write the page of an FMU, see page_of(), and return its path."""
+    return write_whole(path, page_of(fmu, origin, settings))

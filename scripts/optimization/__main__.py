@@ -1,5 +1,6 @@
 """Compute time-optimal motions, and controllers in closed loop, each with a CSV and a plot; for scripts/optimize."""
 
+import argparse
 import sys
 import tempfile
 import time
@@ -13,11 +14,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from html_page import write_csv
-from optimization.closed_loop import CONTROLLERS, DELAY, NOISE, PERIOD, TRACK, plant_of, run
+from optimization.closed_loop import BALANCED, CONTROLLERS, DELAY, NOISE, PERIOD, TRACK, plant_of, run
 from optimization.collocation import least_time, play_back
-from optimization.tasks import CART, TASKS
+from optimization.tasks import CART, TASKS, with_values
 
 from scripts.problem import Problem
+from scripts.quantities import assignment
 from scripts.simulation import picture_of
 from scripts.whole_files import write_whole
 
@@ -56,8 +58,8 @@ def plot(path, task, motion, played):
     plt.close(figure)
 
 
-def find_fastest(name, unpacked):
-    task, begin = TASKS[name], time.perf_counter()
+def find_fastest(name, unpacked, task):
+    begin = time.perf_counter()
     motion = least_time(unpacked, task)
     seconds, played = time.perf_counter() - begin, play_back(unpacked, task, motion)
     csv_path, plot_path = (FOLDER / f"fastest-{name}.{kind}" for kind in ("csv", "png"))
@@ -84,10 +86,10 @@ def plot_runs(path, runs):
     plt.close(figure)
 
 
-def control(unpacked):
+def control(unpacked, task):
     """Run all controllers with the same noise."""
-    plant = plant_of(unpacked)
-    runs = {name: run(unpacked, plant, controller(plant)) for name, controller in CONTROLLERS.items()}
+    plant = plant_of(unpacked, task)
+    runs = {name: run(unpacked, plant, controller(plant), task) for name, controller in CONTROLLERS.items()}
     csv_path, plot_path = (FOLDER / f"closed-loop.{kind}" for kind in ("csv", "png"))
     columns = [f"{name} {variable}" for name in runs for variable in (*CART.states, "F")]
     rows = np.column_stack([next(iter(runs.values())).times, *(np.column_stack([found.states, found.forces]) for found in runs.values())])
@@ -100,19 +102,30 @@ def control(unpacked):
     print(f"  CSV   {csv_path}\n  plot  {plot_path}")
 
 
-def main():
-    names = sys.argv[1:] or [*TASKS, CONTROL]
+def words(arguments):
+    """Return the names of the tasks, and the values by name, of a command line; raise Problem for other words."""
+    names, values = [word for word in arguments if "=" not in word], [word for word in arguments if "=" in word]
     for name in names:
         if name not in (*TASKS, CONTROL):
-            sys.exit(f"scripts/optimize: there is no task '{name}'; expected {', '.join(TASKS)} or {CONTROL}")
+            raise Problem(f"there is no task '{name}'; expected {', '.join(TASKS)} or {CONTROL}, and values such as l=40cm")
+    try:
+        return names or [*TASKS, CONTROL], dict(map(assignment, values))
+    except argparse.ArgumentTypeError as problem:
+        raise Problem(str(problem)) from None
+
+
+def main():
+    names, values = words(sys.argv[1:])
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name in names:
         with tempfile.TemporaryDirectory() as unpacked:
-            fmpy.extract(str(archive(TASKS.get(name, CART))), unpacked)
+            task = TASKS.get(name, BALANCED)
+            fmpy.extract(str(archive(task)), unpacked)
+            task = with_values(task, values, fmpy.read_model_description(unpacked))
             if name == CONTROL:
-                control(unpacked)
+                control(unpacked, task)
             else:
-                find_fastest(name, unpacked)
+                find_fastest(name, unpacked, task)
         sys.stdout.flush()
 
 

@@ -20,7 +20,7 @@ PERIOD = 1e-3  # s
 DELAY = 3  # periods
 NOISE = np.array([5e-4, 2e-3])  # standard deviations of the measured x (m) and theta (rad)
 FORCE, TRACK = CART.strength[0], 0.28  # N and m
-START = np.array([0.2, 0.1, 0.0, 0.0])
+BALANCED = CART._replace(start=np.array([0.2, 0.1, 0.0, 0.0]))  # the controllers begin near upright
 WEIGHTS, EFFORT = np.diag([20.0, 10.0, 1.0, 1.0]), 0.02  # weights of the squared states (x, theta, v, omega) and of the squared force
 LEAVING = 1e3  # weight of the squared distance beyond the track in m, relative to the scaled weight of forces
 BLOCKS, BLOCK = 20, 40  # of the prediction horizon: number of constant forces, and periods of each
@@ -33,9 +33,9 @@ class Plant(NamedTuple):
     b: np.ndarray
 
 
-def plant_of(unpacked):
+def plant_of(unpacked, task=BALANCED):
     """Return the Plant of the FMU's linearization in upright position, discretized exactly by the matrix exponential."""
-    slopes = slopes_of(unpacked, CART)
+    slopes = slopes_of(unpacked, task)
     states, force = casadi.MX.sym("x", 4), casadi.MX.sym("F")
     matrix = casadi.Function("matrix", [states, force], [casadi.horzcat(casadi.jacobian(slopes(states, force), states), casadi.jacobian(slopes(states, force), force))])
     continuous = np.zeros((5, 5))
@@ -146,7 +146,7 @@ class Run(NamedTuple):
     seconds: np.ndarray  # computing time of observer and controller
 
 
-def run(unpacked, plant, controller, duration=5.0, seed=1):
+def run(unpacked, plant, controller, task=BALANCED, duration=5.0, seed=1):
     """Run the nonlinear FMU in closed loop with a controller; return the Run."""
     description = fmpy.read_model_description(str(unpacked))
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
@@ -154,11 +154,12 @@ def run(unpacked, plant, controller, duration=5.0, seed=1):
     cart.instantiate()
     cart.setupExperiment(startTime=0.0)
     places = [references[name] for name in CART.states]
-    cart.setReal(places, START)
+    cart.setReal([references[name] for name in task.parameters], list(task.parameters.values()))
+    cart.setReal(places, task.start)
     cart.enterInitializationMode()
     cart.exitInitializationMode()
     noise = np.random.default_rng(seed).normal(size=(round(duration / PERIOD), 2)) * NOISE
-    observer, underway = Observer(plant, [*(START[:2] + noise[0]), 0.0, 0.0]), [0.0] * DELAY
+    observer, underway = Observer(plant, [*(task.start[:2] + noise[0]), 0.0, 0.0]), [0.0] * DELAY
     rows, forces, seconds = [], [], []
     for k, error in enumerate(noise):
         rows.append(cart.getReal(places))

@@ -14,6 +14,8 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
+from scripts.problem import Problem
+
 LONGEST = 10.0  # s, upper bound of T
 
 
@@ -31,6 +33,7 @@ class Task(NamedTuple):
     swings: float  # periods of a sine, the initial guess of the inputs
     intervals: int  # of constant inputs
     points: int  # Radau points in each interval
+    parameters: dict  # values by name, where they differ from those of the FMU
     has_hessian: bool  # True for a Hessian by differences of the FMU's derivatives; False for IPOPT's limited-memory BFGS, cheaper with many states
 
 
@@ -46,6 +49,8 @@ class Motion(NamedTuple):
 def slopes_of(unpacked, task):
     """Return the CasADi function f(x, u) of the FMU, with derivatives; x and u are in the order of the task."""
     builder = casadi.DaeBuilder("system", str(unpacked), {})
+    for name, value in task.parameters.items():
+        builder.set(name, value)
     states, inputs = casadi.MX.sym("x", len(task.states)), casadi.MX.sym("u", len(task.inputs))
     inner = casadi.vertcat(*(states[task.states.index(name)] for name in builder.x()))
     outer = casadi.vertcat(*(inputs[task.inputs.index(name)] for name in builder.u()))
@@ -90,7 +95,11 @@ def least_time(unpacked, task):
         problem.set_initial(variable, value)
     options = {} if task.has_hessian else {"hessian_approximation": "limited-memory", "limited_memory_max_history": 50}
     problem.solver("ipopt", {"print_time": False}, {"tol": 1e-9, "max_iter": 3000, "print_level": 0, "sb": "yes", **options})
-    solution = problem.solve()
+    try:
+        solution = problem.solve()
+    except RuntimeError:
+        status = problem.stats()["return_status"].replace("_", " ")
+        raise Problem(f"IPOPT finds no motion of {task.fmu} between the two states: {status}; expected other parameters, or another start") from None
     times = np.linspace(0.0, solution.value(duration), task.intervals + 1)
     return Motion(times, np.transpose(solution.value(starts)), np.transpose(np.atleast_2d(solution.value(inputs))), solution.stats()["iter_count"])
 
@@ -102,6 +111,7 @@ def play_back(unpacked, task, motion):
     slave = FMU2Slave(guid=description.guid, unzipDirectory=str(unpacked), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="player")
     slave.instantiate()
     slave.setupExperiment(tolerance=1e-12, startTime=0.0)
+    slave.setReal([references[name] for name in task.parameters], list(task.parameters.values()))
     places, inputs = ([references[name] for name in names] for names in (task.states, task.inputs))
     slave.setReal(places, motion.states[0])
     slave.enterInitializationMode()

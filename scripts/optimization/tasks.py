@@ -3,6 +3,8 @@
 import numpy as np
 
 from optimization.collocation import Task
+from scripts.problem import Problem
+from scripts.variables import checked_start
 
 # Swing-up of the pendulum, from hanging at rest to upright at rest at the same position, with 15 N on a track of 0.8 m.
 CART = Task(
@@ -17,6 +19,7 @@ CART = Task(
     swings=1.0,
     intervals=40,
     points=6,
+    parameters={},
     has_hessian=True,
 )
 # Swing-up of both rods by a motor that is too weak to hold them horizontal.
@@ -32,6 +35,7 @@ DOUBLE_PENDULUM = Task(
     swings=1.0,
     intervals=60,
     points=6,
+    parameters={},
     has_hessian=True,
 )
 # Motion between two poses, with the maximal joint torques of a PUMA 560 (P. Corke: Robotics, Vision and Control).
@@ -47,6 +51,17 @@ ARM = Task(
     swings=1.0,
     intervals=20,
     points=4,
+    parameters={},
     has_hessian=False,
 )
 TASKS = {"cart": CART, "double-pendulum": DOUBLE_PENDULUM, "arm": ARM}
+
+
+def with_values(task, values, description):
+    """Return the task with other parameters, and another state at its start; values are numbers, or texts with units, by name."""
+    numbers = checked_start(values, description)
+    for name in numbers:
+        if name in task.inputs:
+            raise Problem(f"'{name}' is what the motion of {task.fmu} optimizes; expected parameters and states")
+    start = [numbers.pop(name, value) for name, value in zip(task.states, task.start)]
+    return task._replace(start=np.array(start), parameters=task.parameters | numbers)

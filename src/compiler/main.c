@@ -16,7 +16,7 @@
 #include "program/program.h"
 #include "read/names/words.h"
 #include "read/reader.h"
-#include "read/values.h"
+#include "read/context/values.h"
 #include "read/sensitivities.h"
 #include "read/xml/schema.h"
 
@@ -33,7 +33,7 @@ static const char usage[] =
     "\n"
     "  -o DIR           the directory for the files\n"
     "  --solver METHOD  %s in place of the system's own\n"
-    "  -D NAME=VALUE    the value of a <constant>\n"
+    "  -D NAME=VALUE    the value of a <constant>, such as 3, 2*pi or 20cm\n"
     "  --form FORM      statements or tables, in which the code is written; else by the system's size\n"
     "  --pull           adds inputs by which bodies can be pulled: the stiffness pull.of.BODY of a spring from a point "
     "of\n"
@@ -45,7 +45,7 @@ static const char usage[] =
     "  --along NAME     adds the derivatives of coordinates and outputs by a parameter, an input or a start value, "
     "X.by.NAME,\n"
     "                   by the variational equations\n"
-    "  --at NAME=VALUE  part of the point; several can be joined by commas\n"
+    "  --at NAME=VALUE  part of the point, such as theta=30deg; several can be joined by commas\n"
     "  --value VALUE    prints the number that 30deg, 20cm, pi/2, ... is in the UNIT\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
 

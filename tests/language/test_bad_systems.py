@@ -519,6 +519,8 @@ def test_old_output_goes_when_the_system_breaks(tmp_path):
         (["--linearize", "system.xml", "--at", "alpha=1"], "'alpha'"),
         (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity, a state or an input"),
         (["--linearize", "system.xml", "--at", "theta"], "expected name=value"),
+        (["--linearize", "system.xml", "--at", "theta=30kg"], "--at theta: '30kg' is in kg; expected a value in rad"),
+        (["--linearize", "system.xml", "--at", "theta=3furlong"], "--at theta: the unit 'furlong' of '3furlong' is not known; expected a value in rad"),
         (["system.xml"], "usage"),
         (["system.xml", "-o"], "usage"),
         (["--nonsense"], "usage"),

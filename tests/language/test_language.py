@@ -1,8 +1,10 @@
 """Every element of a system contributes to its equations; each has a distinct coefficient."""
 
 import html
+import math
 import re
 
+import pytest
 import sympy as sp
 from lxml import etree
 
@@ -179,6 +181,20 @@ def test_a_long_chain_of_definitions_backwards(tmp_path):
     (tmp_path / "system.xml").write_text(text)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_values_with_units_on_the_command_line(tmp_path):
+    """-g/l cos(theta) of a pendulum, of which -D gives the length and --at the angle."""
+    (tmp_path / "system.xml").write_text(
+        '<system name="Unit"><constant name="l" value="0.5" unit="m"/><constant name="g" value="9.81" unit="m/s2"/><parameter name="m" start="1" unit="kg"/>'
+        '<coordinate name="theta" velocity="omega" unit="rad"/><particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/><potential>m*g*bob.y</potential></system>'
+    )
+    for words, length, angle in ((("-D", "l=20cm"), 0.2, 0), (("-D", "l=2*0.1"), 0.2, 0), (("--at", "theta=30deg"), 0.5, math.pi / 6), (("-D", "l=8inch", "--at", "theta=60 deg,omega=0rpm"), 0.2032, math.pi / 3)):
+        row = re.search(r"\[(\S+), 0\]", lagc("--linearize", "system.xml", *words, cwd=tmp_path).stdout)
+        assert float(row[1]) == pytest.approx(-9.81 / length * math.cos(angle), rel=1e-12)
+    for word, message in (("l=3kg", "-D l: '3kg' is in kg; expected a value in m\n"), ("l=3ells", "-D l: the unit 'ells' of '3ells' is not known; expected a value in m\n")):
+        result = lagc("--linearize", "system.xml", "-D", word, cwd=tmp_path)
+        assert (result.returncode, result.stderr) == (1, message)
 
 
 def test_an_empty_sum_names_nothing(tmp_path):

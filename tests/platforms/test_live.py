@@ -18,6 +18,7 @@ from building import BUILD, LAGC, ROOT
 from driven_chromium import COLORS_SEEN, chromium, opened
 from scripts.live import origin_in
 from scripts.live_page.page import page_of
+from scripts.simulation import settings_of
 
 PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # for others compiling the second module takes minutes
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
@@ -143,6 +144,17 @@ def test_steps_back_and_settings(browser, page_file):
         page.click("#play")
         page.wait_for_function(f"{clock} > 0.5")
         assert page.inner_text("#play") == "Pause"
+
+
+def test_a_page_begins_with_values(browser, tmp_path):
+    """Values given with the page apply at its start; the address has precedence."""
+    file = tmp_path / "page.html"
+    file.write_text(page_of(fmu.archive("SimplePendulum"), settings=settings_of(fmu.archive("SimplePendulum"), {"theta": "30deg", "l": "20cm"})), encoding="utf-8")
+    for address, l in (("", 0.2), ("#l=0.4", 0.4)):
+        with opened(browser, file, address) as page:
+            values = dict(zip(page.evaluate("live.names"), page.evaluate("[...live.history.samples[0][0]]")))
+            assert values["theta"] == pytest.approx(math.pi / 6, rel=1e-15)
+            assert values["der(omega)"] == pytest.approx(-9.81 / l / 2, rel=1e-12)
 
 
 def run_start(name, values, variable):

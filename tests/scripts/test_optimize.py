@@ -1,14 +1,18 @@
 """scripts/optimize: minimum-time motions of FMUs, against textbook equations."""
 
+import re
+
 import numpy as np
 import pytest
+from optimization.__main__ import words
 from optimization.closed_loop import CONTROLLERS, TRACK, plant_of, run
-from optimization.collocation import least_time, play_back
-from optimization.tasks import ARM, CART, DOUBLE_PENDULUM
+from optimization.collocation import least_time, play_back, slopes_of
+from optimization.tasks import ARM, CART, DOUBLE_PENDULUM, with_values
 from scipy.integrate import solve_ivp
 
 import fmu
 from building import ROOT, build_systems
+from scripts.problem import Problem
 
 pytestmark = pytest.mark.release
 
@@ -60,6 +64,27 @@ def test_an_arm():
     """For a robot of six joints, at nearly every time some motor gives its full torque."""
     motion, at_bound = check(ARM, fmu.unpacked("RobotArm"))
     assert motion.times[-1] < 1.0 and np.count_nonzero(at_bound.any(axis=1)) > 0.8 * len(motion.inputs)
+
+
+def test_values_of_a_task():
+    """A shorter pendulum that starts elsewhere, with units: the FMU's slopes and its motion are those of the textbook with these values."""
+    unpacked = fmu.unpacked("InvertedPendulumCart")
+    task = with_values(CART, {"l": "40cm", "x": "5cm"}, fmu.description("InvertedPendulumCart"))
+    assert task.parameters == {"l": 0.4} and list(task.start) == [0.05, np.pi, 0, 0]
+    sine, cosine = np.sin(0.3), np.cos(0.3)
+    expected = [0, 0, -0.1 * 9.81 * sine * cosine / (1 + 0.1 * sine**2), 1.1 * 9.81 * sine / (0.4 * (1 + 0.1 * sine**2))]
+    np.testing.assert_allclose(np.array(slopes_of(unpacked, task)([0, 0.3, 0, 0], 0))[:, 0], expected, rtol=1e-12)
+    check(task, unpacked)
+    for values, message in (({"F": 1}, "'F' is what the motion of InvertedPendulumCart optimizes"), ({"L": 1}, "'L' is not a variable of InvertedPendulumCart; did you mean 'l'?")):
+        with pytest.raises(Problem, match=re.escape(message)):
+            with_values(CART, values, fmu.description("InvertedPendulumCart"))
+
+
+@pytest.mark.parametrize("arguments, message", [(["carts"], "there is no task 'carts'"), (["cart", "=3"], "'=3' is not NAME=VALUE")])
+def test_wrong_words(arguments, message):
+    with pytest.raises(Problem, match=re.escape(message)):
+        words(arguments)
+    assert words(["cart", "l=40cm"]) == (["cart"], {"l": "40cm"})
 
 
 def test_controllers():

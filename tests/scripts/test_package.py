@@ -413,6 +413,8 @@ calls = [
     lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, seed=-1),
     lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, stop_time="2"),
     lambda: lagrange_fmu.live(FMU, edit=True),
+    lambda: lagrange_fmu.live("pendulum.xml", edit=True, start_values={"l": 1}),
+    lambda: lagrange_fmu.live(FMU, start_values={"L": 1}),
     lambda: lagrange_fmu.words("restitutoin"),
 ]
 for call in calls:
@@ -447,6 +449,8 @@ SENTENCES = [
     "seed is -1; expected a whole number that is not negative",
     "stop_time is '2'; expected a positive number",
     f"{fmu.archive('SimplePendulum')} is an FMU; to edit it expected the system.xml that it was made of",
+    "the page that changes pendulum.xml begins with the values in it; expected edit=True without l",
+    "'L' is not a variable of SimplePendulum; did you mean 'l'?",
     "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
     "('time', 'totalEnergy')",
 ]

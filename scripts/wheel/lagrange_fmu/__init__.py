@@ -457,7 +457,7 @@ def run(
     return run(system, start_values, folder, **words)
 
 
-def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False) -> Path:
+def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False, start_values: Mapping[str, float | str] | None = None) -> Path:
     """
     Write a page in which the FMU of a system runs, in any browser and without a network.
 
@@ -469,6 +469,8 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
         The page; by default NAME.html, or NAME-edit.html with `edit`, in the current folder.
     edit : bool
         True to show the system beside its motion, so that it can be changed in the page.
+    start_values : dict, optional
+        Start values, parameters and inputs by name with which the page begins, as numbers or texts such as "30deg"; not with `edit`.
 
     Returns
     -------
@@ -486,7 +488,7 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
     """
     from .pages import live
 
-    return live(system, output, edit)
+    return live(system, start_values, output, edit)
 
 
 def sweep(

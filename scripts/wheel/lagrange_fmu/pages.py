@@ -8,6 +8,7 @@ from .live_page.editor import write_editor
 from .live_page.page import write_page
 from .problem import Problem
 from .running import fmu_of, is_fmu
+from .simulation import settings_of
 
 LABORATORY = Path(__file__).parent / "live_page" / "laboratory.wasm"
 
@@ -21,10 +22,12 @@ def editor(system, output=None):
     return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"))
 
 
-def live(system, output=None, edit=False):
+def live(system, settings=None, output=None, edit=False):
     """See lagrange_fmu.live."""
+    if edit and settings:
+        raise Problem(f"the page that changes {system} begins with the values in it; expected edit=True without {', '.join(settings)}")
     if edit:
         return editor(system, output)
     keep_what_zig_compiles()
     with fmu_of(system) as fmu:
-        return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system))
+        return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system), settings_of(fmu, settings))

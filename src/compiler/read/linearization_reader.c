@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/paths.h"
+#include "read/context/values.h"
 #include "read/elements/elements.h"
 #include "read/expressions/number_units.h"
 #include "read/expressions/parser.h"
@@ -34,6 +35,15 @@ static void begin_point(struct Model *model) {
   model->point.given = allocate(model->graph->symbol_count, sizeof *model->point.given);
 }
 
+/* Returns a number with a unit, as a number of the variable's unit. */
+static Node number_at(struct Model *model, const char *name, const char *value, struct Dimension dimension,
+                      struct Diagnostics *diagnostics) {
+  double number = 0.0;
+  const char *unit = dimension.known ? unit_text(dimension) : "1";
+  value_of_option(format_text("--at %s", name), value, unit, diagnostics, &number);
+  return graph_constant(model->graph, number);
+}
+
 static void set_point(struct Model *model, struct Scope *scope, const char *name, const char *value, long line,
                       struct Diagnostics *diagnostics) {
   const struct Quantity *quantity = scope_find(scope, name);
@@ -52,7 +62,9 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
     report_error(diagnostics, line, "the point names '%s' twice; expected one value", name);
   struct Dimension dimension = quantity->dimension;
   struct Location location = {.line = line, .what = name, .kinds = 1u << PARAMETER};
-  struct Quantity parsed = parse_expression(scope, value, location);
+  struct Quantity parsed = {.dimension = dimension};
+  if (line == 0 && value_has_unit(value)) parsed.node = number_at(model, name, value, dimension, diagnostics);
+  else parsed = parse_expression(scope, value, location);
   const char *problem = format_text("unit mismatch: the value for '%s' has another unit than the variable", name);
   if (!parsed.literal && !scope_units_agree(scope, parsed.dimension, dimension) &&
       !number_may_have_unit(scope, line, parsed, dimension, problem))

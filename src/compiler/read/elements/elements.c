@@ -8,6 +8,7 @@
 #include "mechanics/energies.h"
 #include "read/context/function_reader.h"
 #include "read/context/includes.h"
+#include "read/context/values.h"
 #include "read/context/variables.h"
 #include "read/elements/constraint_reader.h"
 #include "read/elements/named_expressions.h"
@@ -36,18 +37,30 @@ static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const st
   return right;
 }
 
+/* Reads the value of -D: an expression of constants, or a number with a unit that fits to that of the constant. */
+static bool read_defined(struct Reader *reader, xmlNodePtr node, const char *name, const char *text,
+                         struct Quantity *value) {
+  struct Location location = {.line = 0, .what = "-D"};
+  const char *unit = has_attribute(node, "unit") ? attribute(node, "unit") : "1";
+  double number = 0.0;
+  if (!value_has_unit(text)) return parse_constant(reader->scope, text, location, value);
+  bool is_read = value_of_option(format_text("-D %s", name), text, unit, reader->diagnostics, &number);
+  *value = (struct Quantity){
+      .node = graph_constant(reader->model->graph, number), .dimension = dimension_one, .literal = true};
+  return is_read;
+}
+
 /* Defines a constant. listed: its value in a list; NULL if it has an attribute. */
 static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, char *listed) {
   struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
   const struct Given *given = given_for(reader, node, name);
   bool right = read_constant_value(reader, node, given, listed, &value);
-  struct Location location = {.line = 0, .what = "-D"};
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
     size_t length = strlen(name);
     if (strncmp(definition, name, length) != 0 || definition[length] != '=') continue;
     reader->definition_used[i] = true;
-    right = parse_constant(reader->scope, definition + length + 1, location, &value);
+    right = read_defined(reader, node, name, definition + length + 1, &value);
   }
   if (has_attribute(node, "unit")) {
     struct Dimension unit = unit_attribute(reader, node, "unit");

@@ -10,3 +10,10 @@
  * Returns false after reporting a text that is not a value, or has another dimension.
  */
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value);
+
+/* True if the text is a number with a unit behind it. */
+bool value_has_unit(const char *text);
+
+/* Does the same as value_read() with the value of an option, such as "-D L"; messages begin with the option. */
+bool value_of_option(const char *option, const char *text, const char *unit, struct Diagnostics *diagnostics,
+                     double *value);

@@ -1,4 +1,4 @@
-#include "read/values.h"
+#include "read/context/values.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -28,6 +28,19 @@ static const char *unit_behind(const char *text, double *number) {
 /* Cycles are no radians: 1 Hz is 2 pi rad/s, which nobody can see in the dimensions. */
 static bool is_cycle_for_angle(const char *unit, struct Dimension own, struct Dimension expected) {
   return strstr(unit, "Hz") != NULL && own.exponent[RADIAN] != expected.exponent[RADIAN];
+}
+
+bool value_has_unit(const char *text) {
+  double number;
+  return unit_behind(text, &number) != NULL;
+}
+
+bool value_of_option(const char *option, const char *text, const char *unit, struct Diagnostics *diagnostics,
+                     double *value) {
+  struct Diagnostics own = {.file = option};
+  bool is_read = value_read(text, unit, &own, value);
+  diagnostics->errors += own.errors;
+  return is_read;
 }
 
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value) {
