@@ -132,8 +132,8 @@ struct BlockTable {
   void (*least_forces)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                        Real *x);
   /* nonsymmetric_solve() for a block with forces that depend on constraint forces; else NULL */
-  void (*solve_obliquely)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                          Real *x);
+  void (*solve_nonsymmetric)(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                             Real *x);
 };
 
 /* Data shared by all tables of a system. */

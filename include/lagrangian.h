@@ -173,14 +173,14 @@ struct FrictionMetadata {
 
 /*
  * Coulomb friction in the plane of two velocities. Two consecutive frictions, "along" and "across", share one mode: 1
- * while it slides, 0 while it sticks, -1 while it slips in a given direction, the heading, as at the onset of slip. The
- * mode may change if the speed falls to lower, rises to upper, or if the velocity leaves the heading backwards or
- * sideways by as much.
+ * while it slides, 0 while it sticks, -1 while it slips along the slip direction, which is given, as at the onset of
+ * slip. The mode may change if the speed falls to lower, rises to upper, or if the velocity leaves the slip direction
+ * backwards or sideways by as much.
  */
 struct PlaneMetadata {
-  size_t along;        /* index of the friction along; the one across follows */
-  size_t heading[2];   /* modes: the unit vector of the slip direction */
-  size_t lower, upper; /* modes: speeds; upper < 0 is a bound on the velocity along the heading */
+  size_t along;             /* index of the friction along; the one across follows */
+  size_t slip_direction[2]; /* modes: the unit vector of the slip direction */
+  size_t lower, upper;      /* modes: speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
 /* An assignment of an event, to a state or a mode. */

@@ -7,8 +7,8 @@
  *
  * K is stored as in ldlt.h. With e elements and c constraints, m holds SADDLE_MASS(e, n, c) numbers: the factors, K
  * itself, the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
- * saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given and solved
- * for.
+ * saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given and
+ * solved for.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
@@ -82,7 +82,7 @@ static inline Condition saddle_is_weak(size_t elements, const Real *m) {
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
 /* Computes an orthogonal basis of the null space of J^T, and stores it after the factors. saddle_factor() calls it. */
-void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
+void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*
  * Replaces the constraint forces F in x by those of least Euclidean norm with the same J^T F: a statically

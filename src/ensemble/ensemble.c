@@ -47,7 +47,7 @@ static void load(struct LaneGroup *group, int lane) {
     is_right &= is_allowed(variable, value);
   }
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->low[i][lane] = 0.0;
-  steps->origin[lane] = steps->reach[lane] = 0.0;
+  steps->origin[lane] = steps->interval[lane] = 0.0;
   steps->fast[lane] = steps->path[lane] = steps->steps[lane] = 0.0;
   group->run[lane] = run;
   group->time[lane] = 0;
@@ -90,7 +90,7 @@ static void fill(struct LaneGroup *group) {
 /* Returns the lanes whose next sampling time lies before their event, or else in their step; time: these times. */
 static Mask find_reached(const struct LaneGroup *group, Lanes *time) {
   const double *times = group->ensemble->times;
-  Lanes end = group->steps.origin + group->steps.reach;
+  Lanes end = group->steps.origin + group->steps.interval;
   Mask is_reached = {0};
   for (int i = 0; i < LANES; i++) {
     double next = times[group->time[i]];
@@ -111,7 +111,7 @@ static void deliver(struct LaneGroup *group) {
     if (!any_lane(is_reached)) return;
     lane_steps_take_state(&group->steps, time);
     Mask is_lost = lane_events_project(&group->events, time, is_reached);
-    is_lost |= lane_values_tell(ensemble, &group->events, time, is_reached, group->run, group->time);
+    is_lost |= lane_values_report(ensemble, &group->events, time, is_reached, group->run, group->time);
     for (int i = 0; i < LANES; i++)
       if (is_reached[i] && ++group->time[i] == ensemble->time_count) is_over[i] = -1;
     leave(group, is_lost | lane_events_may_not_end(&group->events, time, is_over));
@@ -124,7 +124,7 @@ bool ensemble_serves(const struct Ensemble *ensemble) {
   for (size_t i = 0; i < ensemble->varied_count; i++)
     serves &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
   for (size_t i = 0; i < ensemble->asked_count; i++)
-    serves &= lane_values_can_tell(&lagrangian.variables[ensemble->asked[i]]);
+    serves &= lane_values_can_report(&lagrangian.variables[ensemble->asked[i]]);
   return serves;
 }
 
@@ -139,7 +139,7 @@ bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {
     leave(&group, lane_events_find(&group.events, group.is_active));
     deliver(&group);
     leave(&group, lane_steps_move(&group.steps) & group.is_active);
-    leave(&group, lane_events_go_on(&group.events, group.is_active));
+    leave(&group, lane_events_continue(&group.events, group.is_active));
   }
   lane_events_destroy(&group.events);
   lane_steps_destroy(&group.steps);

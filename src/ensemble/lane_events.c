@@ -33,7 +33,7 @@ static struct LaneView view_of(const struct LaneSteps *steps, int lane) {
                            .stride = LANES,
                            .order = steps->order,
                            .origin = steps->origin[lane],
-                           .reach = steps->reach[lane],
+                           .interval = steps->interval[lane],
                            .series = (double *)steps->x + lane,
                            .low = (double *)steps->low + lane,
                            .parameter = (double *)steps->parameter + lane,
@@ -69,9 +69,9 @@ static Mask are_touched(const struct LaneSteps *steps) {
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time) {
   struct LaneSteps *steps = events->steps;
   struct Point point = lane_steps_point(steps, time);
-  lanes_refused = (Mask){0};
+  failed_lanes = (Mask){0};
   lagrangian.constraints.accelerations(&point, events->acceleration);
-  return lanes_refused;
+  return failed_lanes;
 }
 
 /* Evaluates the indicators at a time. Returns the lanes in which that fails. */
@@ -134,7 +134,7 @@ Mask lane_events_find(struct LaneEvents *events, Mask active) {
   Mask lost = {0};
   Lanes from = steps->origin;
   events->happens = (Mask){0};
-  events->time = steps->origin + steps->reach;
+  events->time = steps->origin + steps->interval;
   if (lagrangian.switches == NULL) return lost;
   for (int i = 0; i < LANES; i++)
     if (active[i]) from[i] = single_run_searched(events->run, (size_t)i);
@@ -162,13 +162,13 @@ static Mask have_active_constraints(const struct LaneSteps *steps) {
   return lagrangian.constraints.count > of_switches ? ~(Mask){0} : are_touched(steps);
 }
 
-Mask lane_events_go_on(struct LaneEvents *events, Mask active) {
+Mask lane_events_continue(struct LaneEvents *events, Mask active) {
   struct LaneSteps *steps = events->steps;
   Mask lost = {0}, happens = events->happens & active;
   for (int i = 0; i < LANES; i++) {
     if (!happens[i]) continue;
     struct LaneView view = view_of(steps, i);
-    single_run_go_on(events->run, &view);
+    single_run_continue(events->run, &view);
   }
   steps->origin = lanes_select(happens, events->time, steps->origin);
   Mask constrained = have_active_constraints(steps) & active;

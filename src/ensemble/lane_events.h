@@ -37,7 +37,7 @@ Mask lane_events_find(struct LaneEvents *events, Mask active);
  * Continues after the end of the steps: with the state and modes after an event, projected onto the constraints.
  * Returns the lanes in which that fails.
  */
-Mask lane_events_go_on(struct LaneEvents *events, Mask active);
+Mask lane_events_continue(struct LaneEvents *events, Mask active);
 
 /* Computes accelerations and forces of a constrained system at steps->state. Returns the lanes in which that fails. */
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);

@@ -16,7 +16,7 @@ typedef Mask Condition;
 #define ANYWHERE(condition) any_lane(condition)
 
 /* Lanes in which REQUIRE() failed since the caller last cleared it. */
-extern _Thread_local Mask lanes_refused;
-#define REQUIRE(condition, number) (lanes_refused |= ~(condition))
+extern _Thread_local Mask failed_lanes;
+#define REQUIRE(condition, number) (failed_lanes |= ~(condition))
 
 #endif

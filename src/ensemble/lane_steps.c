@@ -5,7 +5,7 @@
 
 #include "methods/taylor_rule.h"
 
-_Thread_local Mask lanes_refused;
+_Thread_local Mask failed_lanes;
 
 /* the method that switches to another if the system is stiff (single/single_run.c) */
 extern const struct Solver solver_auto;
@@ -43,7 +43,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   struct SeriesRule rule = rule_for(local_tolerance(tolerance));
   *steps = (struct LaneSteps){
       .memory = memory, .order = (int)rule.order, .margin = rule.margin, .tolerance = tolerance, .length = length};
-  steps->longest = fmin(horizon * length, lagrangian.steps.max_step);
+  steps->longest = fmin(look_ahead * length, lagrangian.steps.max_step);
   steps->x = take_series(&block, states);
   steps->input = take_series(&block, inputs);
   steps->work = take_series(&block, lagrangian.taylor.rows);
@@ -181,9 +181,9 @@ static Mask right_side(struct LaneSteps *steps, Lanes s, double share, Lanes *de
     if (share != 0.0) steps->state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
   }
   struct Point point = lane_steps_point(steps, steps->origin + s);
-  lanes_refused = (Mask){0};
+  failed_lanes = (Mask){0};
   lagrangian.taylor.start(&point, derivative, steps->work);
-  return lanes_refused;
+  return failed_lanes;
 }
 
 /* Returns the allowed defect times the step, in units of the scales. */
@@ -236,7 +236,7 @@ static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
 /* --- The step ------------------------------------------------------------------------------------------------------ */
 
 /* Rounds the step so that the next origin is exact, and time does not drift. */
-static Lanes exact_reach(const struct LaneSteps *steps, Lanes step) {
+static Lanes exact_interval(const struct LaneSteps *steps, Lanes step) {
   return steps->origin + step - steps->origin;
 }
 
@@ -259,7 +259,7 @@ static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
   Mask lost = active & ~(step > 0.0);
   for (;;) {
     lost |= active & is_too_short(steps, step);
-    step = exact_reach(steps, lanes_select(active & ~lost, step, (Lanes){0}));
+    step = exact_interval(steps, lanes_select(active & ~lost, step, (Lanes){0}));
     Lanes size = defect_over(steps, step);
     Mask is_large = active & ~lost & ~(size <= 1.0);
     if (any_lane(is_large)) {
@@ -271,7 +271,7 @@ static Mask shorten(struct LaneSteps *steps, Lanes step, Mask active) {
     for (int i = 0; i < LANES; i++)
       if (is_large[i]) step[i] *= shortening(size[i], steps->order);
   }
-  steps->reach = step;
+  steps->interval = step;
   return lost;
 }
 
@@ -292,7 +292,7 @@ static Mask may_be_stiff(struct LaneSteps *steps) {
   /* consecutive steps; two windows of auto.c */
   enum { FAST_STEPS = 12 };
   if (lagrangian.solver != &solver_auto) return (Mask){0};
-  Lanes last = norm(steps, steps->order) * steps->reach * steps->reach, before = norm(steps, steps->order - 2);
+  Lanes last = norm(steps, steps->order) * steps->interval * steps->interval, before = norm(steps, steps->order - 2);
   Mask is_fast = (FALL_OF_FAST * FALL_OF_FAST * last > before) & ~steps->is_limited;
   steps->fast = lanes_select(is_fast, steps->fast + 1.0, (Lanes){0});
   return steps->fast >= (double)FAST_STEPS;
@@ -337,15 +337,15 @@ Mask lane_steps_move(struct LaneSteps *steps) {
     steps->low[i] = (before - (sum - part)) + (term - part);
     steps->x[i][0] = sum;
   }
-  steps->origin += steps->reach;
+  steps->origin += steps->interval;
   return stagnates(steps, largest);
 }
 
 Mask lane_steps_start(struct LaneSteps *steps) {
-  lanes_refused = (Mask){0};
+  failed_lanes = (Mask){0};
   lagrangian.prepare(steps->parameter, steps->parameter_constants);
   for (size_t i = 0; i < lagrangian.state_count; i++) steps->state[i] = steps->x[i][0];
   struct Point point = lane_steps_point(steps, steps->origin);
   lagrangian.taylor.start(&point, steps->derivative, steps->work);
-  return lanes_refused;
+  return failed_lanes;
 }

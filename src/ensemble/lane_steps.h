@@ -17,7 +17,7 @@ struct LaneSteps {
   double longest;   /* longest step, in s */
   double length;    /* length of the runs, in s */
   /* time of the series' origin, and length of the step in which they are valid, in s */
-  Lanes origin, reach;
+  Lanes origin, interval;
   Lanes *parameter, *parameter_constants, *constants; /* constants: the inputs, which are constant in a run */
   Lanes *unit; /* 1 / scale of each state variable; the scale is its size, or its nominal value if that is larger */
   Lanes *low;  /* compensation of the state at the origin: the low part of its sum */

@@ -26,7 +26,7 @@
 #define ldlt_factor lane_ldlt_factor
 #define ldlt_product_of_rows lane_ldlt_product_of_rows
 #define ldlt_solve lane_ldlt_solve
-#define saddle_balance lane_saddle_balance
+#define saddle_null_vector lane_saddle_null_vector
 #define saddle_factor lane_saddle_factor
 #define saddle_solve lane_saddle_solve
 #define saddle_least_forces lane_saddle_least_forces

@@ -5,7 +5,7 @@ bool lane_values_can_vary(const struct ScalarVariable *variable) {
   return variable->type == TYPE_REAL && (is_start || variable->kind == VARIABLE_PARAMETER);
 }
 
-bool lane_values_can_tell(const struct ScalarVariable *variable) {
+bool lane_values_can_report(const struct ScalarVariable *variable) {
   return variable->type == TYPE_REAL && (variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_RESULT);
 }
 
@@ -30,14 +30,14 @@ static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *i
     return events->acceleration;
   }
   struct Point point = lane_steps_point(steps, time);
-  lanes_refused = (Mask){0};
+  failed_lanes = (Mask){0};
   lagrangian.derivatives(&point, steps->rate);
-  *is_lost = lanes_refused;
+  *is_lost = failed_lanes;
   return steps->rate + lagrangian.coordinate_count;
 }
 
-Mask lane_values_tell(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
-                      const size_t *run, const size_t *slot) {
+Mask lane_values_report(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
+                        const size_t *run, const size_t *slot) {
   struct Point point = lane_steps_point(events->steps, time);
   Mask is_lost = {0};
   const Lanes *acceleration = asks_for_accelerations(ensemble) ? accelerations(events, time, &is_lost) : NULL;

@@ -75,7 +75,7 @@ static const struct BlockTable *blocks_of(const struct Program *program) {
     }
     if (block->force_count > 0) {
       table->factor = nonsymmetric_factor;
-      table->solve_obliquely = nonsymmetric_solve;
+      table->solve_nonsymmetric = nonsymmetric_solve;
     } else if (block->constraint_count > 0) {
       table->factor = saddle_factor;
       table->solve = saddle_solve;

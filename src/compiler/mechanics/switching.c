@@ -110,42 +110,43 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }
 
-/* Returns the component of the velocity along the heading, or to the left of it. */
-static Node velocity_by_heading(struct Graph *graph, const struct Friction *along, bool is_left) {
-  Node first = multiply(graph, along[0].plane.heading, along[is_left ? 1 : 0].velocity);
-  Node second = multiply(graph, along[1].plane.heading, along[is_left ? 0 : 1].velocity);
+/* Returns the component of the velocity along the slip direction, or to the left of it. */
+static Node velocity_along_slip(struct Graph *graph, const struct Friction *along, bool is_left) {
+  Node first = multiply(graph, along[0].plane.slip_direction, along[is_left ? 1 : 0].velocity);
+  Node second = multiply(graph, along[1].plane.slip_direction, along[is_left ? 0 : 1].velocity);
   return is_left ? subtract(graph, first, second) : add(graph, first, second);
 }
 
 /*
  * Returns the lower indicator of a friction in a plane, in units of the velocity. It falls through 0 if, while sliding,
- * the speed falls to lower; while slipping along the heading, the velocity along it falls to -lower; while sticking,
- * the force reaches the stiction. With a prescribed velocity at rest, it does so if the speed rises to lower.
+ * the speed falls to lower; while slipping along the slip direction, the velocity along it falls to -lower; while
+ * sticking, the force reaches the stiction. With a prescribed velocity at rest, it does so if the speed rises to lower.
  */
 static Node lower_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
   Node lower = along->plane.lower, above = subtract(graph, divide(graph, square_of_speed(graph, along), lower), lower);
   Node left = along->is_given ? negate(graph, above) : power_number(graph, along->stiction, 2.0);
   for (int i = 0; i < 2 && !along->is_given; i++) {
-    Node share = multiply(graph, along[i].sliding, along[i].plane.heading);
+    Node share = multiply(graph, along[i].sliding, along[i].plane.slip_direction);
     Node force = add(graph, model->unknowns.forces[along[i].constraint], share);
     left = subtract(graph, left, power_number(graph, force, 2.0));
   }
-  Node ahead = add(graph, velocity_by_heading(graph, along, false), lower);
+  Node ahead = add(graph, velocity_along_slip(graph, along, false), lower);
   Node moves = choose_node(graph, along->mode, above, ahead);
   return choose_node(graph, power_number(graph, along->mode, 2.0), moves, left);
 }
 
 /*
- * Returns the upper indicator. It falls through 0 if the speed rises to upper, or, while slipping along the heading,
- * the velocity perpendicular to it; with a negative upper, if the velocity along the heading falls to it.
+ * Returns the upper indicator. It falls through 0 if the speed rises to upper, or, while slipping along the slip
+ * direction, the velocity perpendicular to it; with a negative upper, if the velocity along the slip direction falls to
+ * it.
  */
 static Node upper_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
   Node upper = along->plane.upper, speed = square_of_speed(graph, along);
-  Node aside = power_number(graph, velocity_by_heading(graph, along, true), 2.0);
+  Node aside = power_number(graph, velocity_along_slip(graph, along, true), 2.0);
   Node square = choose_node(graph, along->mode, speed, aside);
-  Node ahead = subtract(graph, velocity_by_heading(graph, along, false), upper);
+  Node ahead = subtract(graph, velocity_along_slip(graph, along, false), upper);
   return choose_node(graph, upper, subtract(graph, upper, divide(graph, square, upper)), ahead);
 }
 

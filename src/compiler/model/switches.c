@@ -30,11 +30,12 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
 static const double resting_share = 0.1;
 
 /*
- * Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the heading.
+ * Returns this component of the unit vector that a friction in a plane opposes: that of the velocity, or the slip
+ * direction.
  */
 static Node direction_in_plane(struct Graph *graph, const struct Friction *friction) {
   const struct Friction *along = friction->plane.axis == ACROSS ? friction - 1 : friction;
-  Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.heading);
+  Node component = choose_node(graph, friction->mode, friction->velocity, friction->plane.slip_direction);
   Node speed = square_of_speed(graph, along);
   if (friction->is_given)
     speed = add(graph, speed, power_number(graph, scale(graph, resting_share, along->plane.lower), 2.0));

@@ -28,17 +28,17 @@ struct Contact {
 /*
  * Coulomb friction in a plane, along two velocities. It is two consecutive frictions of the model, "along" and
  * "across", with one mode: 1 while it slides against the velocity in the plane, 0 while it sticks, -1 while it slips
- * along the heading, a given direction, as at the onset of slip. While it sticks, the heading is the load that it
- * carries in addition to its constraint, as a share of the sliding force; it is 0 unless several frictions share a
- * load.
+ * along the slip direction, which is given, as at the onset of slip. While it sticks, the slip direction is the load
+ * that it carries in addition to its constraint, as a share of the sliding force; it is 0 unless several frictions
+ * share a load.
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
 /* The part of a friction in a plane; axis is NO_PLANE for a friction along a line. */
 struct FrictionPlane {
   enum PlaneAxis axis;
-  Node heading;      /* a mode: its component of the unit vector, or of the share */
-  Node lower, upper; /* modes: speeds; upper < 0 is a bound on the velocity along the heading */
+  Node slip_direction; /* a mode: its component of the unit vector, or of the share */
+  Node lower, upper;   /* modes: speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
 /*

@@ -173,10 +173,10 @@ static void write_small_factor(FILE *file, const struct InertiaBlock *block, siz
               k, k, start[column[k] + 1] - 1, k, k, k, k, k);
     write_pivot(file, block, i, numbers.items[i] < 0, number);
   }
-  fprintf(
-      file,
-      "  mass[%zu] = weakest;\n  saddle_balance(%zu, start%zu, column%zu, coordinate%zu, mass);\n  return 0;\n}\n\n",
-      2 * elements, n, number, number, number);
+  fprintf(file,
+          "  mass[%zu] = weakest;\n  saddle_null_vector(%zu, start%zu, column%zu, coordinate%zu, mass);\n  return "
+          "0;\n}\n\n",
+          2 * elements, n, number, number, number);
 }
 
 /* Writes the solution of a small block, unrolled. It calls saddle_solve() if the solution needs refinement. */

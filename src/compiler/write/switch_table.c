@@ -62,8 +62,8 @@ static void write_planes(FILE *file, const struct SwitchTable *metadata) {
   fputs("static const struct PlaneMetadata plane_facts[] = {", file);
   for (size_t i = 0; i < metadata->plane_count; i++) {
     const struct PlaneMetadata *plane = &metadata->planes[i];
-    fprintf(file, "{%zu, {%zu, %zu}, %zu, %zu}, ", plane->along, plane->heading[0], plane->heading[1], plane->lower,
-            plane->upper);
+    fprintf(file, "{%zu, {%zu, %zu}, %zu, %zu}, ", plane->along, plane->slip_direction[0], plane->slip_direction[1],
+            plane->lower, plane->upper);
   }
   fputs("};\n\n", file);
 }

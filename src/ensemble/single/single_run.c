@@ -119,7 +119,7 @@ static void take(struct SingleRun *run, const struct LaneView *lane) {
                lane->stride);
   run->instance.parameter_constants_are_stale = false;
   fmu_state_begin(run->instance.fmu_state, lane->origin);
-  run->instance.fmu_state->last_step.end = lane->origin + lane->reach;
+  run->instance.fmu_state->last_step.end = lane->origin + lane->interval;
 }
 
 /* --- The functions ---------------------------------------------------------------------------------------------------- */
@@ -208,11 +208,11 @@ double single_run_searched(const struct SingleRun *run, size_t lane) {
 
 void single_run_pass_quietly(struct SingleRun *run, const struct LaneView *lane) {
   struct EventProgress *progress = &run->courses[lane->number].progress;
-  progress->searched = fmax(progress->searched, fmin(lane->origin + lane->reach, run->step.end));
-  progress->gathered = progress->nearer = 0;
+  progress->searched = fmax(progress->searched, fmin(lane->origin + lane->interval, run->step.end));
+  progress->close_events = progress->nearer = 0;
 }
 
-void single_run_go_on(struct SingleRun *run, const struct LaneView *lane) {
+void single_run_continue(struct SingleRun *run, const struct LaneView *lane) {
   const struct LaneCourse *course = &run->courses[lane->number];
   give_state(course->state, lane);
   give_numbers(course->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);

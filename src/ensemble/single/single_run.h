@@ -13,16 +13,16 @@ struct LaneView {
   size_t number; /* index of the lane */
   size_t stride;
   int order;
-  double origin, reach; /* time of the series' origin, and length of their step, in s */
-  double *series;       /* state_count rows of SERIES_LENGTH coefficients */
-  double *low;          /* state_count: compensation of the state at the origin */
+  double origin, interval; /* time of the series' origin, and length of their step, in s */
+  double *series;          /* state_count rows of SERIES_LENGTH coefficients */
+  double *low;             /* state_count: compensation of the state at the origin */
   double *parameter, *parameter_constants, *input;
 };
 
 /* The result of a search for an event. */
 enum LaneEvent {
   NO_EVENT,     /* none up to the end of the step */
-  EVENT,        /* the lane continues with single_run_go_on() */
+  EVENT,        /* the lane continues with single_run_continue() */
   EVENT_UNKNOWN /* the search failed, and the FMU must do the run */
 };
 
@@ -45,7 +45,7 @@ enum LaneEvent single_run_find_event(struct SingleRun *run, const struct LaneVie
 void single_run_pass_quietly(struct SingleRun *run, const struct LaneView *lane);
 
 /* Stores the state and modes after the last found event in the lane. */
-void single_run_go_on(struct SingleRun *run, const struct LaneView *lane);
+void single_run_continue(struct SingleRun *run, const struct LaneView *lane);
 
 /* Returns the time up to which the lane was searched for events. */
 double single_run_searched(const struct SingleRun *run, size_t lane);

@@ -20,7 +20,7 @@
 #include <math.h>
 
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "contacts/resting_forces.h"
 #include "evaluation/services.h"
 
@@ -41,11 +41,11 @@ static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
 
 static const char crushed[] = "contacts crush a body between them";
-static const char no_pushes[] = "the forces of contacts cannot be found";
+static const char no_contact_impulses[] = "the forces of contacts cannot be found";
 
 /* The problem of the contacts that take part; forces are in units of unit[]. */
 struct RestingContacts {
-  struct Pushes pushes;
+  struct ContactImpulses impulses;
   struct RestingForces forces;
   double *unit; /* unit of the force of each contact: 1 / sqrt(W_ii) */
   void *block;
@@ -95,26 +95,27 @@ static bool choose_resting(struct Resolution *resolution) {
 }
 
 /* Computes the Delassus matrix with the selected contacts open; restores the modes. */
-static bool find_pushes(struct Resolution *resolution, struct Pushes *pushes) {
+static bool find_contact_impulses(struct Resolution *resolution, struct ContactImpulses *impulses) {
   const struct SwitchTable *switches = resolution->switches;
   bool changed = resolution->changed;
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (resolution->takes_part[i] != 0.0) set_contact(resolution, i, false);
-  bool done = pushes_create(resolution, pushes);
+  bool done = contact_impulses_create(resolution, impulses);
   resolution_restore_modes(resolution);
   resolution->changed = changed;
   return done;
 }
 
 /* Returns S_ij: the acceleration of gap i by a unit force of contact j with its sliding frictions. */
-static double delassus_with_friction(const struct Resolution *resolution, const struct Pushes *pushes, size_t i,
-                                     size_t j) {
-  size_t contacts = pushes->contact_count;
-  double sum = pushes->delassus[i * pushes->count + j];
-  for (size_t f = 0; f < pushes->friction_count; f++) {
-    double against = sliding_share(resolution, pushes->member[contacts + f]) * pushes->coefficient[f * contacts + j];
-    sum -= against * pushes->delassus[i * pushes->count + contacts + f];
+static double delassus_with_friction(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                                     size_t i, size_t j) {
+  size_t contacts = impulses->contact_count;
+  double sum = impulses->delassus[i * impulses->count + j];
+  for (size_t f = 0; f < impulses->friction_count; f++) {
+    double against =
+        sliding_share(resolution, impulses->member[contacts + f]) * impulses->coefficient[f * contacts + j];
+    sum -= against * impulses->delassus[i * impulses->count + contacts + f];
   }
   return sum;
 }
@@ -123,22 +124,22 @@ static double delassus_with_friction(const struct Resolution *resolution, const 
  * Fills S, scaled by the units, and the free accelerations: the present ones minus those that the present forces cause.
  */
 static void fill_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
-  const struct Pushes *pushes = &resting->pushes;
+  const struct ContactImpulses *impulses = &resting->impulses;
   struct RestingForces *forces = &resting->forces;
   size_t n = forces->count;
-  for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(pushes->delassus[i * pushes->count + i]);
+  for (size_t i = 0; i < n; i++) resting->unit[i] = 1.0 / sqrt(impulses->delassus[i * impulses->count + i]);
   for (size_t i = 0; i < n; i++) {
-    forces->free[i] = contact_value(resolution, pushes->member[i], CONTACT_ACCELERATION) * resting->unit[i];
+    forces->free[i] = contact_value(resolution, impulses->member[i], CONTACT_ACCELERATION) * resting->unit[i];
     for (size_t j = 0; j < n; j++) {
-      double force = contact_force(resolution, pushes->member[j]);
-      double s = delassus_with_friction(resolution, pushes, i, j) * resting->unit[i] * resting->unit[j];
+      double force = contact_force(resolution, impulses->member[j]);
+      double s = delassus_with_friction(resolution, impulses, i, j) * resting->unit[i] * resting->unit[j];
       forces->s[i * n + j] = s;
-      if (contact_is_closed(resolution, pushes->member[j])) forces->free[i] -= s * force / resting->unit[j];
+      if (contact_is_closed(resolution, impulses->member[j])) forces->free[i] -= s * force / resting->unit[j];
     }
   }
 }
 
-void contact_forces_refuse_fixed(const struct Resolution *resolution, size_t contact) {
+void contact_forces_report_fixed(const struct Resolution *resolution, size_t contact) {
   log_message(resolution->instance, resolution_status(resolution),
               "time %g: the contact '%s' closes by prescribed motions alone; expected prescribed motions that keep the "
               "gap open, or a free coordinate in the gap",
@@ -146,11 +147,11 @@ void contact_forces_refuse_fixed(const struct Resolution *resolution, size_t con
 }
 
 /* Returns the contact whose impulse closes the gap of a row most; the row itself if none does. */
-static size_t find_opponent(const struct Pushes *pushes, size_t row) {
+static size_t find_opponent(const struct ContactImpulses *impulses, size_t row) {
   size_t found = row;
   double most = 0.0;
-  for (size_t i = 0; i < pushes->contact_count; i++) {
-    double delassus = pushes->delassus[row * pushes->count + i];
+  for (size_t i = 0; i < impulses->contact_count; i++) {
+    double delassus = impulses->delassus[row * impulses->count + i];
     if (delassus >= most) continue;
     most = delassus;
     found = i;
@@ -158,32 +159,32 @@ static size_t find_opponent(const struct Pushes *pushes, size_t row) {
   return found;
 }
 
-static void log_crushed(const struct Resolution *resolution, const struct Pushes *pushes, size_t contact) {
+static void log_crushed(const struct Resolution *resolution, const struct ContactImpulses *impulses, size_t contact) {
   const struct ContactMetadata *contacts = resolution->switches->contacts;
   size_t row = 0;
-  while (pushes->member[row] != contact) row++;
+  while (impulses->member[row] != contact) row++;
   log_message(
       resolution->instance, resolution_status(resolution),
       "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions close one of them, and no "
       "force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of one",
-      resolution->time, contacts[contact].name, contacts[pushes->member[find_opponent(pushes, row)]].name);
+      resolution->time, contacts[contact].name, contacts[impulses->member[find_opponent(impulses, row)]].name);
 }
 
-const char *contact_forces_refuse_crushed(struct Resolution *resolution, size_t contact) {
+const char *contact_forces_report_crushed(struct Resolution *resolution, size_t contact) {
   const struct SwitchTable *switches = resolution->switches;
-  struct Pushes pushes;
+  struct ContactImpulses impulses;
   for (size_t i = 0; i < switches->contact_count; i++)
     resolution->takes_part[i] = i == contact || is_touching(resolution, i) ? 1.0 : 0.0;
   for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 0.0;
-  if (!find_pushes(resolution, &pushes)) return no_pushes;
-  log_crushed(resolution, &pushes, contact);
-  pushes_free(resolution, &pushes);
+  if (!find_contact_impulses(resolution, &impulses)) return no_contact_impulses;
+  log_crushed(resolution, &impulses, contact);
+  contact_impulses_free(resolution, &impulses);
   return crushed;
 }
 
 static void free_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
   if (resting->block != NULL) scratch_return(resolution->instance, SCRATCH_RESTING);
-  pushes_free(resolution, &resting->pushes);
+  contact_impulses_free(resolution, &resting->impulses);
 }
 
 /*
@@ -193,17 +194,17 @@ static void free_resting(const struct Resolution *resolution, struct RestingCont
 static bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
   *problem = NULL;
-  if (!find_pushes(resolution, &resting->pushes)) {
-    *problem = no_pushes;
+  if (!find_contact_impulses(resolution, &resting->impulses)) {
+    *problem = no_contact_impulses;
     return false;
   }
-  size_t n = resting->pushes.contact_count, bytes = resting_forces_bytes(n);
+  size_t n = resting->impulses.contact_count, bytes = resting_forces_bytes(n);
   resting->block = scratch_take(resolution->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
   bool moves = true;
-  for (size_t i = 0; i < n; i++) moves &= resting->pushes.delassus[i * resting->pushes.count + i] > DBL_MIN;
+  for (size_t i = 0; i < n; i++) moves &= resting->impulses.delassus[i * resting->impulses.count + i] > DBL_MIN;
   if (resting->block == NULL) {
-    solver_lacks_memory(resolution->instance);
-    *problem = no_pushes;
+    solver_is_out_of_memory(resolution->instance);
+    *problem = no_contact_impulses;
   }
   if (resting->block == NULL || !moves) {
     free_resting(resolution, resting);
@@ -223,7 +224,7 @@ static size_t find_sinking(const struct Resolution *resolution, const struct Res
   double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces), most = 0.0;
   size_t found = resolution->switches->contact_count;
   for (size_t i = 0; i < resting->forces.count; i++) {
-    size_t contact = resting->pushes.member[i];
+    size_t contact = resting->impulses.member[i];
     double acceleration = contact_value(resolution, contact, CONTACT_ACCELERATION);
     double least = error_bound_of_acceleration(resolution, contact) + rounding / resting->unit[i];
     if (contact_is_closed(resolution, contact) || !(acceleration < -least) || acceleration >= most) continue;
@@ -243,28 +244,29 @@ static size_t find_locked(const struct RestingContacts *resting) {
 }
 
 /* Returns the name of the friction that reduces the diagonal element of S most. */
-static const char *locking_friction(const struct Resolution *resolution, const struct Pushes *pushes, size_t contact) {
-  size_t contacts = pushes->contact_count, most = 0;
+static const char *locking_friction(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                                    size_t contact) {
+  size_t contacts = impulses->contact_count, most = 0;
   double taken = -INFINITY;
-  for (size_t f = 0; f < pushes->friction_count; f++) {
-    double takes = sliding_share(resolution, pushes->member[contacts + f]) *
-                   pushes->coefficient[f * contacts + contact] *
-                   pushes->delassus[contact * pushes->count + contacts + f];
+  for (size_t f = 0; f < impulses->friction_count; f++) {
+    double takes = sliding_share(resolution, impulses->member[contacts + f]) *
+                   impulses->coefficient[f * contacts + contact] *
+                   impulses->delassus[contact * impulses->count + contacts + f];
     if (takes > taken) most = f;
     taken = fmax(takes, taken);
   }
-  return resolution->switches->frictions[pushes->member[contacts + most]].name;
+  return resolution->switches->frictions[impulses->member[contacts + most]].name;
 }
 
-static const char *refuse_forces(const struct Resolution *resolution, const struct RestingContacts *resting,
+static const char *report_forces(const struct Resolution *resolution, const struct RestingContacts *resting,
                                  const char *how_many) {
-  const struct Pushes *pushes = &resting->pushes;
+  const struct ContactImpulses *impulses = &resting->impulses;
   size_t contact = find_locked(resting);
   log_message(resolution->instance, resolution_status(resolution),
               "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
               "together (Painleve's paradox); expected less friction, or another position",
-              resolution->time, resolution->switches->contacts[pushes->member[contact]].name, how_many,
-              locking_friction(resolution, pushes, contact));
+              resolution->time, resolution->switches->contacts[impulses->member[contact]].name, how_many,
+              locking_friction(resolution, impulses, contact));
   return "forces of contacts with friction are not determined";
 }
 
@@ -281,7 +283,7 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
   const struct RestingForces *forces = &resting->forces;
   double rounding = rounded_force * largest_free_acceleration(forces);
   for (size_t i = 0; i < forces->count; i++) {
-    size_t contact = resting->pushes.member[i];
+    size_t contact = resting->impulses.member[i];
     bool is_closed = contact_is_closed(resolution, contact);
     bool presses = forces->found_force[i] > rounding, parts = forces->found[i] > rounding;
     if (is_closed ? !parts : !presses) continue;
@@ -295,15 +297,15 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
 
 /* Warns at most once an instance that the solution may not be unique. */
 static void report_others(const struct Resolution *resolution, const struct RestingContacts *resting) {
-  const struct Pushes *pushes = &resting->pushes;
+  const struct ContactImpulses *impulses = &resting->impulses;
   size_t contact = find_locked(resting);
   if (resolution->instance->reported_other_forces) return;
   resolution->instance->reported_other_forces = true;
   log_message(resolution->instance, STATUS_WARNING,
               "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another "
               "solution: too many contacts are coupled to exclude it",
-              resolution->time, resolution->switches->contacts[pushes->member[contact]].name,
-              locking_friction(resolution, pushes, contact));
+              resolution->time, resolution->switches->contacts[impulses->member[contact]].name,
+              locking_friction(resolution, impulses, contact));
 }
 
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
@@ -317,10 +319,10 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   bool closes = sinking < resolution->switches->contact_count;
   enum RestingSolutions solutions = slides || closes ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
   if (!slides && solutions >= PERHAPS_NONE) {
-    log_crushed(resolution, &resting.pushes, sinking);
+    log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
   } else if (numbers_of_solutions[solutions] != NULL)
-    problem = refuse_forces(resolution, &resting, numbers_of_solutions[solutions]);
+    problem = report_forces(resolution, &resting, numbers_of_solutions[solutions]);
   else if (closes) *again = take_solution(resolution, &resting);
   if (solutions == PERHAPS_OTHERS) report_others(resolution, &resting);
   free_resting(resolution, &resting);
@@ -338,8 +340,8 @@ bool contact_forces_explain(struct Resolution *resolution) {
         resolution->instance, STATUS_DISCARD,
         "time %g: the friction '%s' slides and presses the contact '%s' together ever more strongly, up to a jam "
         "(Painleve's paradox); expected less friction, or another position",
-        resolution->time, locking_friction(resolution, &resting.pushes, contact),
-        resolution->switches->contacts[resting.pushes.member[contact]].name);
+        resolution->time, locking_friction(resolution, &resting.impulses, contact),
+        resolution->switches->contacts[resting.impulses.member[contact]].name);
   free_resting(resolution, &resting);
   return jams;
 }

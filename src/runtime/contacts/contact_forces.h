@@ -15,10 +15,10 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again);
  * Logs a contact that closes whatever its impulse, and one that opposes it: prescribed motions crush a body between
  * them. Returns the reason why the motion cannot go on.
  */
-const char *contact_forces_refuse_crushed(struct Resolution *resolution, size_t contact);
+const char *contact_forces_report_crushed(struct Resolution *resolution, size_t contact);
 
 /* Logs a contact that closes and whose gap no force changes. */
-void contact_forces_refuse_fixed(const struct Resolution *resolution, size_t contact);
+void contact_forces_report_fixed(const struct Resolution *resolution, size_t contact);
 
 /* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */
 bool contact_forces_explain(struct Resolution *resolution);

@@ -19,7 +19,7 @@
 #include "contacts/impacts.h"
 #include "contacts/load_shares.h"
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "events/continuity.h"
@@ -142,7 +142,7 @@ static void let_all_slide(struct Resolution *resolution) {
  * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
  * be evaluated.
  */
-static bool let_stopped_head(struct Resolution *resolution) {
+static bool let_stopped_slip(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   if (switches->plane_count == 0) return true;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
@@ -168,11 +168,11 @@ static bool take_impact(struct Resolution *resolution, size_t contact) {
   let_go(resolution);
   resolution->jumped = true;
   resolution->impacts++;
-  return done && let_stopped_head(resolution);
+  return done && let_stopped_slip(resolution);
 }
 
 /* Logs singular equations, which name no contact by themselves; other reasons have been logged. */
-static const char *refuse_singular_impact(const struct Resolution *resolution, size_t contact) {
+static const char *report_singular_impact(const struct Resolution *resolution, size_t contact) {
   if (resolution->instance->singular != 0)
     log_message(resolution->instance, resolution_status(resolution),
                 "time %g: the impact of the contact '%s' has no solution, as the equations of motion are singular "
@@ -263,7 +263,7 @@ static bool close_contacts(struct Resolution *resolution) {
   return true;
 }
 
-static const char *refuse_rest(const struct Resolution *resolution) {
+static const char *report_rest(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t contact = 0;
   while (contact + 1 < switches->contact_count && !is_touching(resolution, contact)) contact++;
@@ -291,13 +291,13 @@ static size_t find_prescribed(const struct Resolution *resolution) {
 
 /* Projects the velocities onto the contacts that have come to rest. NULL, or the reason why that fails. */
 static const char *let_rest(struct Resolution *resolution) {
-  if (!resolution_project_velocities(resolution)) return refuse_rest(resolution);
+  if (!resolution_project_velocities(resolution)) return report_rest(resolution);
   size_t fixed = find_prescribed(resolution);
   if (fixed < resolution->switches->contact_count) {
-    contact_forces_refuse_fixed(resolution, fixed);
+    contact_forces_report_fixed(resolution, fixed);
     return no_impact;
   }
-  return let_stopped_head(resolution) ? NULL : refuse_rest(resolution);
+  return let_stopped_slip(resolution) ? NULL : report_rest(resolution);
 }
 
 /* Returns the gap beyond which a closed contact was moved apart; larger for importers, whose states drift more. */
@@ -516,11 +516,11 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   size_t contact = find_impact(resolution);
   bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT;
   if (hits && is_tried && closes_clearly(resolution, contact))
-    return contact_forces_refuse_crushed(resolution, contact);
-  if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : refuse_singular_impact(resolution, contact);
+    return contact_forces_report_crushed(resolution, contact);
+  if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : report_singular_impact(resolution, contact);
   if (close_contacts(resolution)) return let_rest(resolution);
   bool lifts;
-  if (!lift(resolution, &lifts)) return refuse_rest(resolution);
+  if (!lift(resolution, &lifts)) return report_rest(resolution);
   if (lifts) return NULL;
   size_t pulling = find_pulling(resolution);
   *again = pulling < switches->contact_count;

@@ -16,7 +16,7 @@
 #include "contacts/impact_outcomes.h"
 #include "contacts/jams.h"
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "events/continuity.h"
@@ -119,12 +119,12 @@ static double mode_without_force(const struct FrictionState *state) {
  * others.
  */
 static double mode_without_hold(const struct FrictionState *state) {
-  bool goes_on = fabs(state->rate) > sticking_rate_share * state->largest_rate,
-       is_told = fabs(state->rate) > state->error_bound_of_rate;
+  bool continues = fabs(state->rate) > sticking_rate_share * state->largest_rate,
+       is_determined = fabs(state->rate) > state->error_bound_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
-  double most = goes_on ? state->error_bound_of_force : state->force;
+  double most = continues ? state->error_bound_of_force : state->force;
   if (state->is_first || state->began == 0.0) return 0.0;
-  if (goes_on && is_told) return state->rate > 0.0 ? 1.0 : -1.0;
+  if (continues && is_determined) return state->rate > 0.0 ? 1.0 : -1.0;
   return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
@@ -172,7 +172,7 @@ static bool would_go_back(const struct Resolution *resolution, size_t friction, 
          resolution->last.certainty > certainty;
 }
 
-const char *frictions_refuse(const struct Resolution *resolution, size_t friction) {
+const char *frictions_report_inconsistent(const struct Resolution *resolution, size_t friction) {
   const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
   bool is_weaker =
       value[FRICTION_STICTION] < value[FRICTION_FORCE] || value[FRICTION_STICTION_BACK] < value[FRICTION_FORCE_BACK];
@@ -183,7 +183,7 @@ const char *frictions_refuse(const struct Resolution *resolution, size_t frictio
   return neither;
 }
 
-void frictions_blame(const struct Resolution *resolution, const char *missing) {
+void frictions_report_missing(const struct Resolution *resolution, const char *missing) {
   const struct SwitchTable *switches = resolution->switches;
   size_t worst = 0;
   for (size_t i = 1; i < switches->friction_count; i++)
@@ -207,7 +207,9 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
     if (would_go_back(resolution, i, mode, certainty)) continue;
     if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
       *switched = jams_resolve(resolution);
-      return *switched ? NULL : resolution->has_several_motions ? neither : frictions_refuse(resolution, i);
+      return *switched                         ? NULL
+             : resolution->has_several_motions ? neither
+                                               : frictions_report_inconsistent(resolution, i);
     }
     resolution_set_mode(resolution, switches->frictions[i].mode, mode);
     resolution->last.friction = i;
@@ -405,7 +407,7 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch) {
 
 const struct FrictionLaws friction_laws = {.act = frictions_act,
                                            .report = frictions_report,
-                                           .blame = frictions_blame,
+                                           .report_missing = frictions_report_missing,
                                            .check = frictions_check,
                                            .release = frictions_release,
                                            .resolve_jam = jams_resolve,

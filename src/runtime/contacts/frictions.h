@@ -15,10 +15,10 @@ const char *frictions_check(struct Resolution *resolution);
 bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained);
 
 /* Logs a friction without a consistent mode; returns the reason why the motion cannot go on. */
-const char *frictions_refuse(const struct Resolution *resolution, size_t friction);
+const char *frictions_report_inconsistent(const struct Resolution *resolution, size_t friction);
 
 /* Logs what is missing, such as the accelerations, with the name of the friction that switched most often. */
-void frictions_blame(const struct Resolution *resolution, const char *missing);
+void frictions_report_missing(const struct Resolution *resolution, const char *missing);
 
 /*
  * Logs a friction that slides and jams the constraint from whose force it follows; false if none does. branch: the one

@@ -24,7 +24,7 @@
 #include "contacts/complementarity.h"
 #include "contacts/contact_forces.h"
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
@@ -54,7 +54,7 @@ static const double regularizations[] = {1e-8, 1e-6, 1e-10, 1e-7};
  * frictions along their velocities; those against them; sliding speeds.
  */
 struct ImpactProblem {
-  const struct Pushes *pushes;
+  const struct ContactImpulses *impulses;
   size_t count;
   double *unit; /* unit of each impulse: 1 / sqrt(W_ii), 0 if W_ii is 0 */
   double *matrix, *rate, *q, *z, *next, *work;
@@ -64,40 +64,41 @@ struct ImpactProblem {
 };
 
 static size_t first_row(const struct ImpactProblem *problem, size_t part) {
-  const struct Pushes *pushes = problem->pushes;
-  return part == 0 ? 0 : pushes->contact_count + (part - 1) * pushes->friction_count;
+  const struct ContactImpulses *impulses = problem->impulses;
+  return part == 0 ? 0 : impulses->contact_count + (part - 1) * impulses->friction_count;
 }
 
 /* Fills the elements of a pair of impulses; a friction has two rows, along and against its velocity. */
 static void fill_delassus(struct ImpactProblem *problem, size_t i, size_t j) {
-  const struct Pushes *pushes = problem->pushes;
-  size_t contacts = pushes->contact_count, frictions = pushes->friction_count, n = problem->count;
-  double value = pushes->delassus[i * pushes->count + j] * problem->unit[i] * problem->unit[j];
+  const struct ContactImpulses *impulses = problem->impulses;
+  size_t contacts = impulses->contact_count, frictions = impulses->friction_count, n = problem->count;
+  double value = impulses->delassus[i * impulses->count + j] * problem->unit[i] * problem->unit[j];
   for (size_t side = 0; side < (i < contacts ? 1u : 2u); side++)
     for (size_t other = 0; other < (j < contacts ? 1u : 2u); other++)
       problem->matrix[(i + side * frictions) * n + j + other * frictions] = side == other ? value : -value;
 }
 
 static void fill_friction(struct ImpactProblem *problem, size_t friction) {
-  const struct Pushes *pushes = problem->pushes;
-  size_t n = problem->count, contacts = pushes->contact_count;
+  const struct ContactImpulses *impulses = problem->impulses;
+  size_t n = problem->count, contacts = impulses->contact_count;
   size_t along = first_row(problem, 1) + friction, against = first_row(problem, 2) + friction,
          slides = first_row(problem, 3) + friction;
   double unit = problem->unit[contacts + friction];
   problem->matrix[along * n + slides] = problem->matrix[against * n + slides] = 1.0;
   problem->matrix[slides * n + along] = problem->matrix[slides * n + against] = -1.0;
   for (size_t i = 0; i < contacts && unit > 0.0; i++)
-    problem->matrix[slides * n + i] = pushes->coefficient[friction * contacts + i] * problem->unit[i] / unit;
+    problem->matrix[slides * n + i] = impulses->coefficient[friction * contacts + i] * problem->unit[i] / unit;
 }
 
 /* Sets up the matrix. False if a contact cannot be moved, or memory is missing. */
-static bool create_problem(struct Resolution *resolution, const struct Pushes *pushes, struct ImpactProblem *problem) {
-  size_t n = pushes->contact_count + 3 * pushes->friction_count, count = pushes->count;
+static bool create_problem(struct Resolution *resolution, const struct ContactImpulses *impulses,
+                           struct ImpactProblem *problem) {
+  size_t n = impulses->contact_count + 3 * impulses->friction_count, count = impulses->count;
   size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
-  *problem = (struct ImpactProblem){.pushes = pushes, .count = n};
+  *problem = (struct ImpactProblem){.impulses = impulses, .count = n};
   problem->block = scratch_take(resolution->instance, SCRATCH_IMPACT, numbers * sizeof(double));
   if (problem->block == NULL) {
-    solver_lacks_memory(resolution->instance);
+    solver_is_out_of_memory(resolution->instance);
     return false;
   }
   problem->unit = problem->block;
@@ -110,13 +111,13 @@ static bool create_problem(struct Resolution *resolution, const struct Pushes *p
   problem->work = problem->next + n;
   bool moves = true;
   for (size_t i = 0; i < count; i++) {
-    double delassus = pushes->delassus[i * count + i];
+    double delassus = impulses->delassus[i * count + i];
     problem->unit[i] = delassus > DBL_MIN ? 1.0 / sqrt(delassus) : 0.0;
-    moves &= i >= pushes->contact_count || problem->unit[i] > 0.0;
+    moves &= i >= impulses->contact_count || problem->unit[i] > 0.0;
   }
   for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j < count; j++) fill_delassus(problem, i, j);
-  for (size_t f = 0; f < pushes->friction_count; f++) fill_friction(problem, f);
+  for (size_t f = 0; f < impulses->friction_count; f++) fill_friction(problem, f);
   return moves;
 }
 
@@ -131,22 +132,22 @@ static double restitution_of(const struct Resolution *resolution, size_t contact
 }
 
 /* Returns the factor of a rate before the impact in its complementarity condition: 1 + share e if the gap closes. */
-static double rise_by_restitution(const struct Resolution *resolution, const struct Pushes *pushes, size_t push,
-                                  double share) {
-  double bounce = push < pushes->contact_count ? restitution_of(resolution, pushes->member[push]) : 0.0;
-  return 1.0 + (pushes->rate[push] < 0.0 ? share * bounce : 0.0);
+static double rise_by_restitution(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                                  size_t push, double share) {
+  double bounce = push < impulses->contact_count ? restitution_of(resolution, impulses->member[push]) : 0.0;
+  return 1.0 + (impulses->rate[push] < 0.0 ? share * bounce : 0.0);
 }
 
 /* Fills the constant terms of the conditions, relative to the largest one. Returns this. */
 static double fill_rates(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
-  const struct Pushes *pushes = problem->pushes;
+  const struct ContactImpulses *impulses = problem->impulses;
   double largest = 0.0;
   memset(problem->rate, 0, problem->count * sizeof *problem->rate);
-  for (size_t i = 0; i < pushes->count; i++) {
-    bool is_contact = i < pushes->contact_count;
-    double rate = pushes->rate[i] * problem->unit[i] * rise_by_restitution(resolution, pushes, i, share);
+  for (size_t i = 0; i < impulses->count; i++) {
+    bool is_contact = i < impulses->contact_count;
+    double rate = impulses->rate[i] * problem->unit[i] * rise_by_restitution(resolution, impulses, i, share);
     problem->rate[i] = rate;
-    if (!is_contact) problem->rate[i + pushes->friction_count] = -rate;
+    if (!is_contact) problem->rate[i + impulses->friction_count] = -rate;
     largest = fmax(largest, fabs(rate));
   }
   for (size_t i = 0; i < problem->count && largest > 0.0; i++) problem->rate[i] /= largest;
@@ -185,71 +186,72 @@ static bool solve_regularized(struct ImpactProblem *problem, double regularizati
 }
 
 /* Returns the row of the first friction that acts in a plane; their number if there is none. */
-static size_t find_plane(const struct Resolution *resolution, const struct Pushes *pushes) {
-  size_t row = pushes->contact_count;
-  while (row < pushes->count && !is_in_plane(resolution->switches, pushes->member[row])) row++;
+static size_t find_plane(const struct Resolution *resolution, const struct ContactImpulses *impulses) {
+  size_t row = impulses->contact_count;
+  while (row < impulses->count && !is_in_plane(resolution->switches, impulses->member[row])) row++;
   return row;
 }
 
 /* Fills the constant terms of the conditions, unscaled, for the contacts and frictions. */
 static void fill_plain_rates(const struct Resolution *resolution, struct ImpactProblem *problem) {
-  const struct Pushes *pushes = problem->pushes;
-  for (size_t i = 0; i < pushes->count; i++)
-    problem->rate[i] = pushes->rate[i] * rise_by_restitution(resolution, pushes, i, problem->share);
+  const struct ContactImpulses *impulses = problem->impulses;
+  for (size_t i = 0; i < impulses->count; i++)
+    problem->rate[i] = impulses->rate[i] * rise_by_restitution(resolution, impulses, i, problem->share);
 }
 
 /* Finds the impulses with frictions in planes. Their conditions are not linear. */
 static bool find_impulses_in_planes(const struct Resolution *resolution, struct ImpactProblem *problem) {
-  const struct Pushes *pushes = problem->pushes;
+  const struct ContactImpulses *impulses = problem->impulses;
   fill_plain_rates(resolution, problem);
-  return resolution->switches->friction_laws->find_impulses(resolution, pushes, problem->rate, problem->impulse);
+  return resolution->switches->friction_laws->find_impulses(resolution, impulses, problem->rate, problem->impulse);
 }
 
 /* Finds the impulses with a factor of the restitutions. False if none are found. */
 static bool find_impulses(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
-  const struct Pushes *pushes = problem->pushes;
+  const struct ContactImpulses *impulses = problem->impulses;
   problem->share = share;
-  if (find_plane(resolution, pushes) < pushes->count) return find_impulses_in_planes(resolution, problem);
+  if (find_plane(resolution, impulses) < impulses->count) return find_impulses_in_planes(resolution, problem);
   double scale = fill_rates(resolution, problem, share);
   bool is_solved = false;
   for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
     is_solved = solve_regularized(problem, regularizations[i]);
-  for (size_t i = 0; i < pushes->count; i++) {
-    double against = i < pushes->contact_count ? 0.0 : problem->z[i + pushes->friction_count];
+  for (size_t i = 0; i < impulses->count; i++) {
+    double against = i < impulses->contact_count ? 0.0 : problem->z[i + impulses->friction_count];
     problem->impulse[i] = (problem->z[i] - against) * problem->unit[i] * scale;
   }
   return is_solved;
 }
 
 /* True if the work of the impulses is positive beyond rounding. */
-static bool gains_energy(const struct Pushes *pushes, const double *impulse) {
+static bool gains_energy(const struct ContactImpulses *impulses, const double *impulse) {
   double work = 0.0, size = 0.0;
-  for (size_t i = 0; i < pushes->count; i++) {
+  for (size_t i = 0; i < impulses->count; i++) {
     double change = 0.0;
-    for (size_t j = 0; j < pushes->count; j++) change += pushes->delassus[i * pushes->count + j] * impulse[j];
-    work += impulse[i] * (pushes->rate[i] + 0.5 * change);
-    size += fabs(impulse[i]) * (fabs(pushes->rate[i]) + 0.5 * fabs(change));
+    for (size_t j = 0; j < impulses->count; j++) change += impulses->delassus[i * impulses->count + j] * impulse[j];
+    work += impulse[i] * (impulses->rate[i] + 0.5 * change);
+    size += fabs(impulse[i]) * (fabs(impulses->rate[i]) + 0.5 * fabs(change));
   }
   return work > least_gain * size;
 }
 
 /* Returns p^T W p of p = impulse - share other: twice the energy of the motion that p makes from rest. */
-static double energy_made(const struct Pushes *pushes, const double *impulse, const double *other, double share) {
+static double energy_made(const struct ContactImpulses *impulses, const double *impulse, const double *other,
+                          double share) {
   double sum = 0.0;
-  for (size_t i = 0; i < pushes->count; i++)
-    for (size_t j = 0; j < pushes->count; j++)
-      sum +=
-          (impulse[i] - share * other[i]) * pushes->delassus[i * pushes->count + j] * (impulse[j] - share * other[j]);
+  for (size_t i = 0; i < impulses->count; i++)
+    for (size_t j = 0; j < impulses->count; j++)
+      sum += (impulse[i] - share * other[i]) * impulses->delassus[i * impulses->count + j] *
+             (impulse[j] - share * other[j]);
   return sum;
 }
 
-bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const double *found) {
-  double size = energy_made(pushes, impulse, found, 0.0) + energy_made(pushes, found, impulse, 0.0);
-  return energy_made(pushes, impulse, found, 1.0) > differing_share * size && !gains_energy(pushes, impulse);
+bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found) {
+  double size = energy_made(impulses, impulse, found, 0.0) + energy_made(impulses, found, impulse, 0.0);
+  return energy_made(impulses, impulse, found, 1.0) > differing_share * size && !gains_energy(impulses, impulse);
 }
 
 static bool is_fine(const struct Resolution *resolution, struct ImpactProblem *problem, double share) {
-  return find_impulses(resolution, problem, share) && !gains_energy(problem->pushes, problem->impulse);
+  return find_impulses(resolution, problem, share) && !gains_energy(problem->impulses, problem->impulse);
 }
 
 /* Finds the impulses with the largest factor of the restitutions that gains no energy, by bisection. */
@@ -265,90 +267,90 @@ static bool find_fine_impulses(const struct Resolution *resolution, struct Impac
   return find_impulses(resolution, problem, fine);
 }
 
-static void add_impulses(struct Resolution *resolution, const struct Pushes *pushes, const double *impulse) {
+static void add_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
   double *velocity = resolution->state + lagrangian.coordinate_count;
-  for (size_t i = 0; i < pushes->count; i++)
+  for (size_t i = 0; i < impulses->count; i++)
     for (size_t k = 0; k < lagrangian.coordinate_count; k++)
-      velocity[k] += impulse[i] * pushes->velocities[i * lagrangian.coordinate_count + k];
+      velocity[k] += impulse[i] * impulses->velocities[i * lagrangian.coordinate_count + k];
 }
 
 /* Applies the impulse of one contact without friction: p = max(-(1 + e) u- / W, 0). */
-static bool take_one(struct Resolution *resolution, const struct Pushes *pushes, bool bounces) {
-  double bounce = bounces ? restitution_of(resolution, pushes->member[0]) : 0.0;
-  double impulse = fmax(-(1.0 + bounce) * pushes->rate[0] / pushes->delassus[0], 0.0);
-  if (!(pushes->delassus[0] > DBL_MIN)) {
-    contact_forces_refuse_fixed(resolution, pushes->member[0]);
+static bool take_one(struct Resolution *resolution, const struct ContactImpulses *impulses, bool bounces) {
+  double bounce = bounces ? restitution_of(resolution, impulses->member[0]) : 0.0;
+  double impulse = fmax(-(1.0 + bounce) * impulses->rate[0] / impulses->delassus[0], 0.0);
+  if (!(impulses->delassus[0] > DBL_MIN)) {
+    contact_forces_report_fixed(resolution, impulses->member[0]);
     return false;
   }
-  add_impulses(resolution, pushes, &impulse);
+  add_impulses(resolution, impulses, &impulse);
   return true;
 }
 
 /* Returns the first contact whose gap no impulse changes; their number if there is none. */
-static size_t find_fixed(const struct Pushes *pushes) {
+static size_t find_fixed(const struct ContactImpulses *impulses) {
   size_t row = 0;
-  while (row < pushes->contact_count && pushes->delassus[row * pushes->count + row] > DBL_MIN) row++;
+  while (row < impulses->contact_count && impulses->delassus[row * impulses->count + row] > DBL_MIN) row++;
   return row;
 }
 
-static void refuse_impact(const struct Resolution *resolution, const struct Pushes *pushes) {
+static void report_impact(const struct Resolution *resolution, const struct ContactImpulses *impulses) {
   const struct SwitchTable *switches = resolution->switches;
-  size_t row = find_plane(resolution, pushes);
-  size_t fixed = find_fixed(pushes);
-  if (fixed < pushes->contact_count) contact_forces_refuse_fixed(resolution, pushes->member[fixed]);
-  else if (row < pushes->count)
+  size_t row = find_plane(resolution, impulses);
+  size_t fixed = find_fixed(impulses);
+  if (fixed < impulses->contact_count) contact_forces_report_fixed(resolution, impulses->member[fixed]);
+  else if (row < impulses->count)
     log_message(
         resolution->instance, STATUS_DISCARD,
         "time %g: no impulses were found for an impact with the friction '%s', which acts in a plane; expected less "
         "friction, or another position",
-        resolution->time, switches->frictions[pushes->member[row]].name);
+        resolution->time, switches->frictions[impulses->member[row]].name);
   else
     log_message(resolution->instance, STATUS_DISCARD,
                 "time %g: no impulses were found for an impact of the contact '%s'; expected less friction, or another "
                 "position",
-                resolution->time, switches->contacts[pushes->member[0]].name);
+                resolution->time, switches->contacts[impulses->member[0]].name);
 }
 
 /* True if all rates are those of rest: the impact is a rounding error. */
-static bool is_hit_at_rest(const struct Resolution *resolution, const struct Pushes *pushes) {
+static bool is_hit_at_rest(const struct Resolution *resolution, const struct ContactImpulses *impulses) {
   double fastest = 0.0;
-  for (size_t i = 0; i < pushes->count; i++) fastest = fmax(fastest, fabs(pushes->rate[i]));
+  for (size_t i = 0; i < impulses->count; i++) fastest = fmax(fastest, fabs(impulses->rate[i]));
   return fastest <= resting_share * largest_scale(resolution->state, lagrangian.coordinate_count);
 }
 
 /* Warns at most once an instance that the impact has several outcomes. */
 static void report_other_outcomes(const struct Resolution *resolution, struct ImpactProblem *problem) {
-  const struct Pushes *pushes = problem->pushes;
+  const struct ContactImpulses *impulses = problem->impulses;
   const struct SwitchTable *switches = resolution->switches;
-  if (pushes->friction_count == 0 || resolution->instance->reported_other_impulses) return;
-  if (is_hit_at_rest(resolution, pushes)) return;
+  if (impulses->friction_count == 0 || resolution->instance->reported_other_impulses) return;
+  if (is_hit_at_rest(resolution, impulses)) return;
   fill_plain_rates(resolution, problem);
-  if (!switches->friction_laws->has_other_impulses(resolution, pushes, problem->rate, problem->impulse)) return;
+  if (!switches->friction_laws->has_other_impulses(resolution, impulses, problem->rate, problem->impulse)) return;
   resolution->instance->reported_other_impulses = true;
   log_message(resolution->instance, STATUS_WARNING,
               "time %g: an impact, such as of the contact '%s' with the friction '%s', has more than one solution; one "
               "of them is taken",
-              resolution->time, switches->contacts[pushes->member[0]].name,
-              switches->frictions[pushes->member[pushes->contact_count]].name);
+              resolution->time, switches->contacts[impulses->member[0]].name,
+              switches->frictions[impulses->member[impulses->contact_count]].name);
 }
 
-static bool take_several(struct Resolution *resolution, const struct Pushes *pushes, bool bounces) {
+static bool take_several(struct Resolution *resolution, const struct ContactImpulses *impulses, bool bounces) {
   struct ImpactProblem problem;
-  bool is_done = create_problem(resolution, pushes, &problem) && find_fine_impulses(resolution, &problem, bounces);
+  bool is_done = create_problem(resolution, impulses, &problem) && find_fine_impulses(resolution, &problem, bounces);
   if (is_done) {
     report_other_outcomes(resolution, &problem);
-    add_impulses(resolution, pushes, problem.impulse);
-  } else refuse_impact(resolution, pushes);
+    add_impulses(resolution, impulses, problem.impulse);
+  } else report_impact(resolution, impulses);
   if (problem.block != NULL) scratch_return(resolution->instance, SCRATCH_IMPACT);
   return is_done;
 }
 
 bool impacts_take(struct Resolution *resolution, bool bounces) {
-  struct Pushes pushes;
-  if (!pushes_create(resolution, &pushes)) return false;
+  struct ContactImpulses impulses;
+  if (!contact_impulses_create(resolution, &impulses)) return false;
   bool is_done =
-      pushes.count == 1 ? take_one(resolution, &pushes, bounces) : take_several(resolution, &pushes, bounces);
-  pushes_free(resolution, &pushes);
+      impulses.count == 1 ? take_one(resolution, &impulses, bounces) : take_several(resolution, &impulses, bounces);
+  contact_impulses_free(resolution, &impulses);
   resolution->changed = true;
   return is_done;
 }

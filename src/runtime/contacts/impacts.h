@@ -10,9 +10,9 @@
  */
 bool impacts_take(struct Resolution *resolution, bool bounces);
 
-struct Pushes;
+struct ContactImpulses;
 
 /* True if impulses cause another motion than found, beyond rounding, and gain no energy. */
-bool is_other_outcome(const struct Pushes *pushes, const double *impulse, const double *found);
+bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found);
 
 #endif

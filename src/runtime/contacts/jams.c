@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "evaluation/services.h"
 
 /* Combinations that are tried at most: 3^6, those of six frictions. */
@@ -45,7 +45,7 @@ static double direction_of(const struct Resolution *resolution, size_t friction)
  * At the start, where all frictions slide forwards, sets moving frictions to the sign of their velocities. Returns the
  * last one that changed; friction_count for none.
  */
-static size_t turn_moving(struct Resolution *resolution) {
+static size_t reverse_moving(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t switched = switches->friction_count;
   for (size_t i = 0; i < switches->friction_count && resolution->occasion == AT_START; i++) {
@@ -78,7 +78,7 @@ static bool begin_search(struct JamSearch *search) {
   struct Resolution *resolution = search->resolution;
   const struct SwitchTable *switches = resolution->switches;
   search->combinations = 1;
-  search->friction = turn_moving(resolution);
+  search->friction = reverse_moving(resolution);
   for (size_t i = 0; i < switches->friction_count; i++) {
     bool is_tried = direction_of(resolution, i) == 0.0;
     resolution->takes_part[switches->contact_count + i] = is_tried ? 1.0 : 0.0;

@@ -11,7 +11,7 @@
 #include <math.h>
 
 #include "contacts/planes.h"
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "contacts/resting_forces.h"
 #include "evaluation/evaluate.h"
 

@@ -21,7 +21,7 @@ const char *evaluate_kind(size_t constraint) {
   return "constraint";
 }
 
-void log_unkept(const struct Instance *instance, enum Status status, double time, size_t constraint) {
+void log_violated(const struct Instance *instance, enum Status status, double time, size_t constraint) {
   log_message(instance, status,
               "time %g: the %s '%s' cannot be fulfilled with the others; expected constraints that are consistent and "
               "do not jump, or other start values or parameters",
@@ -95,9 +95,9 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
 }
 
 /* Moves a point without a value back to the end of its piece: importers try such points. False if there is none. */
-static bool come_back(struct Instance *instance, struct Point *point) {
+static bool return_to_domain(struct Instance *instance, struct Point *point) {
   bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
-  return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->come_back(instance, point);
+  return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->return_to_domain(instance, point);
 }
 
 enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
@@ -105,7 +105,7 @@ enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
   if (status != STATUS_DONE) return status;
   struct Point point = instance_point(instance);
   if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
-  if (come_back(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  if (return_to_domain(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
   return discard_for_singularity(instance);
 }
 
@@ -140,7 +140,7 @@ static enum Status evaluate_result(struct Instance *instance, const struct Scala
   if (status != STATUS_DONE) return status;
   struct Point point = instance_point(instance);
   bool has_value = evaluate_result_at(instance, &point, variable->index, value);
-  if (!(has_value && isfinite(*value)) && come_back(instance, &point))
+  if (!(has_value && isfinite(*value)) && return_to_domain(instance, &point))
     has_value = evaluate_result_at(instance, &point, variable->index, value);
   return has_value ? STATUS_DONE : discard_for_singularity(instance);
 }

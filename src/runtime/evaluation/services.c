@@ -95,7 +95,8 @@ const char *solver_project(struct Instance *instance, double time, double *state
   if (!solver_has_constraints(instance)) return NULL;
   double moved = lagrangian.constraints.projection->project(instance, time, state);
   bool is_kept = moved <= 1000.0 * fmax(instance->fmu_state->tolerance, 1e-10);
-  instance->unkept = is_kept ? 0 : 1 + lagrangian.constraints.projection->unkept(instance, time);
+  instance->violated_constraint =
+      is_kept ? 0 : 1 + lagrangian.constraints.projection->violated_constraint(instance, time);
   return is_kept ? NULL : problem;
 }
 
@@ -104,7 +105,7 @@ void solver_free_memory(struct Instance *instance) {
   instance->solver_memory = NULL;
 }
 
-bool solver_lacks_memory(const struct Instance *instance) {
+bool solver_is_out_of_memory(const struct Instance *instance) {
   log_message(instance, STATUS_ERROR, "out of memory for the solver");
   return false;
 }

@@ -11,7 +11,7 @@
 /* Switches of one branch in an event resolution before it counts as endless. */
 enum { FLIP_LIMIT = 8 };
 
-static const char without_end[] = "a mode switches without end (chattering)";
+static const char endless_switching[] = "a mode switches without end (chattering)";
 
 static const char jammed[] = "a friction and a constraint jam each other";
 
@@ -86,11 +86,11 @@ static double branch_mode(const struct Resolution *resolution, size_t branch) {
 }
 
 /* Logs a branch both of whose signs lead back to its zero; returns the reason. */
-static const char *refuse_branch(struct Resolution *resolution, size_t branch) {
+static const char *report_branch(struct Resolution *resolution, size_t branch) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
   const struct BranchMetadata *metadata = &resolution->switches->branches[branch];
   if (laws != NULL && laws->explain_jam(resolution, branch)) return jammed;
-  if (continuity_explain_corner(resolution, branch)) return without_end;
+  if (continuity_explain_corner(resolution, branch)) return endless_switching;
   const char *remedy = lagrangian.coordinate_count > 0
                            ? "as with dry friction that sticks; expected <friction> in place of sign, or of a <state>"
                            : "as with a relay without hysteresis; expected";
@@ -99,7 +99,7 @@ static const char *refuse_branch(struct Resolution *resolution, size_t branch) {
       "time %g: %s, line %ld of %s, chatters: on both sides of its jump the motion leads back to it, %s a <mode> "
       "that two events set at different values",
       resolution->time, metadata->function, metadata->line, metadata->file, remedy);
-  return without_end;
+  return endless_switching;
 }
 
 const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched) {
@@ -112,7 +112,7 @@ const char *branches_switch(struct Resolution *resolution, bool last_signs, bool
     if (++resolution->flips[i] > FLIP_LIMIT) {
       const struct FrictionLaws *laws = switches->friction_laws;
       *switched = laws != NULL && laws->resolve_jam(resolution);
-      return *switched ? NULL : resolution->has_several_motions ? jammed : refuse_branch(resolution, i);
+      return *switched ? NULL : resolution->has_several_motions ? jammed : report_branch(resolution, i);
     }
     continuity_note(resolution, i);
     resolution->rate[i] = resolution->value[branch_rate_slot(switches, i)];
@@ -130,7 +130,7 @@ const char *branches_check(struct Resolution *resolution) {
     double mode = mode_of(resolution, switches->branches[i].mode), error_bound = resolution->error_bound[slot];
     double rate = resolution->value[slot];
     bool leads_back = mode * resolution->rate[i] > error_bound && mode * rate < -error_bound;
-    if (leads_back && fabs(resolution->value[i]) <= soonest_return * fabs(rate)) return refuse_branch(resolution, i);
+    if (leads_back && fabs(resolution->value[i]) <= soonest_return * fabs(rate)) return report_branch(resolution, i);
   }
   return NULL;
 }

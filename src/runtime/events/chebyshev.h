@@ -1,6 +1,6 @@
 /*
- * Interpolation by Chebyshev polynomials of degree 8 in a window of time (L. N. Trefethen: Approximation Theory and
- * Approximation Practice, 2013). s in [-1, 1] is the time in the window; T_k(s) is at most 1 in size, so coefficients
+ * Interpolation by Chebyshev polynomials of degree 8 in an interval of time (L. N. Trefethen: Approximation Theory and
+ * Approximation Practice, 2013). s in [-1, 1] is the time in the interval; T_k(s) is at most 1 in size, so coefficients
  * bound the polynomial.
  */
 #ifndef CHEBYSHEV_H
@@ -11,7 +11,7 @@
 /* Degree of the polynomials, and number of their nodes. */
 enum { CHEBYSHEV_DEGREE = 8, CHEBYSHEV_NODES };
 
-/* Returns the time of a node: node 0 is the end of the window, 8 its start, 4 its middle. */
+/* Returns the time of a node: node 0 is the end of the interval, 8 its start, 4 its middle. */
 Real chebyshev_time(Real from, Real to, int node);
 
 /* Computes the times of all nodes. */
@@ -42,7 +42,7 @@ static const double chebyshev_tail_of_curvature =
 /* Returns p(s). */
 Real chebyshev_value(const Real *c, Real slot);
 
-/* Computes the coefficients by powers of the time from the middle of a window of length 2 half. */
+/* Computes the coefficients by powers of the time from the middle of an interval of length 2 half. */
 void chebyshev_powers(const Real *c, Real half, Real *power);
 
 #endif

@@ -10,10 +10,10 @@
 /* In units of the scales of the state: a smaller change may be a rounding error. */
 static const double least_kink = 1e-6;
 
-const double crowding_share = 1e-6;
+const double close_share = 1e-6;
 
 /*
- * Events at a corner, each within crowding_share of the time after the last one, before they count as Zeno behaviour.
+ * Events at a corner, each within close_share of the time after the last one, before they count as Zeno behaviour.
  */
 enum { CORNER_LIMIT = 30 };
 
@@ -28,8 +28,8 @@ const char *continuity_begin(struct Resolution *resolution) {
   const struct Projection *laws = lagrangian.constraints.projection;
   double moved = laws->project(resolution->instance, resolution->time, resolution->state);
   if (isfinite(moved)) return NULL;
-  log_unkept(resolution->instance, resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-             resolution->time, laws->unkept(resolution->instance, resolution->time));
+  log_violated(resolution->instance, resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
+               resolution->time, laws->violated_constraint(resolution->instance, resolution->time));
   return constraints_not_kept;
 }
 
@@ -138,11 +138,11 @@ bool continuity_explain_corner(struct Resolution *resolution, size_t branch) {
 const char *continuity_check_corner(struct Resolution *resolution) {
   struct FmuState *fmu_state = resolution->instance->fmu_state;
   if (resolution->occasion != IN_EXCHANGE || resolution->switched == NULL) return NULL;
-  bool is_crowded = resolution->time - fmu_state->switched <= crowding_share * fabs(resolution->time);
-  fmu_state->gathered = is_crowded ? fmu_state->gathered + 1 : 0;
+  bool is_close_to_last = resolution->time - fmu_state->switched <= close_share * fabs(resolution->time);
+  fmu_state->close_events = is_close_to_last ? fmu_state->close_events + 1 : 0;
   fmu_state->switched = resolution->time;
-  if (fmu_state->gathered < CORNER_LIMIT) return NULL;
-  fmu_state->gathered = 0;
+  if (fmu_state->close_events < CORNER_LIMIT) return NULL;
+  fmu_state->close_events = 0;
   size_t branch = (size_t)(resolution->switched - resolution->switches->branches);
   return continuity_explain_corner(resolution, branch) ? touched_corner : NULL;
 }
@@ -158,19 +158,20 @@ static const char *check_constraints(struct Resolution *resolution) {
                         : lagrangian.constraints.projection->project(instance, resolution->time, resolution->state);
   if (moved <= continuity_allowed_share(resolution)) return NULL;
   enum Status status = starts || resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD;
-  size_t unkept = lagrangian.constraints.projection->unkept(instance, resolution->time);
-  const char *name = lagrangian.constraints.names[unkept];
+  size_t violated_constraint = lagrangian.constraints.projection->violated_constraint(instance, resolution->time);
+  const char *name = lagrangian.constraints.names[violated_constraint];
   if (resolution->set_mode || resolution->moved)
     log_message(instance, status,
                 "time %g: an event sets %s that violate the %s '%s'; expected a <set> of all its coordinates and "
                 "velocities, with values that fulfil it",
-                resolution->time, resolution->moved ? "coordinates" : "modes", evaluate_kind(unkept), name);
+                resolution->time, resolution->moved ? "coordinates" : "modes", evaluate_kind(violated_constraint),
+                name);
   else if (!continuity_explain_corner(resolution, (size_t)(resolution->switched - resolution->switches->branches)))
     log_message(instance, status,
                 "time %g: %s, line %ld of %s, has a kink or jump in the %s '%s', so that positions or velocities would "
                 "have to jump; expected one without kinks",
                 resolution->time, resolution->switched->function, resolution->switched->line,
-                resolution->switched->file, evaluate_kind(unkept), name);
+                resolution->switched->file, evaluate_kind(violated_constraint), name);
   return constraints_not_kept;
 }
 

@@ -35,7 +35,7 @@ double continuity_allowed_share(const struct Resolution *resolution);
 bool continuity_explain_corner(struct Resolution *resolution, size_t branch);
 
 /* Events of one indicator at rest closer than this fraction of the time count as accumulating. */
-extern const double crowding_share;
+extern const double close_share;
 
 /* The reasons if the constraints cannot be fulfilled, and if both pieces of a gap are touched. */
 extern const char constraints_not_kept[], touched_corner[];

@@ -30,6 +30,6 @@ const struct EventLaws event_laws = {.work_count = resolution_work_count,
                                      .explain_stop = events_explain_stop,
                                      .holds_at_times = holds_at_times,
                                      .check = events_check,
-                                     .come_back = exchange_come_back,
+                                     .return_to_domain = exchange_return_to_domain,
                                      .indicators = exchange_indicators,
                                      .is_due = exchange_is_due};

@@ -33,7 +33,7 @@ static double time_beyond(const struct Resolution *resolution) {
   return time;
 }
 
-bool exchange_come_back(struct Instance *instance, struct Point *point) {
+bool exchange_return_to_domain(struct Instance *instance, struct Point *point) {
   struct Resolution resolution = resolution_of(instance);
   size_t n = lagrangian.coordinate_count;
   double *state = resolution.rounded;
@@ -59,7 +59,7 @@ static void complete_indicators(struct Instance *instance, double *value) {
   struct Point point = instance_point(instance);
   bool lacks = false;
   for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
-  if (!lacks || !exchange_come_back(instance, &point)) return;
+  if (!lacks || !exchange_return_to_domain(instance, &point)) return;
   if (!indicators_at(instance, point.time, point.state, completed)) return;
   for (size_t i = 0; i < count; i++)
     if (isnan(value[i])) value[i] = completed[i];
@@ -124,7 +124,7 @@ bool exchange_is_due(struct Instance *instance) {
  */
 
 /* True if an event waits for both directions, and the importer has integrated to the present state. */
-static bool may_turn_back(const struct Instance *instance) {
+static bool may_return(const struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool looks_both_ways = false;
   for (size_t i = 0; i < switches->event_count; i++) looks_both_ways |= switches->events[i].passage == PASSAGE_BOTH;
@@ -225,7 +225,7 @@ static void return_to_constraints(struct Instance *instance) {
 
 const char *exchange_resolve(struct Instance *instance) {
   const char *problem = NULL;
-  bool passes = may_turn_back(instance), changed;
+  bool passes = may_return(instance), changed;
   return_to_constraints(instance);
   for (int i = 0; i < LATE_LIMIT && passes && problem == NULL; i++) problem = pass_late(instance, &passes);
   if (problem != NULL) return problem;

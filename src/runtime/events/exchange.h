@@ -8,7 +8,7 @@
 #include "instance/event_laws.h"
 
 /* Implement the functions of these names in struct EventLaws. */
-bool exchange_come_back(struct Instance *instance, struct Point *point);
+bool exchange_return_to_domain(struct Instance *instance, struct Point *point);
 bool exchange_indicators(struct Instance *instance, double *value);
 bool exchange_is_due(struct Instance *instance);
 const char *exchange_resolve(struct Instance *instance);

@@ -1,13 +1,13 @@
 /*
- * Events in a communication step. After each solver step, events_pass() searches it for the first event, window by
- * window (window.c, search.c). The first window is a little longer than the time between the last two events, and each
- * next one is twice as long: a solver step may reach far beyond the next event. The state at the event comes from the
- * dense output. resolve() finds the modes and the state after it, and the solver restarts there.
+ * Events in a communication step. After each solver step, events_pass() searches it for the first event, interval by
+ * interval (search_interval.c, search.c). The first interval is a little longer than the time between the last two
+ * events, and each next one is twice as long: a solver step may reach far beyond the next event. The state at the event
+ * comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts there.
  *
  * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding
  * stop the motion. If zeros cannot be separated, the solver restarts with steps shorter by NEARER, at most NEARER_LIMIT
- * times in a row. If windows may hide something however short they are, UNSURE_LIMIT of them stop the motion. So every
- * communication step ends.
+ * times in a row. If intervals may hide something however short they are, UNSURE_LIMIT of them stop the motion. So
+ * every communication step ends.
  */
 #include "events/passing.h"
 
@@ -22,7 +22,7 @@
 #include "events/search.h"
 #include "events/resolve.h"
 #include "events/resolution.h"
-#include "events/window.h"
+#include "events/search_interval.h"
 #include "instance/time_laws.h"
 
 /* Consecutive events within rounding after which the motion stops. */
@@ -42,8 +42,8 @@ enum { NEARER = 64, NEARER_LIMIT = 8 };
  */
 static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
 
-/* Length of the first window, relative to the time between the last two events. */
-static const double window_share = 1.25;
+/* Length of the first interval, relative to the time between the last two events. */
+static const double look_ahead_share = 1.25;
 
 static const char gathering[] =
     "events accumulate (Zeno behaviour), as bounces by an <event> do; a <contact> comes to rest";
@@ -63,7 +63,7 @@ bool events_start(struct Instance *instance) {
   instance->modes_stay = true;
   const char *problem = modes_at(instance, instance->fmu_state->time, instance->state, AT_START, 0);
   instance->modes_stay = false;
-  if (problem != NULL) refuse_call(instance, "%s, at the start values", problem);
+  if (problem != NULL) reject_call(instance, "%s, at the start values", problem);
   return problem == NULL;
 }
 
@@ -136,21 +136,21 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 /* Finds the next event up to an end. False if there is none. *time is NAN if it cannot be located. */
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
-  double window = window_share * progress->distance;
+  double look_ahead = look_ahead_share * progress->distance;
   const size_t *lifted = progress->has_lifted ? &progress->indicator : NULL;
   while (progress->searched < end) {
-    double near = window > 0.0 ? fmin(end, progress->searched + window) : end;
+    double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end;
     *time = NAN;
     const double *samples;
-    bool is_sure = window_narrow(instance, progress->searched, &near, &samples);
+    bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
     if (search_for_event(instance, progress->searched, near, samples, lifted, TO_ROUNDING, time, indicator))
       return true;
-    window = 2.0 * (near - progress->searched);
+    look_ahead = 2.0 * (near - progress->searched);
     progress->searched = near;
-    progress->gathered = 0;
+    progress->close_events = 0;
   }
-  progress->reach *= 2.0;
+  progress->step_limit *= 2.0;
   progress->nearer = 0;
   return false;
 }
@@ -178,7 +178,7 @@ static void search_further(struct Instance *instance, const struct Communication
   const char *limited_by = instance->limited_by;
   const double *samples;
   size_t indicator;
-  if (window_narrow(instance, from, &to, &samples)) {
+  if (search_interval_shorten(instance, from, &to, &samples)) {
     bool happens = search_for_event(instance, from, to, samples, NULL, BEFORE_IT, &time, &indicator);
     if (!happens) progress->searched = to;
     else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
@@ -192,11 +192,11 @@ static void search_further(struct Instance *instance, const struct Communication
  * polynomial may hide tiny bounces. False if that does not help.
  */
 static bool go_nearer(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
-  double reach = (instance->fmu_state->last_step.end - progress->searched) / NEARER;
+  double step_limit = (instance->fmu_state->last_step.end - progress->searched) / NEARER;
   if (progress->unsure > UNSURE_LIMIT || ++progress->nearer > NEARER_LIMIT) return false;
-  if (solver_rests(progress->searched, reach)) return false;
+  if (solver_rests(progress->searched, step_limit)) return false;
   if (!lagrangian.solver->interpolate(instance, progress->searched, instance->event_state)) return false;
-  progress->reach = reach;
+  progress->step_limit = step_limit;
   return start_anew(instance, step, progress->searched) == NULL;
 }
 
@@ -216,10 +216,10 @@ static void count_event(const struct Instance *instance, const struct Communicat
   double since_last = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
   bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
-  bool is_crowded = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
-                    time - (step->start + progress->last) <= crowding_share * fabs(time);
-  progress->gathered = is_close ? progress->gathered + 1 : 0;
-  progress->crowded = is_crowded ? progress->crowded + 1 : 0;
+  bool is_close_to_last = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
+                          time - (step->start + progress->last) <= close_share * fabs(time);
+  progress->close_events = is_close ? progress->close_events + 1 : 0;
+  progress->close_events_at_rest = is_close_to_last ? progress->close_events_at_rest + 1 : 0;
   progress->distance = since_last;
   progress->last = time - step->start;
   progress->count++;
@@ -275,8 +275,8 @@ static bool is_at_corner(struct Instance *instance, double time, size_t indicato
  * Ends the step at endless events. An importer in event mode would go on by one more event at each step, so for it
  * the step does not advance.
  */
-static const char *refuse_gathering(struct Instance *instance, const struct CommunicationStep *step,
-                                    struct EventProgress *progress, size_t indicator) {
+static const char *report_zeno(struct Instance *instance, const struct CommunicationStep *step,
+                               struct EventProgress *progress, size_t indicator) {
   char name[NAME_SIZE];
   const char *finer = lagrangian.solver->finer;
   progress->is_lost = true;
@@ -311,7 +311,7 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (progress->searched < end) search_further(instance, step, progress);
   bool is_found = find_next(instance, end, progress, &time, &indicator);
   instance->fmu_state->searched = progress->searched;
-  instance->fmu_state->gathered = 0;
+  instance->fmu_state->close_events = 0;
   if (!is_found && end == step->end && ends_at_sample(instance, end, &indicator)) {
     is_found = true;
     time = end;
@@ -319,9 +319,9 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (!is_found) return NULL;
   if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
   count_event(instance, step, time, indicator, progress);
-  if (progress->gathered >= EVENT_LIMIT || progress->crowded >= EVENT_LIMIT)
-    return refuse_gathering(instance, step, progress, indicator);
-  if (instance->stops_at_events) instance->fmu_state->gathered = progress->gathered;
+  if (progress->close_events >= EVENT_LIMIT || progress->close_events_at_rest >= EVENT_LIMIT)
+    return report_zeno(instance, step, progress, indicator);
+  if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
   if (!lagrangian.solver->interpolate(instance, time, instance->event_state))
     return "the state is not available at the event";
   return pass_event(instance, step, time, indicator);
@@ -331,7 +331,7 @@ const char *events_pass_barrier(struct Instance *instance, struct CommunicationS
                                 struct EventProgress *progress) {
   double time;
   size_t indicator;
-  if (++progress->gathered >= EVENT_LIMIT) return problem;
+  if (++progress->close_events >= EVENT_LIMIT) return problem;
   if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
@@ -343,11 +343,11 @@ const char *events_check(struct Instance *instance, double time) {
   if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
   struct Resolution resolution = resolution_at(instance, time, instance->state, AT_EVENT);
   if (!resolution_values(&resolution, instance->state, resolution.value)) return NULL; /* the caller reports it */
-  bool pushes = false;
+  bool impulses = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
     for (size_t part = FRICTION_FORCE; part <= FRICTION_FORCE_BACK; part += FRICTION_FORCE_BACK - FRICTION_FORCE)
-      pushes |= resolution.value[friction_slot(resolution.switches, i, part)] < 0.0;
-  return pushes && resolution_evaluate(&resolution) ? laws->check(&resolution) : NULL;
+      impulses |= resolution.value[friction_slot(resolution.switches, i, part)] < 0.0;
+  return impulses && resolution_evaluate(&resolution) ? laws->check(&resolution) : NULL;
 }
 
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,

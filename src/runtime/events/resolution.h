@@ -24,7 +24,7 @@ struct Resolution {
   double *happened;            /* 1 for each event that happened in this round, else 0 */
   double *flips, *was_opened;  /* switches in the event; contacts: 1 opened, -1 closed by force, else 0 */
   double *rate;                /* of each branch before its last switch; 0 if it has not switched */
-  double *takes_part;          /* of each contact, then each friction: 1 if in struct Pushes, else 0 */
+  double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */
   double *acceleration;        /* accelerations, then constraint forces */
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;
@@ -54,7 +54,7 @@ static inline enum Status resolution_status(const struct Resolution *resolution)
   return resolution->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
 }
 
-struct Pushes;
+struct ContactImpulses;
 
 /* Contacts; FMUs without any do not link them. */
 struct ContactLaws {
@@ -87,7 +87,7 @@ struct FrictionLaws {
   /* Updates the reported modes; sets *again if any changed. False if the accelerations do not exist. */
   bool (*report)(struct Resolution *resolution, bool *again);
   /* Logs that something, such as accelerations, is missing for the frictions; there must be some. */
-  void (*blame)(const struct Resolution *resolution, const char *missing);
+  void (*report_missing)(const struct Resolution *resolution, const char *missing);
   /* Logs a friction with a negative force. Returns NULL if there is none, else the reason to stop. */
   const char *(*check)(struct Resolution *resolution);
   /* Lets frictions slide that stick at a nonzero velocity. */
@@ -105,11 +105,11 @@ struct FrictionLaws {
    * after it fulfil the complementarity conditions of impacts.c. False if none are found. NULL without frictions in
    * planes.
    */
-  bool (*find_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
+  bool (*find_impulses)(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse);
   /* True if other impulses also fulfil these conditions, with another motion. */
-  bool (*has_other_impulses)(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
-                             const double *impulse);
+  bool (*has_other_impulses)(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                             const double *rate, const double *impulse);
 };
 
 /* Returns the length of value[]. */
@@ -141,7 +141,9 @@ const double *resolution_accelerations(const struct Resolution *resolution);
 /* Projects the velocities onto the active constraints, by the least change in the metric of M. False if that fails. */
 bool resolution_project_velocities(struct Resolution *resolution);
 
-/* True if velocities change along an active constraint, by resolution_project_velocities(); false if its row of J is 0. */
+/*
+ * True if velocities change along an active constraint, by resolution_project_velocities(); false if its row of J is 0.
+ */
 bool resolution_moves(const struct Resolution *resolution, size_t constraint);
 
 /* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */

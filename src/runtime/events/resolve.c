@@ -157,10 +157,10 @@ static bool explain_jam(struct Resolution *resolution) {
 }
 
 /* Logs that accelerations are missing for the frictions. A singular mass matrix is reported as such. */
-static void blame_frictions(const struct Resolution *resolution) {
+static void report_missing_for_frictions(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   if (switches->friction_count > 0 && resolution->instance->singular == 0)
-    switches->friction_laws->blame(resolution, "accelerations");
+    switches->friction_laws->report_missing(resolution, "accelerations");
 }
 
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
@@ -171,7 +171,7 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   if (problem == NULL) problem = resolve_in_rounds(&resolution);
   bool lacks = problem == no_accelerations || problem == no_first_accelerations;
   bool is_explained = lacks && explain_jam(&resolution);
-  if (problem == no_accelerations && !is_explained) blame_frictions(&resolution);
+  if (problem == no_accelerations && !is_explained) report_missing_for_frictions(&resolution);
   if (problem == NULL) problem = branches_check(&resolution);
   if (problem == NULL) problem = push(&resolution);
   if (problem == NULL) problem = continuity_check(&resolution);

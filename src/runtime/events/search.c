@@ -1,22 +1,22 @@
 /*
- * Search for events: finds the first time in a window at which an indicator g_i(t) leaves its sign s_i, along the
+ * Search for events: finds the first time in an interval at which an indicator g_i(t) leaves its sign s_i, along the
  * solver's dense output (L. F. Shampine, S. Thompson: Event location for ordinary differential equations, Computers and
  * Mathematics with Applications 39, 2000, describe the problem).
  *
  * f(t) = s_i g_i(t) - floor is sampled at the nine nodes of its Chebyshev polynomial of degree 8. The polynomial's
- * coefficients bound it over the whole window, not at samples alone (judge_signs()). It has no zero if c_0 exceeds the
- * sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
+ * coefficients bound it over the whole interval, not at samples alone (judge_signs()). It has no zero if c_0 exceeds
+ * the sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
  * throughout, or if f is not negative at first and concave. The last two coefficients estimate the interpolation error,
- * which must be small and is allowed for. Otherwise the window is halved, with new samples. So pairs of close zeros,
+ * which must be small and is allowed for. Otherwise the interval is halved, with new samples. So pairs of close zeros,
  * and zeros at the very start, are found with any solver.
  *
- * window.h makes sure that the window is so short that no function in the indicators can hide between samples. So an
- * event can be missed only within rounding, or if the estimate of the interpolation error fails.
+ * search_interval.h makes sure that the interval is so short that no function in the indicators can hide between
+ * samples. So an event can be missed only within rounding, or if the estimate of the interpolation error fails.
  *
  * A single zero is located by Newton's method on the polynomial, and then by the Illinois method (M. Dowell, P.
  * Jarratt: A modified regula falsi method, BIT 11, 1971) with a bisection at every third step. The search ends:
- * halvings are limited to DEPTH_LIMIT, windows to WINDOW_LIMIT, and refinement stops at neighbouring doubles. Usually
- * it costs nine evaluations of all indicators, and a few more for each zero.
+ * halvings are limited to DEPTH_LIMIT, intervals to INTERVAL_LIMIT, and refinement stops at neighbouring doubles.
+ * Usually it costs nine evaluations of all indicators, and a few more for each zero.
  *
  * Indicators are uncertain by rounding. An event may leave one below 0 by that much: the floor is what it may fall to
  * without another event.
@@ -31,16 +31,16 @@
 #include "evaluation/services.h"
 #include "events/chebyshev.h"
 #include "events/indicators.h"
-#include "events/window.h"
+#include "events/search_interval.h"
 #include "instance/time_laws.h"
 
 /*
  * Windows that a search may examine. An approximate search (BEFORE_IT) gives up earlier and leaves them to the exact
  * one.
  */
-enum { WINDOW_LIMIT = 5000, FEW_WINDOWS = 24 };
+enum { INTERVAL_LIMIT = 5000, FEW_WINDOWS = 24 };
 
-/* Halvings of a window; steps of the Illinois method; of Newton's method on polynomials; evaluations at its zero. */
+/* Halvings of an interval; steps of the Illinois method; of Newton's method on polynomials; evaluations at its zero. */
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
 
 /* Newton steps on [-1, 1] end below this length: the next one would be lost in rounding. */
@@ -58,7 +58,7 @@ struct Search {
   double *projected;       /* the same at projected states, if has_projected */
   double *exact;           /* one for each indicator: values at the start */
   double *error_bound;     /* rounding error bounds of the indicators */
-  int windows;             /* number that may still be looked at */
+  int intervals;           /* number that may still be looked at */
   bool is_exact;           /* times are found to rounding; else times before them */
   bool has_projected;
   bool projects;    /* project states, so that indicators held at 0 by constraints stay 0 */
@@ -67,15 +67,15 @@ struct Search {
 };
 
 size_t search_work_count(void) {
-  size_t search = window_sample_count() + 2 * lagrangian.state_count +
+  size_t search = search_interval_sample_count() + 2 * lagrangian.state_count +
                   (2 * CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
-  size_t window = window_work_count();
-  return search > window ? search : window;
+  size_t interval = search_interval_work_count();
+  return search > interval ? search : interval;
 }
 
 static struct Search search_of(struct Instance *instance) {
   size_t count = indicator_count(lagrangian.switches);
-  struct Search search = {.instance = instance, .state = instance->switching_work + window_sample_count()};
+  struct Search search = {.instance = instance, .state = instance->switching_work + search_interval_sample_count()};
   search.rounded = search.state + lagrangian.state_count;
   search.values = search.rounded + lagrangian.state_count;
   search.samples = search.values + count;
@@ -94,8 +94,8 @@ static void sample(struct Search *search, double time, double *values) {
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
-/* Evaluates them at the nodes of a window. states: at the nodes; NULL if they are not all available. */
-static void sample_window(struct Search *search, double from, double to, const double *states) {
+/* Evaluates them at the nodes of an interval. states: at the nodes; NULL if they are not all available. */
+static void sample_interval(struct Search *search, double from, double to, const double *states) {
   double times[CHEBYSHEV_NODES];
   size_t count = indicator_count(lagrangian.switches);
   chebyshev_times(from, to, times);
@@ -124,7 +124,7 @@ static void measure_error_bound(struct Search *search, double time) {
   }
 }
 
-/* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the window must be halved. */
+/* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the interval must be halved. */
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
 /* Judges f by its values at the nodes; it is positive while the mode stays. */
@@ -218,7 +218,7 @@ static double refine(struct Search *search, size_t indicator, double sign, struc
   return before.f <= -behind.f && !is_later ? before.time : behind.time;
 }
 
-/* The same in a window in which f, with these values at the nodes, falls through 0 once. */
+/* The same in an interval in which f, with these values at the nodes, falls through 0 once. */
 static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from,
                           double to) {
   int node = CHEBYSHEV_DEGREE;
@@ -233,8 +233,8 @@ static double refine_fall(struct Search *search, size_t indicator, double sign, 
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth);
 
 /*
- * Returns the first time up to end at which f falls below 0, from its values at the nodes of a window to end or beyond;
- * INFINITY if there is none.
+ * Returns the first time up to end at which f falls below 0, from its values at the nodes of an interval to end or
+ * beyond; INFINITY if there is none.
  */
 static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
                             double to, double end, int depth) {
@@ -252,10 +252,10 @@ static double first_fall_in(struct Search *search, size_t indicator, double sign
   return isfinite(first) ? first : first_fall(search, indicator, sign, middle, end, depth - 1);
 }
 
-/* The same in a window without samples. */
+/* The same in an interval without samples. */
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
   double f[CHEBYSHEV_NODES];
-  if (--search->windows < 0) return INFINITY;
+  if (--search->intervals < 0) return INFINITY;
   for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sample_at(search, indicator, sign, chebyshev_time(from, to, k)).f;
   return first_fall_in(search, indicator, sign, f, from, to, to, depth);
 }
@@ -390,9 +390,9 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   search.is_exact = exactness == TO_ROUNDING;
-  search.windows = search.is_exact ? WINDOW_LIMIT : FEW_WINDOWS;
+  search.intervals = search.is_exact ? INTERVAL_LIMIT : FEW_WINDOWS;
   bool knows_error_bound = false;
-  sample_window(&search, from, to, samples);
+  sample_interval(&search, from, to, samples);
   *time = first_sample(instance, from, to, indicator);
   bool leaves = false; /* the zero is one that an indicator at rest leaves */
   for (size_t i = 0; i < count; i++) {
@@ -409,7 +409,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;
     double found = sign == 0.0 ? first_departure(&search, i, from, to)
                                : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);
-    bool is_lost = search.windows < 0;
+    bool is_lost = search.intervals < 0;
     /* An indicator at rest gets its sign after the others at this time have switched, such as a friction. */
     if (!is_lost && !(found < *time) && !(leaves && found == *time && sign != 0.0)) continue;
     *time = is_lost ? NAN : found;

@@ -7,14 +7,14 @@
 /* TO_ROUNDING: the time of the event, to rounding. BEFORE_IT: a time before the event, which costs less. */
 enum Exactness { TO_ROUNDING, BEFORE_IT };
 
-/* Returns the number of doubles of workspace of a search, including those of window_narrow(). */
+/* Returns the number of doubles of workspace of a search, including those of search_interval_shorten(). */
 size_t search_work_count(void);
 
 /*
  * Finds the first time in [from, to], within the solver's last step, at which an indicator changes its sign. samples:
- * as window_narrow() gives them for this window. lifted: the indicator of a contact that has just opened without speed,
- * whose gap may fall by the errors of the method; NULL for none. False if no indicator changes its sign. *time is NAN
- * if zeros cannot be separated.
+ * as search_interval_shorten() gives them for this interval. lifted: the indicator of a contact that has just opened
+ * without speed, whose gap may fall by the errors of the method; NULL for none. False if no indicator changes its sign.
+ * *time is NAN if zeros cannot be separated.
  */
 bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
                       enum Exactness exactness, double *time, size_t *indicator);

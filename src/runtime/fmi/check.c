@@ -2,7 +2,7 @@
 
 bool check_array(struct Instance *instance, const void *array, size_t count, const char *argument) {
   if (array != NULL || count == 0) return true;
-  refuse_call(instance, "%s is NULL; expected an array of %zu elements", argument, count);
+  reject_call(instance, "%s is NULL; expected an array of %zu elements", argument, count);
   return false;
 }
 
@@ -10,12 +10,12 @@ const struct ScalarVariable *check_reference(struct Instance *instance, unsigned
   static const char *const types[] = {
       [TYPE_REAL] = "a Real", [TYPE_INTEGER] = "an Integer", [TYPE_BOOLEAN] = "a Boolean"};
   if (reference >= lagrangian.variable_count) {
-    refuse_call(instance, "the value reference %u is unknown; expected one below %zu", reference,
+    reject_call(instance, "the value reference %u is unknown; expected one below %zu", reference,
                 lagrangian.variable_count);
     return NULL;
   }
   const struct ScalarVariable *variable = &lagrangian.variables[reference];
   if (variable->type == type) return variable;
-  refuse_call(instance, "'%s' is %s variable", variable->name, types[variable->type]);
+  reject_call(instance, "'%s' is %s variable", variable->name, types[variable->type]);
   return NULL;
 }

@@ -45,20 +45,20 @@ static enum Status follow(struct Instance *instance, const struct Point *point, 
 static enum Status add_seed(struct Instance *instance, struct Direction *direction,
                             const struct ScalarVariable *variable, double value) {
   if (!isfinite(value))
-    return refuse_call(instance, "the seed of '%s' is %g; expected a finite number", variable->name, value);
+    return reject_call(instance, "the seed of '%s' is %g; expected a finite number", variable->name, value);
   switch (variable->kind) {
   case VARIABLE_TIME: direction->seed.time += value; return STATUS_DONE;
   case VARIABLE_STATE: direction->state[variable->index] += value; return STATUS_DONE;
   case VARIABLE_INPUT: direction->input[variable->index] += value; return STATUS_DONE;
   case VARIABLE_PARAMETER: direction->parameter[variable->index] += value; return STATUS_DONE;
   default:
-    return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
+    return reject_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
 }
 
 static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable) {
   if (is_unknown(variable)) return STATUS_DONE;
-  return refuse_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
+  return reject_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
 }
 
 /* Computes the unknowns' derivatives along the direction. */
@@ -125,11 +125,11 @@ static enum Status reverse_derivative(struct Instance *instance, const unsigned 
 enum Status adjoint_derivative(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                const unsigned *known, size_t known_count, const double *seed, double *value) {
   for (size_t i = 0; i < unknown_count; i++)
-    if (!isfinite(seed[i])) return refuse_call(instance, "seed %zu is %g; expected a finite number", i + 1, seed[i]);
+    if (!isfinite(seed[i])) return reject_call(instance, "seed %zu is %g; expected a finite number", i + 1, seed[i]);
   if (lagrangian.reverse_sweep != NULL && lagrangian.reverse_sweep->is_for(instance, unknown, unknown_count))
     return reverse_derivative(instance, unknown, unknown_count, known, known_count, seed, value);
   double *column = instance->memory.allocate(unknown_count + 1, sizeof *column);
-  if (column == NULL) return refuse_call(instance, "out of memory for the derivatives");
+  if (column == NULL) return reject_call(instance, "out of memory for the derivatives");
   enum Status status = STATUS_DONE;
   for (size_t j = 0; j < known_count && status == STATUS_DONE; j++)
     status = weighted_column(instance, unknown, unknown_count, known[j], seed, column, &value[j]);

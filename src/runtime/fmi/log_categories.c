@@ -51,7 +51,7 @@ bool log_choose(struct Instance *instance, const char *const *names, size_t coun
   for (size_t i = 0; i < count; i++) {
     int category = category_named(names[i]);
     if (category == CATEGORY_COUNT) {
-      refuse_call(instance, "there is no log category '%s'; expected one of modelDescription.xml, such as logAll",
+      reject_call(instance, "there is no log category '%s'; expected one of modelDescription.xml, such as logAll",
                   names[i] != NULL ? names[i] : "NULL");
       return false;
     }

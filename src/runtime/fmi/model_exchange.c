@@ -17,11 +17,11 @@
  */
 enum Status exchange_set_time(struct Instance *instance, double time) {
   double start = instance->fmu_state->start_time, earliest = instance->fmu_state->last_step.start;
-  if (!isfinite(time)) return refuse_call(instance, "the time is %g; expected a finite number", time);
+  if (!isfinite(time)) return reject_call(instance, "the time is %g; expected a finite number", time);
   if (time < start)
-    return refuse_call(instance, "the time is %.15g; expected none before startTime %.15g", time, start);
+    return reject_call(instance, "the time is %.15g; expected none before startTime %.15g", time, start);
   if (time < earliest - 8.0 * DBL_EPSILON * fabs(earliest))
-    return refuse_call(instance,
+    return reject_call(instance,
                        "the time is %.15g; expected none before %.15g, that of the last event or of the second last "
                        "completed step; restore a saved state to go back further",
                        time, earliest);
@@ -32,7 +32,7 @@ enum Status exchange_set_time(struct Instance *instance, double time) {
 /* True if the array exists and has an element for each state. */
 static bool check_states(struct Instance *instance, const void *array, size_t count) {
   if (count == lagrangian.state_count) return check_array(instance, array, count, "the array");
-  refuse_call(instance, "%zu elements; expected %zu, the number of states", count, lagrangian.state_count);
+  reject_call(instance, "%zu elements; expected %zu, the number of states", count, lagrangian.state_count);
   return false;
 }
 
@@ -74,7 +74,7 @@ enum Status exchange_get_nominals(struct Instance *instance, double *nominal, si
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count) {
   size_t expected = indicator_count(lagrangian.switches);
   if (count != expected)
-    return refuse_call(instance, "%zu elements; expected %zu, the number of event indicators", count, expected);
+    return reject_call(instance, "%zu elements; expected %zu, the number of event indicators", count, expected);
   if (count == 0) return STATUS_DONE;
   if (!check_array(instance, indicator, count, "the array")) return STATUS_ERROR;
   reading_begin(instance);
@@ -109,7 +109,7 @@ static bool is_event_due(struct Instance *instance) {
 
 enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
   if (instance->lacks_update && is_event_due(instance))
-    return refuse_call(instance, "an event is due; expected an update of the discrete states before it");
+    return reject_call(instance, "an event is due; expected an update of the discrete states before it");
   instance->lacks_update = false;
   instance->fmu_state->phase = PHASE_CONTINUOUS_TIME;
   return STATUS_DONE;
@@ -168,7 +168,7 @@ static enum Status update_state(struct Instance *instance) {
   double moved = lagrangian.constraints.projection->project(instance, instance->fmu_state->time, instance->state);
   if (!isfinite(moved)) {
     double time = instance->fmu_state->time;
-    log_unkept(instance, STATUS_ERROR, time, lagrangian.constraints.projection->unkept(instance, time));
+    log_violated(instance, STATUS_ERROR, time, lagrangian.constraints.projection->violated_constraint(instance, time));
     return log_error(instance, "time %g: the constraints cannot be fulfilled", time);
   }
   return STATUS_DONE;

@@ -96,9 +96,9 @@ static enum Status read_from_series(struct Instance *instance, const unsigned *r
 static enum Status check_output_derivative(struct Instance *instance, unsigned reference, int order) {
   const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
-  if (!variable->is_output) return refuse_call(instance, "'%s' is not an output", variable->name);
+  if (!variable->is_output) return reject_call(instance, "'%s' is not an output", variable->name);
   if (order >= 1 && order <= lagrangian.output_derivative_order) return STATUS_DONE;
-  return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
+  return reject_call(instance, "the order %d for '%s' is out of range; expected 1 to %d", order, variable->name,
                      lagrangian.output_derivative_order);
 }
 

@@ -38,7 +38,7 @@ static enum Status add_weight(struct Instance *instance, const struct Weights *w
   const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
   if (!is_unknown(variable))
-    return refuse_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
+    return reject_call(instance, "'%s' is not an unknown; expected an output or a state derivative", variable->name);
   double *weight = variable->kind == VARIABLE_DERIVATIVE ? weights->derivative
                    : variable->kind == VARIABLE_STATE    ? weights->state
                                                          : weights->result;
@@ -57,7 +57,7 @@ static enum Status read_known(struct Instance *instance, const struct Weights *w
   case VARIABLE_PARAMETER: *value = parameters[variable->index]; break;
   case VARIABLE_TIME: *value = parameters[lagrangian.parameter_count]; break;
   default:
-    return refuse_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
+    return reject_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
   }
   if (isfinite(*value)) return STATUS_DONE;
   return discard_call(instance, "the derivative by '%s' is not finite", variable->name);
@@ -76,7 +76,7 @@ static enum Status derivative_by_sweep(struct Instance *instance, const unsigned
                                        const unsigned *known, size_t known_count, const double *seed, double *value) {
   size_t count = 2 * lagrangian.state_count + lagrangian.results.count + known_count_of_system();
   double *block = instance->memory.allocate(count, sizeof *block);
-  if (block == NULL) return refuse_call(instance, "out of memory for the derivatives");
+  if (block == NULL) return reject_call(instance, "out of memory for the derivatives");
   struct Weights weights = weights_in(block);
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++)

@@ -8,14 +8,14 @@
 /* Allocates memory for the caller's state if it has none. */
 static bool allocate(struct Instance *instance, void **state) {
   if (*state == NULL) *state = instance->memory.allocate(1, snapshot_size());
-  if (*state == NULL) refuse_call(instance, "allocateMemory returned no memory");
+  if (*state == NULL) reject_call(instance, "allocateMemory returned no memory");
   return *state != NULL;
 }
 
 /* True if the bytes can be restored; logs an error otherwise. */
 static bool check_state(struct Instance *instance, const void *block, size_t size) {
   const char *fault = snapshot_fault(instance, block, size);
-  if (fault != NULL) refuse_call(instance, "the bytes of the state cannot be used: %s", fault);
+  if (fault != NULL) reject_call(instance, "the bytes of the state cannot be used: %s", fault);
   return fault == NULL;
 }
 
@@ -48,7 +48,7 @@ enum Status saved_state_size(struct Instance *instance, const void *state, size_
 enum Status saved_state_write(struct Instance *instance, const void *state, void *bytes, size_t size) {
   if (!check_array(instance, state, 1, "FMUstate") || !check_array(instance, bytes, 1, "serializedState"))
     return STATUS_ERROR;
-  if (size < snapshot_size()) return refuse_call(instance, "the size is %zu; expected %zu", size, snapshot_size());
+  if (size < snapshot_size()) return reject_call(instance, "the size is %zu; expected %zu", size, snapshot_size());
   memcpy(bytes, state, snapshot_size());
   return STATUS_DONE;
 }

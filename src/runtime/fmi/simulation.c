@@ -7,11 +7,11 @@
 
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
-  if (!isfinite(start)) return refuse_call(instance, "startTime is %g; expected a finite number", start);
+  if (!isfinite(start)) return reject_call(instance, "startTime is %g; expected a finite number", start);
   if (experiment->has_stop_time && !(stop >= start && isfinite(stop)))
-    return refuse_call(instance, "stopTime is %g; expected a finite number from startTime %g on", stop, start);
+    return reject_call(instance, "stopTime is %g; expected a finite number from startTime %g on", stop, start);
   if (experiment->has_tolerance && !(tolerance > 0.0 && tolerance < 1.0))
-    return refuse_call(instance, "tolerance is %g; expected one between 0 and 1", tolerance);
+    return reject_call(instance, "tolerance is %g; expected one between 0 and 1", tolerance);
   struct FmuState *fmu_state = instance->fmu_state;
   fmu_state->experiment_defined = 1;
   fmu_state->stop_time_defined = experiment->has_stop_time ? 1 : 0;

@@ -75,7 +75,7 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
     const struct ScalarVariable *variable = check_reference(instance, reference[i], TYPE_INTEGER);
     if (variable == NULL) return STATUS_ERROR;
     if (variable->kind != VARIABLE_STATISTIC)
-      return refuse_call(instance, "'%s' is not of the type Int64", variable->name);
+      return reject_call(instance, "'%s' is not of the type Int64", variable->name);
     value[i] = counts[variable->index];
   }
   return STATUS_DONE;
@@ -84,7 +84,7 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
 enum Status values_none(void *component, enum Function function, size_t count, const char *name) {
   struct Instance *instance = enter(component, function, name);
   if (instance == NULL) return STATUS_ERROR;
-  return count == 0 ? STATUS_DONE : refuse_call(instance, "the FMU has no variables of this type");
+  return count == 0 ? STATUS_DONE : reject_call(instance, "the FMU has no variables of this type");
 }
 
 /* True if the importer integrates, and sets states at any time. Some importers set them one by one, as variables. */
@@ -123,14 +123,14 @@ static bool is_settable(const struct Instance *instance, const struct ScalarVari
   }
 }
 
-static enum Status refuse_calculated(struct Instance *instance, const struct ScalarVariable *variable) {
+static enum Status reject_calculated(struct Instance *instance, const struct ScalarVariable *variable) {
   if (*variable->follows_from == '\0')
-    return refuse_call(instance, "'%s' is calculated and cannot be set", variable->name);
-  return refuse_call(instance, "'%s' is calculated from other parameters (%s) and cannot be set; set those instead",
+    return reject_call(instance, "'%s' is calculated and cannot be set", variable->name);
+  return reject_call(instance, "'%s' is calculated from other parameters (%s) and cannot be set; set those instead",
                      variable->name, variable->follows_from);
 }
 
-static enum Status refuse_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+static enum Status reject_range(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   bool is_below = value < variable->minimum;
   return discard_call(instance, "%g for '%s' is %s, %g", value, variable->name,
                       is_below ? "below its minimum" : "above its maximum",
@@ -138,24 +138,24 @@ static enum Status refuse_range(struct Instance *instance, const struct ScalarVa
 }
 
 /* Discards an infinite state of an importer that integrates, which may try a shorter step; an error otherwise. */
-static enum Status refuse_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
+static enum Status report_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
   static const char format[] = "the value for '%s' is %g; expected a finite number";
   bool may_try_another = variable->kind == VARIABLE_STATE && is_exchanged(instance);
   return may_try_another ? discard_call(instance, format, variable->name, value)
-                         : refuse_call(instance, format, variable->name, value);
+                         : reject_call(instance, format, variable->name, value);
 }
 
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
   const struct ScalarVariable *variable = check_reference(instance, reference, type);
   if (variable == NULL) return STATUS_ERROR;
-  if (is_calculated_parameter(variable)) return refuse_calculated(instance, variable);
+  if (is_calculated_parameter(variable)) return reject_calculated(instance, variable);
   if (!is_settable(instance, variable))
-    return refuse_call(instance, "'%s' cannot be set in the state '%s'", variable->name, instance_phase_name(instance));
-  if (!isfinite(value)) return refuse_infinite(instance, variable, value);
+    return reject_call(instance, "'%s' cannot be set in the state '%s'", variable->name, instance_phase_name(instance));
+  if (!isfinite(value)) return report_infinite(instance, variable, value);
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
-    return refuse_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
+    return reject_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
                        value);
-  if (value < variable->minimum || value > variable->maximum) return refuse_range(instance, variable, value);
+  if (value < variable->minimum || value > variable->maximum) return reject_range(instance, variable, value);
   return STATUS_DONE;
 }
 
@@ -211,11 +211,11 @@ enum Status values_set_whole(struct Instance *instance, const unsigned *referenc
 static enum Status check_input_derivative(struct Instance *instance, unsigned reference, int order, double value) {
   const struct ScalarVariable *variable = check_reference(instance, reference, TYPE_REAL);
   if (variable == NULL) return STATUS_ERROR;
-  if (variable->kind != VARIABLE_INPUT) return refuse_call(instance, "'%s' is not an input", variable->name);
+  if (variable->kind != VARIABLE_INPUT) return reject_call(instance, "'%s' is not an input", variable->name);
   if (order < 1)
-    return refuse_call(instance, "the order %d for '%s' is out of range; expected 1 or more", order, variable->name);
+    return reject_call(instance, "the order %d for '%s' is out of range; expected 1 or more", order, variable->name);
   if (!isfinite(value))
-    return refuse_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
+    return reject_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
   return STATUS_DONE;
 }
 

@@ -67,7 +67,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
       !check_array(instance, lastSuccessfulTime, 1, "lastSuccessfulTime"))
     return fmi3Error;
   if (instance->fmu_state->waiting_event != 0)
-    return status_of(refuse_call(instance, "the previous step ended at an event; expected fmi3EnterEventMode, "
+    return status_of(reject_call(instance, "the previous step ended at an event; expected fmi3EnterEventMode, "
                                            "fmi3UpdateDiscreteStates and fmi3EnterStepMode"));
   memcpy(component->before, instance->fmu_state, fmu_state_size());
   component->has_returned_early = false;

@@ -15,7 +15,7 @@ static bool count_values(struct Instance *instance, const fmi3ValueReference vr[
   *count = 0;
   for (size_t i = 0; i < nvr; i++) {
     if (vr[i] == 0 || vr[i] > lagrangian.variable_count) {
-      refuse_call(instance, "the value reference %u is unknown; expected one from 1 to %zu", vr[i],
+      reject_call(instance, "the value reference %u is unknown; expected one from 1 to %zu", vr[i],
                   lagrangian.variable_count);
       return false;
     }
@@ -23,7 +23,7 @@ static bool count_values(struct Instance *instance, const fmi3ValueReference vr[
     const struct ArrayVariable *array = array_with(slot);
     *count += array != NULL ? array->count : 1;
     if (array == NULL || array->first == slot) continue;
-    refuse_call(instance, "the value reference %u is of '%s', an element of an array; expected %zu, of the array",
+    reject_call(instance, "the value reference %u is of '%s', an element of an array; expected %zu, of the array",
                 vr[i], lagrangian.variables[slot].name, array->first + 1);
     return false;
   }
@@ -36,7 +36,7 @@ void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size
   fmi3_memory.free(workspace->block);
   workspace->block = fmi3_memory.allocate(count + 1, size);
   workspace->size = workspace->block != NULL ? count * size : 0;
-  if (workspace->block == NULL) refuse_call(&component->instance, "out of memory for %zu values", count);
+  if (workspace->block == NULL) reject_call(&component->instance, "out of memory for %zu values", count);
   return workspace->block;
 }
 
@@ -48,7 +48,7 @@ const unsigned *expand_references(struct Component *component, enum WorkspaceUse
       !check_array(instance, values.array, values.count, "values") || !count_values(instance, vr, nvr, &count))
     return NULL;
   if (count != values.count) {
-    refuse_call(instance, "%zu values; expected %zu, as many as the variables have", values.count, count);
+    reject_call(instance, "%zu values; expected %zu, as many as the variables have", values.count, count);
     return NULL;
   }
   unsigned *references = reserve_workspace(component, use, count, sizeof *references);

@@ -40,7 +40,7 @@ fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
   if (references == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++)
     if (references[i] < lagrangian.variable_count && lagrangian.variables[references[i]].kind == VARIABLE_STATISTIC)
-      return status_of(refuse_call(c, "'%s' is of the type Int64", lagrangian.variables[references[i]].name));
+      return status_of(reject_call(c, "'%s' is of the type Int64", lagrangian.variables[references[i]].name));
   return status_of(values_get_whole(c, references, nValues, values, TYPE_INTEGER));
 }
 

@@ -18,16 +18,16 @@ struct CommunicationStep;
 struct EventProgress {
   double searched;  /* time up to which all events have been handled, in s */
   bool is_lost;     /* an event after it cannot be resolved */
-  int gathered;     /* Zeno counter: consecutive events that time or the indicator's rounding does not separate */
-  int crowded;      /* Zeno counter: consecutive close events of one indicator at rest */
-  double last;      /* last event, in s from the start of the step; 0 for none */
-  double distance;  /* between the last two events, in s; 0 for none */
-  long count;       /* events in the step */
-  int unsure;       /* windows in the step in which a zero may hide */
-  double reach;     /* limit of the solver's step in s if events lie too close for longer ones; 0 for none */
-  int nearer;       /* times that this was shortened since a solver step without events */
-  size_t indicator; /* of the last event */
-  bool has_lifted;  /* the last event opened a contact as its force vanished */
+  int close_events; /* Zeno counter: consecutive events that time or the indicator's rounding does not separate */
+  int close_events_at_rest; /* Zeno counter: consecutive close events of one indicator at rest */
+  double last;              /* last event, in s from the start of the step; 0 for none */
+  double distance;          /* between the last two events, in s; 0 for none */
+  long count;               /* events in the step */
+  int unsure;               /* intervals in the step in which a zero may hide */
+  double step_limit;        /* limit of the solver's step in s if events lie too close for longer ones; 0 for none */
+  int nearer;               /* times that this was shortened since a solver step without events */
+  size_t indicator;         /* of the last event */
+  bool has_lifted;          /* the last event opened a contact as its force vanished */
 };
 
 /* The functions of the room events/, which FMUs without events do not link. */
@@ -76,7 +76,7 @@ struct EventLaws {
    * Moves a point outside a function's domain back to the end of its piece, along the velocities. An importer may try
    * such points. The state of the point is then in workspace. False if there is no such piece, or it does not help.
    */
-  bool (*come_back)(struct Instance *instance, struct Point *point);
+  bool (*return_to_domain)(struct Instance *instance, struct Point *point);
   /* Evaluates the indicators as reported to an importer. False if the accelerations do not exist. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* True if an indicator has a sign that its mode does not allow. */

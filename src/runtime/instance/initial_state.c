@@ -35,7 +35,7 @@ enum Status initial_state_check(struct Instance *instance) {
   for (size_t i = 0; lagrangian.initial_state != NULL && i < lagrangian.variable_count; i++) {
     const struct ScalarVariable *variable = &lagrangian.variables[i];
     if (follows(instance, variable) && !isfinite(instance->state[variable->index]))
-      return refuse_call(instance,
+      return reject_call(instance,
                          "the start value of '%s' is not finite: it follows from %s; set these otherwise, or '%s' "
                          "itself",
                          variable->name, variable->follows_from, variable->name);

@@ -54,7 +54,7 @@ struct FmuState {
   int32_t input_derivatives_set; /* for the next step */
   int32_t changed;               /* enum Change, since the last step */
   int32_t waiting_event;         /* 1 + the indicator that ended the last step, if stops_at_events; 0 for none */
-  int32_t gathered;              /* Zeno counter of such events; in model exchange, of those at corners of gaps */
+  int32_t close_events;          /* Zeno counter of such events; in model exchange, of those at corners of gaps */
   int64_t statistics[STATISTIC_COUNT];
   int64_t completed_steps;                      /* of an importer that integrates, since the start */
   int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode of a co-simulation */
@@ -106,7 +106,7 @@ struct Instance {
   bool reported_other_impulses;   /* logged since the reset: an impact has several outcomes */
   uint64_t reported_singularity;  /* checksum of the snapshot at which missing accelerations were logged */
   int singular;                   /* 1 + the coordinate of a singular mass matrix, at the last evaluation; 0 for none */
-  size_t unkept;                  /* 1 + the constraint that the last projection could not fulfil; 0 for none */
+  size_t violated_constraint;     /* 1 + the constraint that the last projection could not fulfil; 0 for none */
   const char *limited_by;         /* function that limited the solver's last step; NULL for none */
   double *work;                   /* of evaluations: 3 state_count + 2 input_count + parameter_count */
   double *point_work;             /* of generated functions: lagrangian.work_count */

@@ -38,7 +38,7 @@ enum Status log_error(struct Instance *instance, const char *format, ...) {
   return STATUS_ERROR;
 }
 
-enum Status refuse_call(struct Instance *instance, const char *format, ...) {
+enum Status reject_call(struct Instance *instance, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
   write_arguments(&instance->log, STATUS_ERROR, instance->function, format, arguments);

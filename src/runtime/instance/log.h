@@ -37,7 +37,7 @@ void log_message(const struct Instance *instance, enum Status status, const char
 enum Status log_error(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
 /* The same for a call that is not allowed, with the name of its function before the message. */
-enum Status refuse_call(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
+enum Status reject_call(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
 /* Logs why a call has no effect, with the name of its function before the message. Returns STATUS_DISCARD. */
 enum Status discard_call(const struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);

@@ -30,7 +30,7 @@ struct Projection {
    * Returns the constraint of largest residual after the last project() or drift(), at the same time, has failed or
    * moved too far.
    */
-  size_t (*unkept)(struct Instance *instance, double time);
+  size_t (*violated_constraint)(struct Instance *instance, double time);
   /*
    * Returns the name of the constraint whose row of the Jacobian is closest to singular at a state, as at the limit of
    * a mechanism; NULL if unknown.

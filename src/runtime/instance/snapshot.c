@@ -67,7 +67,7 @@ static bool has_phase(const struct Instance *instance, int32_t phase) {
 }
 
 static bool can_wait(const struct Instance *instance, const struct FmuState *fixed) {
-  if (fixed->gathered < 0 || fixed->gathered > 100) return false;
+  if (fixed->close_events < 0 || fixed->close_events > 100) return false;
   if (fixed->waiting_event == 0) return true;
   return instance->stops_at_events && fixed->waiting_event > 0 &&
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
@@ -127,10 +127,10 @@ static bool are_modes(const char *parameters) {
 }
 
 /* True if the solver could have saved its part, which co-simulation alone uses. */
-static bool could_solver_save(const struct Instance *instance, const struct FmuState *fixed, const char *saved) {
+static bool is_solver_part_valid(const struct Instance *instance, const struct FmuState *fixed, const char *saved) {
   const struct Solver *solver = lagrangian.solver;
-  return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->could_save == NULL ||
-         solver->could_save(fixed, saved);
+  return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->is_saved_valid == NULL ||
+         solver->is_saved_valid(fixed, saved);
 }
 
 /*
@@ -154,7 +154,7 @@ static bool is_possible(const struct Instance *instance, const struct FmuState *
          (may_lack_state(fixed->phase) || snapshot_is_finite(fmu_state + sizeof *fixed, lagrangian.state_count)) &&
          are_flags(fmu_state + was_set, (saved - was_set) / sizeof(double)) &&
          snapshot_is_finite(fmu_state + parameters, lagrangian.parameter_count) && have_types(fmu_state + parameters) &&
-         are_modes(fmu_state + parameters) && could_solver_save(instance, fixed, fmu_state + saved);
+         are_modes(fmu_state + parameters) && is_solver_part_valid(instance, fixed, fmu_state + saved);
 }
 
 const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size) {

@@ -26,7 +26,7 @@ struct Solver {
   /* Returns the bytes of the solver's part of the snapshot, at instance->saved; NULL for none. */
   size_t (*saved_size)(void);
   /* True if the solver could have saved this part, at any alignment, with these fixed fields of the snapshot. */
-  bool (*could_save)(const struct FmuState *fmu_state, const void *saved);
+  bool (*is_saved_valid)(const struct FmuState *fmu_state, const void *saved);
   /*
    * Runs a task that may call the other functions, but not destroy(). False if memory was missing: the task was left
    * halfway, and solver_memory is NULL. NULL for solvers that need no such context.

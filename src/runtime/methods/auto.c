@@ -107,11 +107,11 @@ static bool are_possible_numbers(const struct Choice *choice) {
          is_up_to(choice->taylor_rate, INFINITY) && is_up_to(choice->rate, INFINITY);
 }
 
-static bool auto_could_save(const struct FmuState *fmu_state, const void *saved) {
+static bool auto_is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
   struct Choice choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
   return choice.method >= 0 && choice.method < AUTO_METHODS && are_possible_counts(&choice) &&
-         are_possible_numbers(&choice) && solvers[choice.method]->could_save(fmu_state, saved);
+         are_possible_numbers(&choice) && solvers[choice.method]->is_saved_valid(fmu_state, saved);
 }
 
 /* Gives the active method its own memory until auto_leave(). */
@@ -137,7 +137,7 @@ static void auto_destroy(struct Instance *instance) {
 
 static bool auto_create(struct Instance *instance) {
   struct Auto *automatic = instance->memory.allocate(1, sizeof *automatic + lagrangian.state_count * sizeof(double));
-  if (automatic == NULL) return solver_lacks_memory(instance);
+  if (automatic == NULL) return solver_is_out_of_memory(instance);
   automatic->choice = (struct Choice *)(void *)((char *)instance->saved + largest_saved_size());
   automatic->state = (double *)(automatic + 1);
   bool is_complete = true;
@@ -235,11 +235,11 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
 static bool series_are_slow(struct Instance *instance, struct Choice *choice, double progress) {
   enum { ITERATIONS = 4 };
   const struct Taylor *taylor = instance->solver_memory;
-  if (choice->crosses || !(taylor->saved->reach > 0.0)) return false;
+  if (choice->crosses || !(taylor->saved->interval > 0.0)) return false;
   int stages = radau_stage_count(instance);
-  double step = taylor->saved->reach * stiffness_promise(taylor, stages + 1, radau_tolerance(instance));
+  double step = taylor->saved->interval * predicted_stiffness(taylor, stages + 1, radau_tolerance(instance));
   if (choice->restarts > 0) step = fmin(step, progress / (double)choice->restarts);
-  choice->predicted_step = fmin(step, FIRST_GROWTH * taylor->saved->reach);
+  choice->predicted_step = fmin(step, FIRST_GROWTH * taylor->saved->interval);
   double windows = (double)choice->windows, hope = (1.2 + 3.0 / windows) / (1.0 + windows / LONG_RUN);
   return step * choice->work > hope * progress * work_of_radau(stages, ITERATIONS * stages, 1.0);
 }
@@ -339,7 +339,7 @@ static const char *auto_advance(struct Instance *instance, const struct Communic
 
 const struct Solver solver_auto = {.name = "the solver",
                                    .saved_size = auto_saved_size,
-                                   .could_save = auto_could_save,
+                                   .is_saved_valid = auto_is_saved_valid,
                                    .create = auto_create,
                                    .destroy = auto_destroy,
                                    .restart = auto_restart,

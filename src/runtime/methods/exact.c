@@ -43,7 +43,7 @@ static size_t saved_size(void) {
   return lagrangian.state_count * sizeof(double); /* the rounding error of the state */
 }
 
-static bool could_save(const struct FmuState *fmu_state, const void *saved) {
+static bool is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
   (void)fmu_state;
   return snapshot_is_finite(saved, lagrangian.state_count);
 }
@@ -85,7 +85,7 @@ static bool create(struct Instance *instance) {
     }
     destroy(instance);
   }
-  return solver_lacks_memory(instance);
+  return solver_is_out_of_memory(instance);
 }
 
 /* Computes result = a b for n x n matrices by rows. A zero in a gives 0 even for infinite elements of b. */
@@ -334,7 +334,7 @@ const struct Solver solver_exact = {.name = "the matrix exponential",
                                     .remedy = "try a shorter step",
                                     .starts_anew = true,
                                     .saved_size = saved_size,
-                                    .could_save = could_save,
+                                    .is_saved_valid = is_saved_valid,
                                     .create = create,
                                     .destroy = destroy,
                                     .restart = restart,

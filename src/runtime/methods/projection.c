@@ -97,7 +97,7 @@ static bool evaluate_residual(struct Instance *instance, double time, const doub
  * the coordinates. A move by their rounding error is no motion, and would shorten the steps of methods of variable
  * order. Sets such residuals to 0.
  */
-static bool lacks_only_rounding(struct Instance *instance, double time, const double *state) {
+static bool residual_is_rounding(struct Instance *instance, double time, const double *state) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Work work = work_of(instance);
   if (switches == NULL || switches->contact_count == 0) return false;
@@ -173,7 +173,7 @@ static double project(struct Instance *instance, double time, double *state) {
     if (!evaluate_residual(instance, time, state, POSITIONS)) return INFINITY;
     before = size;
     size = size_of(work.change, state, 0);
-    bool is_rounded = size <= rounded_away && lacks_only_rounding(instance, time, state);
+    bool is_rounded = size <= rounded_away && residual_is_rounding(instance, time, state);
     bool is_done = is_rounded || size <= converged || (size <= rounded_away && size >= before);
     if (is_done && !others_hold(&work, state, 0)) return INFINITY;
     if (!is_rounded) move_positions(&work, state, 1.0);
@@ -232,7 +232,7 @@ static size_t find_violated(const struct Work *work, const double *state, size_t
  * Returns the constraint of largest residual that project() has left; if all are fulfilled, that at its start, among
  * coordinates and velocities.
  */
-static size_t unkept(struct Instance *instance, double time) {
+static size_t violated_constraint(struct Instance *instance, double time) {
   struct Work work = work_of(instance);
   int singular = instance->singular;
   size_t n = lagrangian.coordinate_count, none = lagrangian.constraints.count, larger = none;
@@ -274,7 +274,7 @@ static size_t approach_positions(struct Instance *instance, double time, double 
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, target);
   if (!has_value) return find_without_value(&work);
-  lacks_only_rounding(instance, time, state);
+  residual_is_rounding(instance, time, state);
   return find_violated(&work, state, 0);
 }
 
@@ -315,9 +315,9 @@ static bool refuse(struct Instance *instance, size_t constraint, const char *wha
   }
   const char *name = lagrangian.constraints.names[constraint], *kind = evaluate_kind(constraint);
   if (!isfinite(work.residual[constraint]))
-    refuse_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
+    reject_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
   else
-    refuse_call(instance,
+    reject_call(instance,
                 "no %s near the start values fulfil the %s '%s' with the others: its residual is %g; expected start "
                 "values nearer to a solution, fewer of them fixed, or other parameters",
                 what, kind, name, -work.residual[constraint]);
@@ -346,8 +346,8 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   return found;
 }
 
-static bool refuse_vanishing(struct Instance *instance, size_t constraint) {
-  refuse_call(instance,
+static bool report_vanishing(struct Instance *instance, size_t constraint) {
+  reject_call(instance,
               "the derivatives of the %s '%s' vanish where it holds, so that it exerts no force; expected it without a "
               "square, a root or abs of the whole, or a start away from a singular position",
               evaluate_kind(constraint), lagrangian.constraints.names[constraint]);
@@ -360,7 +360,7 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
   for (size_t i = 0; i < 2 * n; i++) {
     if (!lagrangian.constraints.coordinate_is_fixed[i % n]) continue;
     if (fabs(instance->state[i] - before[i]) > 1e-9 * scale_of(before, i)) {
-      refuse_call(instance,
+      reject_call(instance,
                   "the constraints hold only where '%s' is %.9g, but its start is fixed at %.9g; expected this start "
                   "value, or fewer fixed coordinates",
                   evaluate_name(VARIABLE_STATE, i), instance->state[i], before[i]);
@@ -378,7 +378,7 @@ static bool make_consistent(struct Instance *instance) {
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   size_t violated = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   size_t vanishing_one = find_vanishing(instance, time, instance->state);
-  if (vanishing_one < lagrangian.constraints.count) return refuse_vanishing(instance, vanishing_one);
+  if (vanishing_one < lagrangian.constraints.count) return report_vanishing(instance, vanishing_one);
   if (violated < lagrangian.constraints.count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
     evaluate_residual(instance, time, instance->state, POSITIONS);
@@ -464,5 +464,5 @@ const struct Projection projection = {.project = project,
                                       .found_redundant = found_redundant,
                                       .make_consistent = make_consistent,
                                       .follow_change = follow_change,
-                                      .unkept = unkept,
+                                      .violated_constraint = violated_constraint,
                                       .weakest = weakest};

@@ -70,7 +70,7 @@ static size_t radau_saved_size(void) {
   return sizeof(struct RadauSaved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
 }
 
-static bool radau_could_save(const struct FmuState *fmu_state, const void *saved) {
+static bool radau_is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
   struct RadauSaved first;
   memcpy(&first, saved, sizeof first);
   return first.method >= 0 && first.method < METHOD_COUNT && first.next_method >= 0 &&
@@ -85,7 +85,7 @@ static bool radau_create(struct Instance *instance) {
   size_t numbers = (4 + 2 * STAGE_LIMIT + 2 * SYSTEM_LIMIT) * states + 1 + radau_systems_size();
   size_t rows = first_terms_rows() * SERIES_LENGTH;
   struct Radau *radau = instance->memory.allocate(1, sizeof *radau + (numbers + rows) * sizeof(double));
-  if (radau == NULL) return solver_lacks_memory(instance);
+  if (radau == NULL) return solver_is_out_of_memory(instance);
   radau->saved = instance->saved;
   radau->start = (double *)(radau->saved + 1);
   radau->stages = radau->start + states;
@@ -441,7 +441,7 @@ const struct Solver solver_radau = {.name = "Radau",
                                     .alternatives = "auto where rates are alike",
                                     .finer = "<solver method=\"taylor\"/>",
                                     .saved_size = radau_saved_size,
-                                    .could_save = radau_could_save,
+                                    .is_saved_valid = radau_is_saved_valid,
                                     .create = radau_create,
                                     .destroy = solver_free_memory,
                                     .restart = radau_restart,

@@ -17,7 +17,7 @@ static double size_of_term(const struct Taylor *taylor, int64_t order) {
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++)
     largest = fmax(largest, fabs(taylor->x[i][order]) / taylor_scale(taylor, i));
-  return largest * pow(taylor->saved->reach, (double)order);
+  return largest * pow(taylor->saved->interval, (double)order);
 }
 
 /* The parameters a and z of the fast modes. */
@@ -71,11 +71,11 @@ static bool may_be_fast(const struct Taylor *taylor) {
     last = fmax(last, fabs(taylor->x[i][order]) / scale);
     before = fmax(before, fabs(taylor->x[i][order - 2]) / scale);
   }
-  double share = 1.0 / FALL_OF_FAST / taylor->saved->reach;
+  double share = 1.0 / FALL_OF_FAST / taylor->saved->interval;
   return last > share * share * before;
 }
 
-double stiffness_promise(const struct Taylor *taylor, int order, double tolerance) {
+double predicted_stiffness(const struct Taylor *taylor, int order, double tolerance) {
   if (!may_be_fast(taylor)) return 0.0;
   struct FastModes fast = fast_modes(taylor);
   return fmin(multiple_for_fast(fast, order, tolerance), multiple_for_slow(taylor, fast, order, tolerance));

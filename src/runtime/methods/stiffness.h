@@ -8,7 +8,7 @@
  * Returns the predicted step of an implicit method with an error of this order, as a multiple of the last Taylor step.
  * 0 if the motion itself, and not a fast mode, limits the Taylor step.
  */
-double stiffness_promise(const struct Taylor *taylor, int order, double tolerance);
+double predicted_stiffness(const struct Taylor *taylor, int order, double tolerance);
 
 /*
  * Returns an upper bound of the fastest rate in 1/s, from the Jacobian in the order of lagrangian.implicit.pattern.

@@ -24,13 +24,13 @@ static size_t taylor_saved_size(void) {
   return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
 }
 
-static bool taylor_could_save(const struct FmuState *fmu_state, const void *saved) {
+static bool taylor_is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
   struct TaylorSaved first;
   memcpy(&first, saved, sizeof first);
   bool has_order = first.order >= LOWEST_ORDER && first.order <= HIGHEST_ORDER;
   bool is_new = first.order == 0 && fmu_state->changed != 0; /* no step was made yet */
-  return (has_order || is_new) && first.reach >= 0.0 &&
-         fmu_state->last_step.end == fmu_state->last_step.start + first.reach &&
+  return (has_order || is_new) && first.interval >= 0.0 &&
+         fmu_state->last_step.end == fmu_state->last_step.start + first.interval &&
          snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
 }
 
@@ -38,7 +38,7 @@ static bool taylor_create(struct Instance *instance) {
   size_t rows = lagrangian.input_count + lagrangian.taylor.rows;
   size_t terms = 3 * lagrangian.state_count * sizeof(double);
   struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
-  if (taylor == NULL) return solver_lacks_memory(instance);
+  if (taylor == NULL) return solver_is_out_of_memory(instance);
   taylor->saved = instance->saved;
   taylor->span = &instance->fmu_state->last_step;
   taylor->low = (double *)(taylor->saved + 1);
@@ -74,9 +74,9 @@ static bool expand(struct Instance *instance, struct Taylor *taylor, double comm
   point.time = origin;
   lagrangian.taylor.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
   instance->fmu_state->statistics[STATISTIC_DERIVATIVES]++;
-  taylor_choose_reach(instance, taylor, communication_step);
-  taylor->span->end = origin + taylor->saved->reach;
-  return taylor->saved->reach > 0.0;
+  taylor_choose_interval(instance, taylor, communication_step);
+  taylor->span->end = origin + taylor->saved->interval;
+  return taylor->saved->interval > 0.0;
 }
 
 /*
@@ -87,7 +87,7 @@ static double move_origin(struct Taylor *taylor) {
   struct TaylorSaved *saved = taylor->saved;
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->reach);
+    double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->interval);
     double before = taylor->x[i][0], term = change + taylor->low[i];
     double sum = before + term, part = sum - before, moved = fabs(term) * taylor->unit[i];
     if (moved > largest) largest = moved;
@@ -95,7 +95,7 @@ static double move_origin(struct Taylor *taylor) {
     taylor->x[i][0] = sum;
   }
   taylor->span->start = taylor->span->end;
-  saved->reach = 0.0;
+  saved->interval = 0.0;
   return largest;
 }
 
@@ -120,7 +120,7 @@ static const char *keep_constraints(struct Instance *instance, struct Taylor *ta
 static bool taylor_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   (void)step;
-  taylor->saved->reach = 0.0;
+  taylor->saved->interval = 0.0;
   taylor->is_measured = false;
   find_rule(instance, taylor);
   taylor->saved->order = taylor->rule.order;
@@ -188,7 +188,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
 
 /* Drops the series: the state stays that of the origin. */
 static void cut_series(struct Taylor *taylor) {
-  taylor->saved->reach = 0.0;
+  taylor->saved->interval = 0.0;
   taylor->span->end = taylor->span->start;
   for (size_t i = 0; i < lagrangian.state_count; i++)
     for (int k = 1; k < SERIES_LENGTH; k++) taylor->x[i][k] = 0.0;
@@ -197,7 +197,7 @@ static void cut_series(struct Taylor *taylor) {
 static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   if (step->count == 0) taylor->regular = taylor->crossing = (struct Stagnation){0};
-  double moved = taylor->saved->reach > 0.0 ? move_origin(taylor) : 0.0;
+  double moved = taylor->saved->interval > 0.0 ? move_origin(taylor) : 0.0;
   const char *problem = reason_to_stop(instance, taylor, moved);
   if (problem == NULL) problem = keep_constraints(instance, taylor);
   if (problem == NULL && !expand(instance, taylor, step->length))
@@ -210,7 +210,7 @@ static const char *taylor_advance(struct Instance *instance, const struct Commun
 const struct Solver solver_taylor = {.name = "the Taylor series",
                                      .alternatives = "auto where rates differ much",
                                      .saved_size = taylor_saved_size,
-                                     .could_save = taylor_could_save,
+                                     .is_saved_valid = taylor_is_saved_valid,
                                      .create = taylor_create,
                                      .destroy = solver_free_memory,
                                      .restart = taylor_restart,

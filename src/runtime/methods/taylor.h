@@ -9,7 +9,7 @@
 
 /* This method's part of the snapshot. Together with the span of the last step it determines the next step. */
 struct TaylorSaved {
-  double reach; /* length of the last step, for which the series is valid; 0 if there is no series yet */
+  double interval; /* length of the last step, for which the series is valid; 0 if there is no series yet */
   int64_t order;
   /* Followed by double low[state_count], the rounding error of the state at the origin, and Series x[state_count]. */
 };

@@ -193,7 +193,7 @@ static double smallest_step(const struct Taylor *taylor) {
 }
 
 /* Rounds the step so that origin + step is exact, and the time does not drift. */
-static double exact_reach(const struct Taylor *taylor, double step) {
+static double exact_interval(const struct Taylor *taylor, double step) {
   return taylor->span->start + step - taylor->span->start;
 }
 
@@ -220,7 +220,7 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
   if (length >= step) return 0.0;
   step = limited(instance, taylor, step, true).step;
   for (int trial = 0; trial < 4 && step > length; trial++) {
-    step = exact_reach(taylor, step);
+    step = exact_interval(taylor, step);
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0) return step;
     if (step <= 2.0 * smallest && isfinite(size)) {
@@ -239,7 +239,7 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
 static double shortened(struct Instance *instance, struct Taylor *taylor, double step) {
   double power = 1.0 / (double)(taylor->saved->order + 1);
   for (;;) {
-    step = exact_reach(taylor, step);
+    step = exact_interval(taylor, step);
     if (step <= smallest_step(taylor)) return 0.0;
     double size = taylor->is_limited ? defect_over(instance, taylor, step) : defect(instance, taylor, step);
     if (size <= 1.0) return step;
@@ -249,11 +249,11 @@ static double shortened(struct Instance *instance, struct Taylor *taylor, double
   }
 }
 
-void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step) {
+void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, double communication_step) {
   struct TaylorSaved *saved = taylor->saved;
   const struct FmuState *fmu_state = instance->fmu_state;
   double rest =
-      fmu_state->stop_time_defined ? fmu_state->stop_time - taylor->span->start : horizon * communication_step;
+      fmu_state->stop_time_defined ? fmu_state->stop_time - taylor->span->start : look_ahead * communication_step;
   double predicted = predicted_step(taylor), step = predicted;
   if (rest < communication_step) rest = communication_step;
   rest = fmin(rest, DBL_MAX - fabs(taylor->span->start)); /* keeps the end of the step finite */
@@ -267,6 +267,6 @@ void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, doubl
   if (predicted == 0.0 || limit.function != NULL)
     crossing = crossing_step(instance, taylor, communication_step, limit.step);
   taylor->crosses = crossing > 0.0;
-  saved->reach = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
-  taylor->is_measured = saved->reach > 0.0;
+  saved->interval = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
+  taylor->is_measured = saved->interval > 0.0;
 }

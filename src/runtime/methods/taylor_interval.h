@@ -17,6 +17,6 @@ void taylor_measure_scales(struct Taylor *taylor);
  * Sets the step of the series in taylor->x (saved->reach), as described in taylor_interval.c; 0 if no step is possible.
  * communication_step: in s, > 0.
  */
-void taylor_choose_reach(struct Instance *instance, struct Taylor *taylor, double communication_step);
+void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, double communication_step);
 
 #endif

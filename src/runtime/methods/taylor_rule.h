@@ -21,7 +21,7 @@ static const double defect_margin = 3.0;
 /* The change of the state, relative to its scale, in a step that crosses a kink, a jump or a root of 0. */
 static const double crossing_share = 1e-12;
 /* The longest step in communication steps if no stop time is defined: series of polynomial motions give no length. */
-static const double horizon = 1e4;
+static const double look_ahead = 1e4;
 /* Rounding error of the right side in the defect, in units of the last place; and margin of that of the state. */
 static const double rounding = 100.0, rounding_margin = 10.0;
 /* Fractions of the step at which the defect is also measured if the coefficients do not limit the step. */

@@ -44,35 +44,36 @@ static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_hold
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
-  const double *delassus = &cones->pushes->delassus[row * cones->pushes->count];
+  const double *delassus = &cones->impulses->delassus[row * cones->impulses->count];
   double rate = cones->rate[row];
-  for (size_t j = 0; j < cones->pushes->count; j++) rate += delassus[j] * cones->impulse[j];
+  for (size_t j = 0; j < cones->impulses->count; j++) rate += delassus[j] * cones->impulse[j];
   return rate;
 }
 
 double cones_limit(const struct Cones *cones, size_t row) {
-  size_t contacts = cones->pushes->contact_count;
+  size_t contacts = cones->impulses->contact_count;
   double limit = 0.0;
   for (size_t i = 0; i < contacts; i++)
-    limit += cones->pushes->coefficient[(row - contacts) * contacts + i] * cones->impulse[i];
+    limit += cones->impulses->coefficient[(row - contacts) * contacts + i] * cones->impulse[i];
   return limit;
 }
 
 size_t cones_row_count(const struct Cones *cones, size_t row) {
-  const struct Pushes *pushes = cones->pushes;
-  return row >= pushes->contact_count && is_in_plane(cones->resolution->switches, pushes->member[row]) ? 2 : 1;
+  const struct ContactImpulses *impulses = cones->impulses;
+  return row >= impulses->contact_count && is_in_plane(cones->resolution->switches, impulses->member[row]) ? 2 : 1;
 }
 
 double cones_largest(const struct Cones *cones) {
   double largest = 0.0;
-  for (size_t i = 0; i < cones->pushes->count; i++) largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
+  for (size_t i = 0; i < cones->impulses->count; i++)
+    largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
   return largest;
 }
 
 /* Returns the residual relative to the largest impulse; 0 if it is a rounding error of the rates. */
 static double share_of_miss(const struct Cones *cones, double miss) {
   double fastest = 0.0;
-  for (size_t i = 0; i < cones->pushes->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
+  for (size_t i = 0; i < cones->impulses->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
   return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
 }
 
@@ -91,18 +92,18 @@ static void push_friction(struct Cones *cones, size_t row, size_t rows, double p
 }
 
 static void sweep_contacts(struct Cones *cones, double part) {
-  for (size_t row = 0; row < cones->pushes->count;) {
+  for (size_t row = 0; row < cones->impulses->count;) {
     size_t rows = cones_row_count(cones, row);
-    if (row < cones->pushes->contact_count) push_contact(cones, row, part);
+    if (row < cones->impulses->contact_count) push_contact(cones, row, part);
     else push_friction(cones, row, rows, part);
     row += rows;
   }
 }
 
 /* Returns W_ii of a row; in a plane the larger eigenvalue of its 2 x 2 block. */
-static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) {
-  size_t n = cones->pushes->count;
-  const double *m = &cones->pushes->delassus[row * n + row];
+static double scale_of_impulse(const struct Cones *cones, size_t row, size_t rows) {
+  size_t n = cones->impulses->count;
+  const double *m = &cones->impulses->delassus[row * n + row];
   double scale = m[0];
   if (rows == 2) scale = 0.5 * (m[0] + m[n + 1]) + hypot(0.5 * (m[0] - m[n + 1]), 0.5 * (m[1] + m[n]));
   return scale > DBL_MIN ? scale : 0.0;
@@ -111,10 +112,10 @@ static double scale_of_push(const struct Cones *cones, size_t row, size_t rows) 
 /* Fills the scales. False if a contact cannot be moved. */
 static bool fill_scales(struct Cones *cones) {
   bool moves = true;
-  for (size_t row = 0; row < cones->pushes->count;) {
+  for (size_t row = 0; row < cones->impulses->count;) {
     size_t rows = cones_row_count(cones, row);
-    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of_push(cones, row, rows);
-    moves &= row >= cones->pushes->contact_count || cones->scale[row] > 0.0;
+    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of_impulse(cones, row, rows);
+    moves &= row >= cones->impulses->contact_count || cones->scale[row] > 0.0;
     row += rows;
   }
   return moves;
@@ -125,7 +126,7 @@ static bool fill_scales(struct Cones *cones) {
  * the best impulses in cones->impulse, and returns their relative residual.
  */
 static double come_to_law(struct Cones *cones, int trials, double *best, double *swept, double *work) {
-  size_t bytes = cones->pushes->count * sizeof(double);
+  size_t bytes = cones->impulses->count * sizeof(double);
   double least = INFINITY, enough = law_holds;
   for (int trial = 0; trial < trials && !(least <= enough); trial++) {
     memcpy(cones->impulse, swept, bytes);
@@ -141,14 +142,14 @@ static double come_to_law(struct Cones *cones, int trials, double *best, double 
 }
 
 /* Takes workspace for cones and what solves them; impulses in it if impulse is NULL. NULL if memory is missing. */
-static double *create_cones(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
-                            double *impulse, struct Cones *cones) {
+static double *create_cones(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                            const double *rate, double *impulse, struct Cones *cones) {
   struct Instance *instance = resolution->instance;
-  size_t n = pushes->count;
+  size_t n = impulses->count;
   double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cone_newton_work_count(n)) * sizeof *block);
-  *cones = (struct Cones){.resolution = resolution, .pushes = pushes, .rate = rate, .scale = block};
+  *cones = (struct Cones){.resolution = resolution, .impulses = impulses, .rate = rate, .scale = block};
   if (block == NULL) {
-    solver_lacks_memory(instance);
+    solver_is_out_of_memory(instance);
     return NULL;
   }
   cones->impulse = impulse != NULL ? impulse : block + n;
@@ -158,14 +159,14 @@ static double *create_cones(const struct Resolution *resolution, const struct Pu
 /* Finds impulses whose residual is small, or a rounding error of velocities, as in the slowest impacts. */
 static bool fulfil_law(struct Cones *cones, double *best, double *swept, double *work) {
   double miss = come_to_law(cones, LAW_TRIALS, best, swept, work);
-  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->pushes->rounding;
+  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->impulses->rounding;
 }
 
-bool cone_impulses_find(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
+bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse) {
   struct Cones cones;
-  size_t n = pushes->count;
-  double *work = create_cones(resolution, pushes, rate, impulse, &cones);
+  size_t n = impulses->count;
+  double *work = create_cones(resolution, impulses, rate, impulse, &cones);
   if (work == NULL) return false;
   bool is_done = fill_scales(&cones) && fulfil_law(&cones, work, work + n, work + 2 * n);
   scratch_return(resolution->instance, SCRATCH_CONES);
@@ -176,27 +177,27 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Pushes
  * Fills a start: one contact has the largest impulse, others none, and its frictions push to the limit in a direction.
  */
 static void fill_start(struct Cones *cones, const double *found, size_t hit, const double *direction, double *start) {
-  size_t contacts = cones->pushes->contact_count;
-  memset(cones->impulse, 0, cones->pushes->count * sizeof *cones->impulse);
+  size_t contacts = cones->impulses->contact_count;
+  memset(cones->impulse, 0, cones->impulses->count * sizeof *cones->impulse);
   for (size_t i = 0; i < contacts; i++) cones->impulse[hit] = fmax(cones->impulse[hit], found[i]);
-  for (size_t row = contacts; row < cones->pushes->count;) {
+  for (size_t row = contacts; row < cones->impulses->count;) {
     size_t rows = cones_row_count(cones, row);
     for (size_t i = 0; i < rows; i++) cones->impulse[row + i] = direction[i] * cones_limit(cones, row + i);
     row += rows;
   }
-  memcpy(start, cones->impulse, cones->pushes->count * sizeof *start);
+  memcpy(start, cones->impulse, cones->impulses->count * sizeof *start);
 }
 
-bool cone_impulses_have_others(const struct Resolution *resolution, const struct Pushes *pushes, const double *rate,
-                               const double *impulse) {
+bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                               const double *rate, const double *impulse) {
   struct Cones cones;
-  size_t n = pushes->count, starts = sizeof start_directions / sizeof *start_directions;
-  double *work = create_cones(resolution, pushes, rate, NULL, &cones);
+  size_t n = impulses->count, starts = sizeof start_directions / sizeof *start_directions;
+  double *work = create_cones(resolution, impulses, rate, NULL, &cones);
   bool is_other = false, moves = work != NULL && fill_scales(&cones);
-  for (size_t i = 0; i < pushes->contact_count * starts && moves && !is_other; i++) {
+  for (size_t i = 0; i < impulses->contact_count * starts && moves && !is_other; i++) {
     fill_start(&cones, impulse, i / starts, start_directions[i % starts], work + n);
     double miss = come_to_law(&cones, OTHER_LAW_TRIALS, work, work + n, work + 2 * n);
-    is_other = miss <= law_nearly_holds && is_other_outcome(pushes, cones.impulse, impulse);
+    is_other = miss <= law_nearly_holds && is_other_outcome(impulses, cones.impulse, impulse);
   }
   if (work != NULL) scratch_return(resolution->instance, SCRATCH_CONES);
   return is_other;

@@ -50,7 +50,7 @@ static void fill_rate(const struct ConeNewton *newton, size_t row) {
   double *slope = slope_row(newton, row);
   newton->miss[row] = cones_rate_behind(cones, row);
   for (size_t j = 0; j < newton->n; j++)
-    slope[j] = cones->scale[j] > 0.0 ? cones->pushes->delassus[row * newton->n + j] / cones->scale[j] : 0.0;
+    slope[j] = cones->scale[j] > 0.0 ? cones->impulses->delassus[row * newton->n + j] / cones->scale[j] : 0.0;
 }
 
 /* Fills a row for an impulse that is to be 0; with a scale of 0 the impulse is not determined. */
@@ -73,8 +73,8 @@ static void fill_law_of_contact(const struct ConeNewton *newton, size_t row) {
 static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t rows, const double *wish, double size,
                          double limit) {
   const struct Cones *cones = newton->cones;
-  size_t contacts = cones->pushes->contact_count;
-  const double *coefficient = &cones->pushes->coefficient[(row - contacts) * contacts];
+  size_t contacts = cones->impulses->contact_count;
+  const double *coefficient = &cones->impulses->coefficient[(row - contacts) * contacts];
   double scale = cones->scale[row], share = limit * scale / size;
   for (size_t j = 0; j < newton->n; j++) {
     double turn[2], along = 0.0;
@@ -108,7 +108,7 @@ static double fill_equations(const struct ConeNewton *newton) {
   double most = 0.0;
   for (size_t row = 0; row < newton->n;) {
     size_t rows = cones_row_count(newton->cones, row);
-    if (row < newton->cones->pushes->contact_count) fill_law_of_contact(newton, row);
+    if (row < newton->cones->impulses->contact_count) fill_law_of_contact(newton, row);
     else fill_law_of_friction(newton, row, rows);
     row += rows;
   }
@@ -146,7 +146,7 @@ static void find_step(const struct ConeNewton *newton) {
 }
 
 double cone_newton(struct Cones *cones, double *work) {
-  size_t n = cones->pushes->count, bytes = n * sizeof(double);
+  size_t n = cones->impulses->count, bytes = n * sizeof(double);
   struct ConeNewton newton = {.cones = cones, .n = n, .slope = work};
   newton.miss = work + n * n;
   newton.step = newton.miss + n;

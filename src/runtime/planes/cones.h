@@ -2,12 +2,12 @@
 #ifndef CONES_H
 #define CONES_H
 
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 
 /* The problem, in the rows of pushes: contacts, then frictions, of which those in a plane have two rows. */
 struct Cones {
   const struct Resolution *resolution;
-  const struct Pushes *pushes;
+  const struct ContactImpulses *impulses;
   const double *rate; /* of each row, before the impact; of contacts times 1 + e */
   double *impulse;
   double *scale; /* change of the own rate by a unit impulse, in a plane the larger eigenvalue; 0 if there is none */

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 #include "evaluation/services.h"
 #include "planes/cone_impulses.h"
 
@@ -21,7 +21,7 @@ static const double least_force_share = 1e-9;
 /* Rows as in pushes: accelerations without these forces, the forces, and the accelerations with them. */
 struct PlaneForces {
   struct Resolution *resolution;
-  struct Pushes pushes;
+  struct ContactImpulses impulses;
   double *rate, *force, *behind;
 };
 
@@ -44,7 +44,7 @@ static bool stop_slow(struct Resolution *resolution) {
 }
 
 /* Selects contacts at rest, and frictions except those along lines that stick: these remain active constraints. */
-static void choose_pushes(struct Resolution *resolution) {
+static void choose_impulses(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++)
     resolution->takes_part[i] = contact_is_at_rest(resolution, i) ? 1.0 : 0.0;
@@ -65,14 +65,14 @@ static bool find_free(struct PlaneForces *forces) {
     struct PlaneState state = plane_state(resolution, i);
     if (state.mode == PLANE_STICKS && !state.is_given) plane_free(resolution, &state);
   }
-  bool is_done = plane_evaluate(resolution) && pushes_create(resolution, &forces->pushes);
+  bool is_done = plane_evaluate(resolution) && contact_impulses_create(resolution, &forces->impulses);
   resolution_restore_modes(resolution);
   return is_done;
 }
 
 static bool slides(const struct PlaneForces *forces, size_t row) {
   const struct SwitchTable *switches = forces->resolution->switches;
-  size_t plane = plane_of(switches, forces->pushes.member[row]);
+  size_t plane = plane_of(switches, forces->impulses.member[row]);
   if (plane == switches->plane_count) return true;
   struct PlaneState state = plane_state(forces->resolution, plane);
   return !is_at_rest(forces->resolution, &state);
@@ -80,26 +80,26 @@ static bool slides(const struct PlaneForces *forces, size_t row) {
 
 /* Eliminates sliding frictions: adds their forces to the effects of the contacts, and sets their rows to 0. */
 static void join_sliding(struct PlaneForces *forces) {
-  const struct Pushes *pushes = &forces->pushes;
-  size_t n = pushes->count, contacts = pushes->contact_count;
+  const struct ContactImpulses *impulses = &forces->impulses;
+  size_t n = impulses->count, contacts = impulses->contact_count;
   for (size_t row = contacts; row < n; row++) {
     if (!slides(forces, row)) continue;
-    double share = sliding_share(forces->resolution, pushes->member[row]);
+    double share = sliding_share(forces->resolution, impulses->member[row]);
     for (size_t i = 0; i < n; i++)
       for (size_t j = 0; j < contacts; j++)
-        pushes->delassus[i * n + j] -=
-            share * pushes->coefficient[(row - contacts) * contacts + j] * pushes->delassus[i * n + row];
-    memset(&pushes->delassus[row * n], 0, n * sizeof(double));
+        impulses->delassus[i * n + j] -=
+            share * impulses->coefficient[(row - contacts) * contacts + j] * impulses->delassus[i * n + row];
+    memset(&impulses->delassus[row * n], 0, n * sizeof(double));
     forces->rate[row] = 0.0;
   }
 }
 
 static void fill_rates_of_planes(struct PlaneForces *forces) {
   const struct Resolution *resolution = forces->resolution;
-  for (size_t row = 0; row < forces->pushes.count; row++) {
-    size_t member = forces->pushes.member[row];
+  for (size_t row = 0; row < forces->impulses.count; row++) {
+    size_t member = forces->impulses.member[row];
     forces->rate[row] =
-        row < forces->pushes.contact_count
+        row < forces->impulses.contact_count
             ? contact_value(resolution, member, CONTACT_ACCELERATION)
             : resolution->value[friction_slot(resolution->switches, member, FRICTION_VELOCITY) + FRICTION_RATE];
   }
@@ -107,13 +107,13 @@ static void fill_rates_of_planes(struct PlaneForces *forces) {
 
 /* Computes the accelerations with the forces. Returns the largest term in them. */
 static double fill_behind(struct PlaneForces *forces) {
-  size_t n = forces->pushes.count;
+  size_t n = forces->impulses.count;
   double largest = 0.0;
   for (size_t i = 0; i < n; i++) {
     forces->behind[i] = forces->rate[i];
     largest = fmax(largest, fabs(forces->rate[i]));
     for (size_t j = 0; j < n; j++) {
-      double part = forces->pushes.delassus[i * n + j] * forces->force[j];
+      double part = forces->impulses.delassus[i * n + j] * forces->force[j];
       forces->behind[i] += part;
       largest = fmax(largest, fabs(part));
     }
@@ -124,10 +124,10 @@ static double fill_behind(struct PlaneForces *forces) {
 /* Sets the contacts. A contact that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
   struct Resolution *resolution = forces->resolution;
-  const struct Pushes *pushes = &forces->pushes;
-  for (size_t row = 0; row < pushes->contact_count; row++) {
-    size_t contact = pushes->member[row];
-    bool presses = forces->force[row] * pushes->delassus[row * pushes->count + row] > none;
+  const struct ContactImpulses *impulses = &forces->impulses;
+  for (size_t row = 0; row < impulses->contact_count; row++) {
+    size_t contact = impulses->member[row];
+    bool presses = forces->force[row] * impulses->delassus[row * impulses->count + row] > none;
     bool stays = contact_is_closed(resolution, contact) && forces->behind[row] <= none;
     set_contact(resolution, contact, presses || stays);
     resolution->was_opened[contact] = presses || stays ? 0.0 : 1.0;
@@ -136,19 +136,19 @@ static void set_contacts(struct PlaneForces *forces, double none) {
 
 static void set_planes(struct PlaneForces *forces, double none) {
   struct Resolution *resolution = forces->resolution;
-  const struct Pushes *pushes = &forces->pushes;
-  for (size_t row = pushes->contact_count; row < pushes->count; row++) {
-    size_t plane = plane_of(resolution->switches, pushes->member[row]);
+  const struct ContactImpulses *impulses = &forces->impulses;
+  for (size_t row = impulses->contact_count; row < impulses->count; row++) {
+    size_t plane = plane_of(resolution->switches, impulses->member[row]);
     if (plane == resolution->switches->plane_count) continue;
     struct PlaneState state = plane_state(resolution, plane);
     bool is_pressed = false;
-    for (size_t i = 0; i < pushes->contact_count; i++)
-      is_pressed |= rests_on(resolution->switches, state.metadata->along, pushes->member[i]) &&
-                    contact_is_closed(resolution, pushes->member[i]);
+    for (size_t i = 0; i < impulses->contact_count; i++)
+      is_pressed |= rests_on(resolution->switches, state.metadata->along, impulses->member[i]) &&
+                    contact_is_closed(resolution, impulses->member[i]);
     if (!is_pressed) plane_free(resolution, &state);
     else if (slides(forces, row)) plane_slide(resolution, &state);
     else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
-      plane_head(resolution, &state, &forces->behind[row]);
+      plane_slip(resolution, &state, &forces->behind[row]);
     else plane_stick(resolution, &state);
     row++; /* the friction across has the same mode */
   }
@@ -156,10 +156,10 @@ static void set_planes(struct PlaneForces *forces, double none) {
 
 static bool find_plane_forces(struct PlaneForces *forces) {
   struct Resolution *resolution = forces->resolution;
-  size_t n = forces->pushes.count;
+  size_t n = forces->impulses.count;
   double *block = scratch_take(resolution->instance, SCRATCH_FORCES, 3 * n * sizeof *block);
   if (block == NULL) {
-    solver_lacks_memory(resolution->instance);
+    solver_is_out_of_memory(resolution->instance);
     return false;
   }
   forces->rate = block;
@@ -167,8 +167,8 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   forces->behind = block + 2 * n;
   fill_rates_of_planes(forces);
   join_sliding(forces);
-  forces->pushes.rounding = 0.0; /* its unit is that of velocities, not of accelerations */
-  bool is_done = cone_impulses_find(resolution, &forces->pushes, forces->rate, forces->force);
+  forces->impulses.rounding = 0.0; /* its unit is that of velocities, not of accelerations */
+  bool is_done = cone_impulses_find(resolution, &forces->impulses, forces->rate, forces->force);
   if (is_done) {
     double none = least_force_share * fill_behind(forces);
     set_contacts(forces, none);
@@ -181,9 +181,9 @@ static bool find_plane_forces(struct PlaneForces *forces) {
 bool plane_forces_resolve(struct Resolution *resolution) {
   struct PlaneForces forces = {.resolution = resolution};
   if (!stop_slow(resolution)) return false;
-  choose_pushes(resolution);
+  choose_impulses(resolution);
   if (!find_free(&forces)) return false;
   bool is_done = find_plane_forces(&forces);
-  pushes_free(resolution, &forces.pushes);
+  contact_impulses_free(resolution, &forces.impulses);
   return is_done;
 }

@@ -24,8 +24,8 @@
 /* Switches of one friction after which all forces at rest are solved for at once. */
 enum { TOGETHER_LIMIT = 20 };
 
-static const char *refuse_directions(const struct Resolution *resolution) {
-  frictions_blame(resolution, "directions");
+static const char *reject_directions(const struct Resolution *resolution) {
+  frictions_report_missing(resolution, "directions");
   return "the slip directions of frictions in a plane cannot be found";
 }
 
@@ -34,17 +34,17 @@ static bool is_stopping(const struct Resolution *resolution, const struct PlaneS
   bool has_slowed = state->has_slowed && state->is_first;
   if (state->mode == PLANE_STICKS || !plane_is_slow(resolution, state)) return false;
   if (resolution->occasion == AT_START && state->is_first) return true;
-  if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_turned_back;
-  return state->mode == PLANE_HEADS && (state->ahead <= -state->lower || has_slowed);
+  if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_reversed;
+  return state->mode == PLANE_SLIPS && (state->ahead <= -state->lower || has_slowed);
 }
 
 /* True if a sliding friction needs other bounds on its speed, or another slip direction. */
 static bool is_sliding_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
-  double rising = state->mode == PLANE_HEADS ? state->aside : state->speed;
+  double rising = state->mode == PLANE_SLIPS ? state->aside : state->speed;
   if (resolution->occasion == AT_START && state->is_first) return true;
   if (state->upper > 0.0 && (rising >= state->upper || (state->has_sped && state->is_first))) return true;
   if (state->has_slowed && state->is_first) return true;
-  if (state->mode == PLANE_HEADS) return state->ahead <= -state->lower;
+  if (state->mode == PLANE_SLIPS) return state->ahead <= -state->lower;
   return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
 }
 
@@ -61,7 +61,7 @@ static bool is_overcome(const struct Resolution *resolution, const struct PlaneS
 static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
   if (!(state->speed > state->small || is_overcome(resolution, state))) return false;
   if (plane_moves(state)) plane_slide(resolution, state);
-  else plane_head(resolution, state, state->force);
+  else plane_slip(resolution, state, state->force);
   plane_count_switch(resolution, state);
   return true;
 }
@@ -80,7 +80,7 @@ static bool follow_given(struct Resolution *resolution, const struct PlaneState 
   if (state->mode == PLANE_STICKS) {
     if (!departs(resolution, state)) return false;
     if (plane_moves(state)) plane_slide(resolution, state);
-    else plane_head(resolution, state, state->rate);
+    else plane_slip(resolution, state, state->rate);
   } else {
     if (!is_stopping(resolution, state) && !is_sliding_otherwise(resolution, state)) return false;
     if (plane_moves(state)) plane_slide(resolution, state);
@@ -121,15 +121,15 @@ static bool resolve_together(struct Resolution *resolution) {
  * Finds the slip directions of frictions that begin to slide; sets *again if any turns, or sticks because it
  * accelerates along none. Returns NULL, or the reason why the motion cannot go on.
  */
-static const char *act_on_headings(struct Resolution *resolution, bool *again) {
-  bool heads = false;
+static const char *act_on_slips(struct Resolution *resolution, bool *again) {
+  bool slips = false;
   size_t stays = resolution->switches->plane_count;
   for (size_t i = 0; i < resolution->switches->plane_count; i++)
-    heads |= plane_state(resolution, i).mode == PLANE_HEADS;
-  if (!heads) return NULL;
-  if (!plane_headings_find(resolution, again, &stays)) {
+    slips |= plane_state(resolution, i).mode == PLANE_SLIPS;
+  if (!slips) return NULL;
+  if (!plane_slip_directions_find(resolution, again, &stays)) {
     *again = true;
-    return resolve_together(resolution) ? NULL : refuse_directions(resolution);
+    return resolve_together(resolution) ? NULL : reject_directions(resolution);
   }
   if (stays == resolution->switches->plane_count) return NULL;
   *again = true;
@@ -173,9 +173,9 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   if (*again) return NULL;
   if (stops) {
     *again = true;
-    return planes_stop(resolution) || resolve_together(resolution) ? NULL : refuse_directions(resolution);
+    return planes_stop(resolution) || resolve_together(resolution) ? NULL : reject_directions(resolution);
   }
-  return act_on_headings(resolution, again);
+  return act_on_slips(resolution, again);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
@@ -184,17 +184,18 @@ static const char *act(struct Resolution *resolution, bool *again) {
   if (problem == NULL && !*again && goes_round && resolve_together(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
-  if (problem == NULL && flipping < resolution->switches->friction_count) return frictions_refuse(resolution, flipping);
+  if (problem == NULL && flipping < resolution->switches->friction_count)
+    return frictions_report_inconsistent(resolution, flipping);
   return problem;
 }
 
 static void set_plane(struct Resolution *resolution, size_t plane, bool slides) {
   struct PlaneState state = plane_state(resolution, plane);
-  const double heading[] = {mode_of(resolution, state.metadata->heading[0]),
-                            mode_of(resolution, state.metadata->heading[1])};
+  const double slip_direction[] = {mode_of(resolution, state.metadata->slip_direction[0]),
+                                   mode_of(resolution, state.metadata->slip_direction[1])};
   if (!slides) plane_stick(resolution, &state);
   else if (plane_moves(&state)) plane_slide(resolution, &state);
-  else plane_head(resolution, &state, heading);
+  else plane_slip(resolution, &state, slip_direction);
 }
 
 /* Before the start they move freely or slide, with the direction along: there is no slip direction yet. */
@@ -206,8 +207,8 @@ static void guess(struct Instance *instance) {
   for (size_t i = 0; i < switches->plane_count; i++) {
     const struct PlaneState state = {.metadata = &switches->planes[i]};
     plane_free(&resolution, &state);
-    parameter[state.metadata->heading[0]] = 1.0;
-    parameter[state.metadata->heading[1]] = 0.0;
+    parameter[state.metadata->slip_direction[0]] = 1.0;
+    parameter[state.metadata->slip_direction[1]] = 0.0;
   }
   size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   memset(resolution.acceleration, 0, rows * sizeof *resolution.acceleration);
@@ -221,7 +222,7 @@ static void guess(struct Instance *instance) {
 
 const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .report = frictions_report,
-                                                 .blame = frictions_blame,
+                                                 .report_missing = frictions_report_missing,
                                                  .check = frictions_check,
                                                  .release = frictions_release,
                                                  .resolve_jam = jams_resolve,

@@ -36,7 +36,7 @@ struct PlaneLoads {
 
 static bool carries(const struct PlaneLoads *loads, size_t plane) {
   struct PlaneState state = plane_state(loads->resolution, plane);
-  bool is_slow = state.mode == PLANE_HEADS && !state.is_free && !plane_moves(&state);
+  bool is_slow = state.mode == PLANE_SLIPS && !state.is_free && !plane_moves(&state);
   bool rests = state.mode == PLANE_STICKS || (is_slow && plane_has_part(loads->resolution, &state));
   return rests && !state.is_given && state.stiction > 0.0 && state.sliding > 0.0;
 }
@@ -113,7 +113,7 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
     if (loads->member[i] == 0.0) continue;
     struct PlaneState state = plane_state(loads->resolution, i);
     const double *share = load->share + 2 * next, force[] = {share[0] * state.stiction, share[1] * state.stiction};
-    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_head(loads->resolution, &state, force);
+    if (slides && shared_load_size(load, next) > 1.0 - share_at_limit) plane_slip(loads->resolution, &state, force);
     else plane_carry(loads->resolution, &state, force);
     next++;
   }
@@ -128,16 +128,16 @@ static bool let_weak_push(const struct PlaneLoads *loads) {
   double most = 0.0;
   for (size_t i = 0; i < resolution->switches->plane_count; i++)
     if (loads->member[i] != 0.0) most = fmax(most, plane_state(resolution, i).stiction);
-  bool is_told = true;
-  for (size_t i = 0; i < resolution->switches->plane_count && is_told; i++) {
+  bool is_determined = true;
+  for (size_t i = 0; i < resolution->switches->plane_count && is_determined; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool is_constrained = false, is_weak = state.stiction < weak_share * most && plane_has_part(resolution, &state);
     if (loads->member[i] == 0.0 || !is_weak) continue;
     plane_push(resolution, &state);
-    is_told = frictions_find_constrained(resolution, state.metadata->along, &is_constrained);
+    is_determined = frictions_find_constrained(resolution, state.metadata->along, &is_constrained);
     if (!is_constrained) plane_hold(resolution, &state);
   }
-  return is_told;
+  return is_determined;
 }
 
 /* Distributes the load of the planes that take part. False if that is impossible. */
@@ -145,7 +145,7 @@ static bool share_load(const struct PlaneLoads *loads) {
   struct Instance *instance = loads->resolution->instance;
   void *block = scratch_take(instance, SCRATCH_SHARES, shared_load_bytes(loads->n, loads->count));
   if (block == NULL) {
-    solver_lacks_memory(instance);
+    solver_is_out_of_memory(instance);
     return false;
   }
   struct SharedLoad load = shared_load_in(block, loads->n, loads->count);
@@ -167,7 +167,7 @@ bool plane_loads_share(struct Resolution *resolution, size_t plane) {
   loads.jacobian_row = scratch_take(resolution->instance, SCRATCH_JACOBIAN_ROWS,
                                     (jacobian_rows + buffer + switches->plane_count) * sizeof *loads.jacobian_row);
   if (loads.jacobian_row == NULL) {
-    solver_lacks_memory(resolution->instance);
+    solver_is_out_of_memory(resolution->instance);
     return false;
   }
   loads.buffer = loads.jacobian_row + jacobian_rows;

@@ -9,6 +9,6 @@
  * if one did not. *stays: a friction that accelerates along no direction, and must stick; plane_count for none.
  * False if accelerations do not exist, or the directions do not converge.
  */
-bool plane_headings_find(struct Resolution *resolution, bool *changed, size_t *stays);
+bool plane_slip_directions_find(struct Resolution *resolution, bool *changed, size_t *stays);
 
 #endif

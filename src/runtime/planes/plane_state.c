@@ -17,10 +17,10 @@ static const double slower_share = 0.1;
 static const double least_part = 1e-9;
 
 /*
- * Values of the mode upper. never: no velocity reaches it. turned_aside: the mode may change as the velocity turns by
+ * Values of the mode upper. never: no velocity reaches it. has_deviated: the mode may change as the velocity turns by
  * 90 degrees from the slip direction at which it began, so that an importer that steps over rest does not miss it.
  */
-static const double never = -1e300, turned_aside = -1e-300;
+static const double never = -1e300, has_deviated = -1e-300;
 /*
  * Slope: a velocity that has turned back at less than this slope to the slip direction, without an impact, has passed
  * rest.
@@ -48,21 +48,21 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
     state.sliding = resolution->value[slot + FRICTION_FORCE];
     size_t constraint = switches->frictions[metadata->along + i].constraint;
     state.force[i] = resolution->acceleration[lagrangian.coordinate_count + constraint] +
-                     mode_of(resolution, metadata->heading[i]) * state.sliding;
+                     mode_of(resolution, metadata->slip_direction[i]) * state.sliding;
   }
-  double c = mode_of(resolution, metadata->heading[0]), s = mode_of(resolution, metadata->heading[1]);
+  double c = mode_of(resolution, metadata->slip_direction[0]), s = mode_of(resolution, metadata->slip_direction[1]);
   state.ahead = c * state.velocity[0] + s * state.velocity[1];
   state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
   state.needed = hypot(state.force[0], state.force[1]);
   state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || state.sliding != 0.0;
-  state.is_free = state.mode == PLANE_HEADS && state.upper < 0.0;
+  state.is_free = state.mode == PLANE_SLIPS && state.upper < 0.0;
   double unit = tolerance_of(resolution->instance) * resolution->value[plane_slot(switches, plane)];
   state.small = small_share * unit;
   state.none = no_share * unit;
   state.has_slowed = is_hit(resolution, friction_indicator(switches, metadata->along));
   state.has_sped = is_hit(resolution, friction_indicator(switches, metadata->along + 1));
-  bool may_have_turned = state.mode == PLANE_SLIDES && state.upper == turned_aside && !resolution->jumped;
-  state.has_turned_back = may_have_turned && state.aside < -slope_back * state.ahead;
+  bool may_have_reversed = state.mode == PLANE_SLIDES && state.upper == has_deviated && !resolution->jumped;
+  state.has_reversed = may_have_reversed && state.aside < -slope_back * state.ahead;
   state.is_given = switches->frictions[metadata->along].is_given;
   state.is_first = resolution->flips[friction_indicator(switches, metadata->along)] == 0.0;
   return state;
@@ -71,7 +71,7 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
 /* At the start the velocities are given, and a sliding friction is not brought to rest. */
 bool plane_is_slow(const struct Resolution *resolution, const struct PlaneState *state) {
   if (resolution->occasion == AT_START) return state->speed <= state->none;
-  return state->speed <= slow_share * state->small || state->has_turned_back;
+  return state->speed <= slow_share * state->small || state->has_reversed;
 }
 
 bool plane_evaluate(struct Resolution *resolution) {
@@ -98,7 +98,7 @@ void plane_carry(struct Resolution *resolution, const struct PlaneState *state, 
   plane_hold(resolution, state);
   for (int i = 0; i < 2; i++) {
     double share = force[i] != 0.0 ? force[i] / state->sliding : 0.0;
-    resolution_set_mode(resolution, state->metadata->heading[i], share);
+    resolution_set_mode(resolution, state->metadata->slip_direction[i], share);
   }
 }
 
@@ -108,39 +108,41 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state) 
 }
 
 void plane_push(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_HEADS, 3.0 * state->none, 3.0 * state->none);
+  set_plane_mode(resolution, state, PLANE_SLIPS, 3.0 * state->none, 3.0 * state->none);
 }
 
 bool plane_has_part(const struct Resolution *resolution, const struct PlaneState *state) {
-  double share =
-      hypot(mode_of(resolution, state->metadata->heading[0]), mode_of(resolution, state->metadata->heading[1]));
+  double share = hypot(mode_of(resolution, state->metadata->slip_direction[0]),
+                       mode_of(resolution, state->metadata->slip_direction[1]));
   return share < 1.0 - least_part;
 }
 
 /* Sets the slip direction. A direction of 0 keeps the present one, or selects the first axis if there is none. */
-static void set_heading(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]) {
+static void set_slip_direction(struct Resolution *resolution, const struct PlaneState *state,
+                               const double slip_direction[2]) {
   const double any[] = {1.0, 0.0};
-  const size_t *mode = state->metadata->heading;
-  double length = hypot(heading[0], heading[1]),
+  const size_t *mode = state->metadata->slip_direction;
+  double length = hypot(slip_direction[0], slip_direction[1]),
          kept = hypot(mode_of(resolution, mode[0]), mode_of(resolution, mode[1]));
   if (!(length > 0.0) && kept > 0.0) return;
-  for (int i = 0; i < 2; i++) resolution_set_mode(resolution, mode[i], length > 0.0 ? heading[i] / length : any[i]);
+  for (int i = 0; i < 2; i++)
+    resolution_set_mode(resolution, mode[i], length > 0.0 ? slip_direction[i] / length : any[i]);
 }
 
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state) {
   bool is_exchanged = resolution->instance->kind == KIND_MODEL_EXCHANGE;
   double slower = fmax(slower_share * state->speed, state->none);
-  set_heading(resolution, state, state->velocity);
+  set_slip_direction(resolution, state, state->velocity);
   if (state->speed > 2.0 * state->small)
-    set_plane_mode(resolution, state, PLANE_SLIDES, state->small, is_exchanged ? turned_aside : never);
+    set_plane_mode(resolution, state, PLANE_SLIDES, state->small, is_exchanged ? has_deviated : never);
   else set_plane_mode(resolution, state, PLANE_SLIDES, slower, 4.0 * state->small);
 }
 
 void plane_free(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_HEADS, -never, never);
+  set_plane_mode(resolution, state, PLANE_SLIPS, -never, never);
 }
 
-void plane_head(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]) {
-  set_heading(resolution, state, heading);
+void plane_slip(struct Resolution *resolution, const struct PlaneState *state, const double slip_direction[2]) {
+  set_slip_direction(resolution, state, slip_direction);
   plane_push(resolution, state);
 }

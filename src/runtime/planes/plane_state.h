@@ -5,10 +5,10 @@
 #include "contacts/planes.h"
 
 /*
- * Modes of a friction in a plane. PLANE_HEADS: its force is along a fixed direction, as at the onset of slip, or it
+ * Modes of a friction in a plane. PLANE_SLIPS: its force is along a fixed direction, as at the onset of slip, or it
  * slides freely, without force. PLANE_SLIDES: its force is against the velocity.
  */
-enum PlaneMode { PLANE_HEADS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
+enum PlaneMode { PLANE_SLIPS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
 
 /*
  * A friction in a plane with its values at the present modes. It is computed from struct Resolution, and changes
@@ -19,7 +19,7 @@ struct PlaneState {
   int mode;
   double speed, stiction, sliding;  /* speed; largest static and kinetic friction force */
   bool has_force;                   /* false: its contacts have no force, nothing sticks */
-  bool is_free;                     /* it slides without force: PLANE_HEADS with upper < 0 */
+  bool is_free;                     /* it slides without force: PLANE_SLIPS with upper < 0 */
   double velocity[2], ahead, aside; /* along and across; components along the slip direction, and aside */
   double rate[2];                   /* rates of the velocities along and across */
   double force[2], needed;          /* force that it carries if it sticks, and its size */
@@ -29,11 +29,11 @@ struct PlaneState {
    * rest at once if it can stick; the error is of the second order in the speed.
    */
   double small, none;
-  bool has_slowed;      /* the zero of its first indicator was located: lower speed, or stiction */
-  bool has_sped;        /* the zero of its second indicator was located: upper speed */
-  bool has_turned_back; /* it passed rest within a step of an importer */
-  bool is_given;        /* its motion is prescribed: it never sticks, but rests without force */
-  bool is_first;        /* it has not switched in this event resolution */
+  bool has_slowed;   /* the zero of its first indicator was located: lower speed, or stiction */
+  bool has_sped;     /* the zero of its second indicator was located: upper speed */
+  bool has_reversed; /* it passed rest within a step of an importer */
+  bool is_given;     /* its motion is prescribed: it never sticks, but rests without force */
+  bool is_first;     /* it has not switched in this event resolution */
 };
 
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane);
@@ -81,6 +81,6 @@ void plane_free(struct Resolution *resolution, const struct PlaneState *state);
  * Lets the friction slide from rest along a direction, of any length, until the velocity leaves this direction. A
  * direction of 0 keeps the last one.
  */
-void plane_head(struct Resolution *resolution, const struct PlaneState *state, const double heading[2]);
+void plane_slip(struct Resolution *resolution, const struct PlaneState *state, const double slip_direction[2]);
 
 #endif

@@ -33,7 +33,7 @@ static void try_all(struct Resolution *resolution) {
 }
 
 /* True if the velocity of the friction changes although it sticks. */
-static bool goes_on(const struct Resolution *resolution, const struct PlaneState *state) {
+static bool continues(const struct Resolution *resolution, const struct PlaneState *state) {
   double largest = 0.0;
   for (size_t i = 0; i < 2; i++) {
     size_t slot = friction_slot(resolution->switches, state->metadata->along + i, FRICTION_RATE);
@@ -50,7 +50,7 @@ static size_t find_overcome(const struct Resolution *resolution) {
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool takes_part = resolution->takes_part[switches->contact_count + state.metadata->along] != 0.0;
-    double beyond = goes_on(resolution, &state) ? INFINITY : state.needed - state.stiction;
+    double beyond = continues(resolution, &state) ? INFINITY : state.needed - state.stiction;
     if (!takes_part || state.mode != PLANE_STICKS || !(beyond > most)) continue;
     most = beyond;
     found = i;
@@ -61,17 +61,17 @@ static size_t find_overcome(const struct Resolution *resolution) {
 /* True if other frictions take the load beyond its stiction. */
 static bool shares_load(struct Resolution *resolution, size_t plane) {
   struct PlaneState state = plane_state(resolution, plane);
-  return !goes_on(resolution, &state) && plane_loads_share(resolution, plane);
+  return !continues(resolution, &state) && plane_loads_share(resolution, plane);
 }
 
 /* Lets the friction continue to slide, or slip in a new direction from rest. */
 static void let_plane_slide(struct Resolution *resolution, size_t plane) {
   struct PlaneState state = plane_state(resolution, plane);
-  bool passes = goes_on(resolution, &state);
+  bool passes = continues(resolution, &state);
   if (passes || state.needed > hopeless * state.stiction)
     resolution->takes_part[resolution->switches->contact_count + state.metadata->along] = has_no_hold;
   if (plane_moves(&state)) plane_slide(resolution, &state);
-  else plane_head(resolution, &state, passes ? state.rate : state.force);
+  else plane_slip(resolution, &state, passes ? state.rate : state.force);
 }
 
 /* Projects to 0 the velocities of frictions that stick, or slip from rest. False if that fails. */
@@ -82,7 +82,7 @@ static bool bring_to_rest(struct Resolution *resolution) {
   for (size_t i = 0; i < switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool can_rest = resolution->takes_part[switches->contact_count + state.metadata->along] != has_no_hold;
-    bool begins = state.mode == PLANE_HEADS && !state.is_free && !state.is_given && !plane_moves(&state) && can_rest;
+    bool begins = state.mode == PLANE_SLIPS && !state.is_free && !state.is_given && !plane_moves(&state) && can_rest;
     if (begins) plane_stick(resolution, &state);
     moves |= (begins || (state.mode == PLANE_STICKS && !state.is_given)) && state.speed > 0.0;
   }

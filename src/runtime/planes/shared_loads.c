@@ -38,7 +38,7 @@ static const double part_of_level = 0.25;
 struct Centre {
   struct SharedLoad *load;
   size_t n, free_count;     /* number of forces, and of columns of N */
-  double *balance;          /* N, by rows */
+  double *response;         /* N, by rows */
   double *slope, *curve;    /* gradient and Hessian of the barrier by y */
   double *step, *order;     /* order: of the forces, after column exchanges */
   double level, largest;    /* level of the barrier, and the largest |f_i| */
@@ -85,12 +85,12 @@ static size_t eliminate_jacobian_rows(const struct Centre *centre) {
   return rank;
 }
 
-static void fill_balance(struct Centre *centre) {
+static void fill_null_vector(struct Centre *centre) {
   size_t n = centre->n, rank = eliminate_jacobian_rows(centre), count = n - rank;
   centre->free_count = count;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < count; j++) {
-      double *element = &centre->balance[(size_t)centre->order[i] * count + j];
+      double *element = &centre->response[(size_t)centre->order[i] * count + j];
       if (i < rank) *element = -centre->load->jacobian_row[i * n + rank + j];
       else *element = i - rank == j ? 1.0 : 0.0;
     }
@@ -105,7 +105,7 @@ static double largest_share(const struct SharedLoad *load) {
 /* Adds a plane's terms to gradient and Hessian. room: level^2 - |f_i|^2; along: half the gradient of |f_i|^2 by y. */
 static void add_plane(struct Centre *centre, size_t plane, double room, double *along) {
   size_t count = centre->free_count;
-  const double *share = centre->load->share + 2 * plane, *row = centre->balance + 2 * plane * count;
+  const double *share = centre->load->share + 2 * plane, *row = centre->response + 2 * plane * count;
   for (size_t j = 0; j < count; j++) {
     along[j] = share[0] * row[j] + share[1] * row[count + j];
     centre->slope[j] += 2.0 * along[j] / room;
@@ -158,7 +158,7 @@ static void come_nearer(struct Centre *centre) {
   double part = centre->distance < 0.25 ? 1.0 : 1.0 / (1.0 + centre->distance);
   for (size_t i = 0; i < centre->n; i++)
     for (size_t j = 0; j < count; j++)
-      centre->load->share[i] += part * centre->balance[i * count + j] * centre->step[j];
+      centre->load->share[i] += part * centre->response[i * count + j] * centre->step[j];
   centre->largest = largest_share(centre->load);
   /* Off the centre the mean errs by at most the decrement times the width of the feasible set, in the local norm. */
   double pieces = 2.0 * (double)centre->load->count;
@@ -178,12 +178,12 @@ static bool has_ended(struct Centre *centre) {
 
 enum LoadSharing shared_load_carry(struct SharedLoad *load) {
   size_t n = 2 * load->count;
-  struct Centre centre = {.load = load, .n = n, .balance = load->work};
-  centre.curve = centre.balance + n * n;
+  struct Centre centre = {.load = load, .n = n, .response = load->work};
+  centre.curve = centre.response + n * n;
   centre.slope = centre.curve + n * n;
   centre.step = centre.slope + n;
   centre.order = centre.step + n;
-  fill_balance(&centre);
+  fill_null_vector(&centre);
   centre.largest = largest_share(load);
   if (centre.free_count == 0) return LOAD_OVERCOMES;
   centre.level = fmax(2.0 * centre.largest, 1.0);

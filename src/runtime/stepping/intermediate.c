@@ -76,7 +76,7 @@ void intermediate_request_inputs(struct Instance *instance, const struct Communi
   for (size_t i = 0; i < INPUT_ORDER * n; i++) {
     if (instance->input_derivatives[i] != 0.0) fmu_state->input_derivatives_set = 1;
     if (isfinite(instance->input_derivatives[i])) continue;
-    refuse_call(instance, "an input changes too fast within the step from time %g; expected smaller values",
+    reject_call(instance, "an input changes too fast within the step from time %g; expected smaller values",
                 step->start);
     return;
   }

@@ -217,6 +217,6 @@ enum Status reading_follow_start(struct Instance *instance, const struct Seed *s
   bool is_found = has_memory && find_along(instance, seed, state, kept, &slope);
   if (slope.along != NULL) instance->memory.free(slope.along);
   if (kept != NULL) instance->memory.free(kept);
-  if (!has_memory) return refuse_call(instance, "out of memory for the derivatives");
+  if (!has_memory) return reject_call(instance, "out of memory for the derivatives");
   return is_found ? STATUS_DONE : discard_kink(instance, &slope);
 }

@@ -27,8 +27,8 @@ enum Status start_find(struct Instance *instance) {
   if (is_ready && has_accelerations(instance)) return STATUS_DONE;
   log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
   const char *state = is_ready ? evaluate_rate_without_value(instance) : NULL;
-  if (state != NULL) return refuse_call(instance, "the rate of '%s' cannot be computed at the start values", state);
-  return refuse_call(instance, "the accelerations cannot be computed at the start values");
+  if (state != NULL) return reject_call(instance, "the rate of '%s' cannot be computed at the start values", state);
+  return reject_call(instance, "the accelerations cannot be computed at the start values");
 }
 
 bool start_step(struct Instance *instance) {

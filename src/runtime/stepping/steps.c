@@ -45,10 +45,10 @@ static enum StepResult make_ready(struct Instance *instance, const struct Commun
   const struct Solver *solver = lagrangian.solver;
   struct FmuState *fmu_state = instance->fmu_state;
   if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
-  bool goes_on = !solver->starts_anew && fmu_state->changed == CHANGED_NOTHING &&
-                 step->start >= fmu_state->last_step.start && step->start <= fmu_state->last_step.end &&
-                 (!instance->solver_is_stale || solver->resume != NULL);
-  if (!goes_on) {
+  bool continues = !solver->starts_anew && fmu_state->changed == CHANGED_NOTHING &&
+                   step->start >= fmu_state->last_step.start && step->start <= fmu_state->last_step.end &&
+                   (!instance->solver_is_stale || solver->resume != NULL);
+  if (!continues) {
     fmu_state_begin(fmu_state, step->start);
     /* State or parameters may have been set, unless an event has made all consistent. */
     bool is_resolved = fmu_state->changed == CHANGED_BY_EVENT;
@@ -75,7 +75,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 struct Course {
   struct EventProgress progress;
   int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
-  bool is_told;                    /* the warning was logged */
+  bool is_reported;                /* the warning was logged */
   int resting;                     /* consecutive solver steps too short to change the time */
   bool ends_at_event;              /* the motion cannot go on after an event */
 };
@@ -106,8 +106,8 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
     lagrangian.event_laws->explain(instance, step, &course->progress);
   if (problem != NULL) return problem;
   bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
-  if (is_slow && !course->is_told) warn_of_slowness(instance, step, work);
-  course->is_told |= is_slow;
+  if (is_slow && !course->is_reported) warn_of_slowness(instance, step, work);
+  course->is_reported |= is_slow;
   return NULL;
 }
 
@@ -118,7 +118,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
   struct CommunicationStep near = *step;
-  if (course->progress.reach > 0.0) near.end = fmin(step->end, last->end + course->progress.reach);
+  if (course->progress.step_limit > 0.0) near.end = fmin(step->end, last->end + course->progress.step_limit);
   problem = lagrangian.solver->advance(instance, &near);
   const char *barrier = problem;
   if (barrier != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, barrier, &course->progress);
@@ -144,9 +144,9 @@ static void notify_observer(struct Instance *instance, struct CommunicationStep 
  * Makes steps until one reaches the end. Returns NULL, or the reason for a failure. *reached: the time up to which the
  * motion is known; it is not known beyond an event that cannot be resolved.
  */
-static const char *reach(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
-                         double *reached) {
-  struct Course course = {.progress = {.searched = step->start, .gathered = instance->fmu_state->gathered}};
+static const char *make_steps(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
+                              double *reached) {
+  struct Course course = {.progress = {.searched = step->start, .close_events = instance->fmu_state->close_events}};
   memcpy(course.before, instance->fmu_state->statistics, sizeof course.before);
   for (;;) {
     const char *problem = pass_events(instance, step, &course);
@@ -189,14 +189,15 @@ static void log_stop(const struct Instance *instance, const struct Communication
 static enum StepResult stop(struct Instance *instance, const struct CommunicationStep *step, const char *reason,
                             bool ends_at_event, double reached) {
   const struct EventLaws *laws = lagrangian.event_laws;
-  size_t unkept = instance->unkept;
+  size_t violated_constraint = instance->violated_constraint;
   if (!solver_take_state(instance, reached)) return STEP_FAILED;
   /* If the constraints fail, the state stays that of the solver. */
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
   bool is_explained = ends_at_event || (laws != NULL && laws->explain_stop(instance, reached));
-  if (!is_explained && unkept > 0) log_unkept(instance, STATUS_DISCARD, reached, unkept - 1);
+  if (!is_explained && violated_constraint > 0)
+    log_violated(instance, STATUS_DISCARD, reached, violated_constraint - 1);
   if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
   log_stop(instance, step, reason, ends_at_event, reached);
   instance->fmu_state->changed = CHANGED_VALUES;
@@ -214,7 +215,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   }
   bool ends_at_event = false;
   const char *law = NULL; /* the law violated at the end */
-  const char *problem = reach(instance, step, &ends_at_event, reached);
+  const char *problem = make_steps(instance, step, &ends_at_event, reached);
   if (problem == NULL && solver_take_state(instance, step->end)) {
     problem = solver_project(instance, step->end, instance->state);
     if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
@@ -249,7 +250,7 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
   if (solver == NULL || solver->run == NULL) return advance_to_end(instance, step, reached);
   struct Advance task = {.instance = instance, .step = step, .reached = reached};
   if (solver->run(instance, do_advance, &task)) return task.result;
-  solver_lacks_memory(instance);
+  solver_is_out_of_memory(instance);
   return STEP_FAILED;
 }
 
@@ -265,21 +266,21 @@ static double rounding_of_sum(const struct FmuState *fmu_state, double end, doub
 /* Checks the arguments of a communication step; logs an error. */
 static enum Status check_step(struct Instance *instance, double time, double size) {
   const struct FmuState *fmu_state = instance->fmu_state;
-  if (!isfinite(time)) return refuse_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
+  if (!isfinite(time)) return reject_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
   if (!isfinite(size) || size <= 0.0)
-    return refuse_call(instance, "step %g at time %g; expected a finite step larger than 0", size, time);
+    return reject_call(instance, "step %g at time %g; expected a finite step larger than 0", size, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
   if (fabs(time - fmu_state->time) > rounding)
-    return refuse_call(instance, "currentCommunicationPoint is %.15g; expected %.15g, where the instance is", time,
+    return reject_call(instance, "currentCommunicationPoint is %.15g; expected %.15g, where the instance is", time,
                        fmu_state->time);
   if (time + size <= time)
-    return refuse_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
+    return reject_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
   if (!isfinite(time + size))
-    return refuse_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
+    return reject_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
                        time);
   double allowed = fmax(rounding, rounding_of_sum(fmu_state, time + size, size));
   if (fmu_state->stop_time_defined && time + size - fmu_state->stop_time > allowed)
-    return refuse_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
+    return reject_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,
                        fmu_state->stop_time);
   return STATUS_DONE;
 }
@@ -296,7 +297,7 @@ enum Status communication_step(struct Instance *instance, double time, double si
   struct FmuState *fmu_state = instance->fmu_state;
   if (check_step(instance, time, size) != STATUS_DONE) return STATUS_ERROR;
   if (evaluate_prepare(instance) != STATUS_DONE)
-    return refuse_call(instance, "the accelerations cannot be computed with these parameters at time %g", time);
+    return reject_call(instance, "the accelerations cannot be computed with these parameters at time %g", time);
   fmu_state->time = time;
   if (!fmu_state->input_derivatives_set)
     memset(instance->input_derivatives, 0, INPUT_ORDER * lagrangian.input_count * sizeof(double));
@@ -304,10 +305,10 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (instance->request_inputs != NULL) instance->request_inputs(instance, &step);
   if (fmu_state->phase == PHASE_ERROR) return STATUS_ERROR;
   prescribed_inputs_begin_step(instance);
-  instance->unkept = 0;
+  instance->violated_constraint = 0;
   double reached;
   enum StepResult result = run(instance, &step, &reached);
-  if (result == STEP_FAILED) return refuse_call(instance, "the step from time %g failed", time);
+  if (result == STEP_FAILED) return reject_call(instance, "the step from time %g failed", time);
   evaluate_advance_inputs(instance, reached);
   fmu_state->input_derivatives_set = 0;
   fmu_state->time = reached;

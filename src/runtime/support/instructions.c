@@ -48,8 +48,8 @@ static void solve(const struct Frame *frame, size_t number) {
   const struct BlockTable *block = &frame->tables->blocks[number];
   Real *mass = frame->base[SPACE_MASS] + block->first_mass,
        *right_side = frame->base[SPACE_RIGHT_SIDE] + block->first_right_side;
-  if (block->solve_obliquely != NULL)
-    block->solve_obliquely(block->count, block->start, block->column, block->coordinate, mass, right_side);
+  if (block->solve_nonsymmetric != NULL)
+    block->solve_nonsymmetric(block->count, block->start, block->column, block->coordinate, mass, right_side);
   else if (block->solve != NULL) block->solve(block->count, block->start, block->column, mass, right_side);
   else ldlt_solve(block->count, block->start, block->column, mass, right_side);
 }

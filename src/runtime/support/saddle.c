@@ -70,22 +70,22 @@ static Condition has_row(const size_t *start, const Real *m, size_t i) {
 }
 
 /* Returns the offset of null-space vector c, which follows the workspace. */
-static size_t slot_of_balance(size_t n, const size_t *start, size_t c) {
+static size_t slot_of_null_vector(size_t n, const size_t *start, size_t c) {
   return 2 * start[n] + 1 + 2 * n + c * (c + 1) / 2;
 }
 
 /* Returns the component of c + 1 forces along a null-space vector, in units of the vector. */
-static Real share_along(size_t c, const Real *balance, const Real *force) {
+static Real share_along(size_t c, const Real *null_vector, const Real *force) {
   Real product = force[c];
-  for (size_t k = 0; k < c; k++) product += balance[k] * force[k];
-  return product * balance[c];
+  for (size_t k = 0; k < c; k++) product += null_vector[k] * force[k];
+  return product * null_vector[c];
 }
 
 /* Subtracts from the forces their part along a null-space vector. */
-static void take_along(size_t c, const Real *balance, Real *force) {
-  if (!ANYWHERE(balance[c] > 0.0)) return;
-  Real share = share_along(c, balance, force);
-  for (size_t k = 0; k < c; k++) force[k] -= share * balance[k];
+static void take_along(size_t c, const Real *null_vector, Real *force) {
+  if (!ANYWHERE(null_vector[c] > 0.0)) return;
+  Real share = share_along(c, null_vector, force);
+  for (size_t k = 0; k < c; k++) force[k] -= share * null_vector[k];
   force[c] -= share;
 }
 
@@ -94,24 +94,24 @@ static void take_along(size_t c, const Real *balance, Real *force) {
  * those before it because of rounding. It has an element for each constraint up to c. The element of c is 1 and is not
  * stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
  */
-static void balance_constraint(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
-                               size_t i, size_t c) {
-  Real *balance = m + slot_of_balance(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
+static void find_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
+                             size_t i, size_t c) {
+  Real *null_vector = m + slot_of_null_vector(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
   Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row(start, m, i));
-  balance[c] = REAL(0.0);
+  null_vector[c] = REAL(0.0);
   if (!ANYWHERE(follows)) return;
   combine(start, column, m, i, forces);
   for (size_t row = 0, k = 0; row < i; row++)
-    if (coordinate[row] < 0) balance[k++] = forces[row];
-  balance[c] = REAL(1.0);
-  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + slot_of_balance(n, start, j % c), balance);
-  for (size_t k = 0; k < c; k++) length += balance[k] * balance[k];
-  balance[c] = WHERE(follows, 1.0 / length, 0.0);
+    if (coordinate[row] < 0) null_vector[k++] = forces[row];
+  null_vector[c] = REAL(1.0);
+  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + slot_of_null_vector(n, start, j % c), null_vector);
+  for (size_t k = 0; k < c; k++) length += null_vector[k] * null_vector[k];
+  null_vector[c] = WHERE(follows, 1.0 / length, 0.0);
 }
 
-void saddle_balance(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
+void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   for (size_t i = 0, c = 0; i < n; i++)
-    if (coordinate[i] < 0) balance_constraint(n, start, column, coordinate, m, i, c++);
+    if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++);
 }
 
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
@@ -143,7 +143,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
     m[last] = saddle_pivot(hold, delassus, weakest);
   }
-  saddle_balance(n, start, column, coordinate, m);
+  saddle_null_vector(n, start, column, coordinate, m);
   return 0;
 }
 
@@ -165,7 +165,7 @@ static void shorten_forces(size_t n, const size_t *start, const int *coordinate,
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) force[count++] = x[i];
-  for (size_t c = 0; c < count; c++) take_along(c, m + slot_of_balance(n, start, c), force);
+  for (size_t c = 0; c < count; c++) take_along(c, m + slot_of_null_vector(n, start, c), force);
   for (size_t i = n; i-- > 0;)
     if (coordinate[i] < 0) x[i] = force[--count];
 }
@@ -185,11 +185,11 @@ static void carry_load(size_t n, const size_t *start, const size_t *column, cons
     if (coordinate[i] < 0) x[i] += missing[i];
 }
 
-static bool has_balances(size_t n, const size_t *start, const int *coordinate, const Real *m) {
+static bool has_null_vectors(size_t n, const size_t *start, const int *coordinate, const Real *m) {
   bool has = false;
   for (size_t i = 0, c = 0; i < n; i++) {
     if (coordinate[i] >= 0) continue;
-    has |= ANYWHERE(m[slot_of_balance(n, start, c) + c] > 0.0);
+    has |= ANYWHERE(m[slot_of_null_vector(n, start, c) + c] > 0.0);
     c++;
   }
   return has;
@@ -202,7 +202,7 @@ static bool has_balances(size_t n, const size_t *start, const int *coordinate, c
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x) {
   Real *given = x + 3 * n;
-  if (!has_balances(n, start, coordinate, m)) return;
+  if (!has_null_vectors(n, start, coordinate, m)) return;
   memcpy(given, x, n * sizeof *given);
   shorten_forces(n, start, coordinate, m, x);
   carry_load(n, start, column, coordinate, m, given, x);

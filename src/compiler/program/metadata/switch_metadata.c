@@ -54,11 +54,12 @@ static void add_planes(struct SwitchTable *metadata, const struct Program *progr
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionPlane *along = &switches->frictions[i].plane;
     if (along->axis != ALONG) continue;
-    planes[metadata->plane_count++] = (struct PlaneMetadata){
-        .along = i,
-        .heading = {mode_index(program, along->heading), mode_index(program, switches->frictions[i + 1].plane.heading)},
-        .lower = mode_index(program, along->lower),
-        .upper = mode_index(program, along->upper)};
+    planes[metadata->plane_count++] =
+        (struct PlaneMetadata){.along = i,
+                               .slip_direction = {mode_index(program, along->slip_direction),
+                                                  mode_index(program, switches->frictions[i + 1].plane.slip_direction)},
+                               .lower = mode_index(program, along->lower),
+                               .upper = mode_index(program, along->upper)};
   }
   metadata->planes = planes;
 }

@@ -87,10 +87,10 @@ static struct Friction *append_friction(struct Reader *reader, struct Friction f
 static void declare_plane(struct Reader *reader, struct Friction *along, struct Variable constraint) {
   const char *name = constraint.name;
   along->plane.axis = ALONG;
-  along->plane.heading = new_mode(reader, name, "heading");
+  along->plane.slip_direction = new_mode(reader, name, "heading");
   struct Friction across = *along;
   across.plane.axis = ACROSS;
-  across.plane.heading = new_mode(reader, name, "across.heading");
+  across.plane.slip_direction = new_mode(reader, name, "across.heading");
   along->plane.lower = across.plane.lower = new_mode(reader, name, "lower");
   along->plane.upper = across.plane.upper = new_mode(reader, name, "upper");
   constraint.name = format_text("%s.across", name);

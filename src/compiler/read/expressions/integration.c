@@ -101,7 +101,7 @@ static bool is_right_at(struct Sampling *sampling, const struct Rule *rule, size
  * grow by factors of 4, since an integrand that decays to 0 far away makes any rule look exact there; bisection then
  * refines.
  */
-static double reach_of(struct Sampling *sampling, const struct Rule *rule, size_t symbol, double direction) {
+static double range_towards(struct Sampling *sampling, const struct Rule *rule, size_t symbol, double direction) {
   double right = nearest, wrong = nearest;
   while (wrong < endless && is_right_at(sampling, rule, symbol, direction * wrong)) {
     right = wrong;
@@ -154,9 +154,9 @@ static void find_ranges(struct Sampling *sampling, const struct Rule *rule, stru
   bool *is_curved = mark_curved(graph, sampling->targets[0]);
   for (size_t i = 0; i < graph->symbol_count; i++) {
     if (!is_curved[graph->symbols[i].node] || !sampling_varies(&graph->symbols[i])) continue;
-    double forth = end_of(sampling, i, reach_of(sampling, rule, i, 1.0), 1.0);
+    double forth = end_of(sampling, i, range_towards(sampling, rule, i, 1.0), 1.0);
     double back =
-        graph->symbols[i].kind == TIME ? -INFINITY : end_of(sampling, i, reach_of(sampling, rule, i, -1.0), -1.0);
+        graph->symbols[i].kind == TIME ? -INFINITY : end_of(sampling, i, range_towards(sampling, rule, i, -1.0), -1.0);
     if (isinf(forth) && isinf(back)) continue;
     choice->ranges = make_room(choice->ranges, choice->range_count, sizeof *choice->ranges);
     choice->ranges[choice->range_count++] = (struct Range){i, fmin(back, forth), fmax(back, forth)};

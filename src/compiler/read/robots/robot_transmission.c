@@ -85,7 +85,8 @@ static void write_joint_force(const struct Writer *writer, const struct Joint *j
 
 /* Adds an actuator's force to the sum for a joint that limits it, see write_limited_forces(). */
 static void add_push(struct Joint *joint, char *actuator_limits) {
-  joint->pushes = joint->pushes == NULL ? actuator_limits : format_text("%s + %s", joint->pushes, actuator_limits);
+  joint->impulses =
+      joint->impulses == NULL ? actuator_limits : format_text("%s + %s", joint->impulses, actuator_limits);
 }
 
 void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
@@ -106,9 +107,9 @@ void write_term(const struct Writer *writer, const struct Transmission *transmis
 }
 
 void write_limited_forces(const struct Writer *writer, const struct Joint *joint) {
-  if (joint->pushes == NULL) return;
+  if (joint->impulses == NULL) return;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
-  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->pushes)));
+  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->impulses)));
 }
 
 /*

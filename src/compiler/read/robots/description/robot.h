@@ -63,7 +63,7 @@ struct Joint {
   bool has_motor;            /* has an input for its force or torque, in addition to the file's actuators */
   double effort;             /* largest force or torque of the motor; NAN for no limit */
   double actuator_limits[2]; /* limits of the sum of the file's actuators, along the coordinate; NAN for none */
-  char *pushes;        /* if there are such limits: the sum of actuator forces as an expression; NULL for none so far */
+  char *impulses;      /* if there are such limits: the sum of actuator forces as an expression; NULL for none so far */
   char *mimicked_name; /* position = multiplier*(that of this joint) + offset; NULL if it mimics none */
   double multiplier, offset;
   /* Results of robot_connect(): */

@@ -1,4 +1,4 @@
-#include "contacts/pushes.h"
+#include "contacts/contact_impulses.h"
 
 #include <float.h>
 #include <math.h>
@@ -62,8 +62,8 @@ double sliding_share(const struct Resolution *resolution, size_t friction) {
   if (plane == switches->plane_count) return mode;
   const struct PlaneMetadata *metadata = &switches->planes[plane];
   double speed = speed_in_plane(resolution, metadata->along);
-  bool has_heading = mode < 0.0 && (speed == 0.0 || mode_of(resolution, metadata->upper) > 0.0);
-  if (has_heading) return mode_of(resolution, metadata->heading[friction - metadata->along]);
+  bool has_slip_direction = mode < 0.0 && (speed == 0.0 || mode_of(resolution, metadata->upper) > 0.0);
+  if (has_slip_direction) return mode_of(resolution, metadata->slip_direction[friction - metadata->along]);
   return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 
@@ -85,104 +85,106 @@ static bool friction_takes_part(const struct Resolution *resolution, size_t fric
          resolution->takes_part[switches->contact_count + friction] != 0.0;
 }
 
-static size_t constraint_of(const struct Pushes *pushes, const struct SwitchTable *switches, size_t row) {
-  size_t member = pushes->member[row];
-  return row < pushes->contact_count ? switches->contacts[member].constraint : switches->frictions[member].constraint;
+static size_t constraint_of(const struct ContactImpulses *impulses, const struct SwitchTable *switches, size_t row) {
+  size_t member = impulses->member[row];
+  return row < impulses->contact_count ? switches->contacts[member].constraint : switches->frictions[member].constraint;
 }
 
 /*
  * Computes the effect of each unit impulse: the generalized impulses in jacobian_row (count rows, those of J), and M^-1
- * J^T in pushes->velocities; then their products W. False if M is singular.
+ * J^T in impulses->velocities; then their products W. False if M is singular.
  */
-static bool respond_to_pushes(struct Resolution *resolution, struct Pushes *pushes, double *jacobian_row,
-                              double *impulse, double *response) {
+static bool respond_to_impulses(struct Resolution *resolution, struct ContactImpulses *impulses, double *jacobian_row,
+                                double *impulse, double *response) {
   struct Instance *instance = resolution->instance;
   size_t n = lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, resolution->time, resolution->state);
-  for (size_t row = 0; row < pushes->count; row++) {
-    size_t slot = n + constraint_of(pushes, resolution->switches, row);
+  for (size_t row = 0; row < impulses->count; row++) {
+    size_t slot = n + constraint_of(impulses, resolution->switches, row);
     impulse[slot] = 1.0;
     instance->singular = lagrangian.constraints.respond(&point, impulse, response);
     impulse[slot] = 0.0;
     if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
-    memcpy(pushes->velocities + row * n, response, n * sizeof *response);
+    memcpy(impulses->velocities + row * n, response, n * sizeof *response);
     memcpy(jacobian_row + row * n, response + n, n * sizeof *response);
   }
-  for (size_t i = 0; i < pushes->count; i++)
-    for (size_t j = 0; j < pushes->count; j++) {
-      double *delassus = &pushes->delassus[i * pushes->count + j];
+  for (size_t i = 0; i < impulses->count; i++)
+    for (size_t j = 0; j < impulses->count; j++) {
+      double *delassus = &impulses->delassus[i * impulses->count + j];
       *delassus = 0.0;
-      for (size_t k = 0; k < n; k++) *delassus += jacobian_row[i * n + k] * pushes->velocities[j * n + k];
+      for (size_t k = 0; k < n; k++) *delassus += jacobian_row[i * n + k] * impulses->velocities[j * n + k];
     }
   return true;
 }
 
 /* Computes the friction limits by unit contact forces: differences to the limits without force, as these are linear. */
-static void find_coefficients(struct Resolution *resolution, struct Pushes *pushes, double *force, double *value) {
+static void find_coefficients(struct Resolution *resolution, struct ContactImpulses *impulses, double *force,
+                              double *value) {
   struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
-  size_t contacts = pushes->contact_count, n = lagrangian.coordinate_count;
-  for (size_t i = 0; i <= contacts && pushes->friction_count > 0; i++) {
-    if (i < contacts) force[n + constraint_of(pushes, resolution->switches, i)] = 1.0;
+  size_t contacts = impulses->contact_count, n = lagrangian.coordinate_count;
+  for (size_t i = 0; i <= contacts && impulses->friction_count > 0; i++) {
+    if (i < contacts) force[n + constraint_of(impulses, resolution->switches, i)] = 1.0;
     resolution->switches->switching_values(&point, force, value);
-    if (i < contacts) force[n + constraint_of(pushes, resolution->switches, i)] = 0.0;
-    for (size_t f = 0; f < pushes->friction_count; f++) {
-      double sliding = value[friction_slot(resolution->switches, pushes->member[contacts + f], FRICTION_FORCE)];
-      if (i < contacts) pushes->coefficient[f * contacts + i] = sliding;
+    if (i < contacts) force[n + constraint_of(impulses, resolution->switches, i)] = 0.0;
+    for (size_t f = 0; f < impulses->friction_count; f++) {
+      double sliding = value[friction_slot(resolution->switches, impulses->member[contacts + f], FRICTION_FORCE)];
+      if (i < contacts) impulses->coefficient[f * contacts + i] = sliding;
       else /* without any contact force */
         for (size_t k = 0; k < contacts; k++)
-          pushes->coefficient[f * contacts + k] = fmax(pushes->coefficient[f * contacts + k] - sliding, 0.0);
+          impulses->coefficient[f * contacts + k] = fmax(impulses->coefficient[f * contacts + k] - sliding, 0.0);
     }
   }
 }
 
-static void find_rates(const struct Resolution *resolution, struct Pushes *pushes) {
-  for (size_t row = 0; row < pushes->count; row++) {
-    size_t member = pushes->member[row];
-    size_t slot = row < pushes->contact_count ? contact_slot(resolution->switches, member, CONTACT_RATE)
-                                              : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
-    pushes->rate[row] = resolution->value[slot];
-    pushes->rounding = fmax(pushes->rounding, resolution->error_bound[slot]);
+static void find_rates(const struct Resolution *resolution, struct ContactImpulses *impulses) {
+  for (size_t row = 0; row < impulses->count; row++) {
+    size_t member = impulses->member[row];
+    size_t slot = row < impulses->contact_count ? contact_slot(resolution->switches, member, CONTACT_RATE)
+                                                : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
+    impulses->rate[row] = resolution->value[slot];
+    impulses->rounding = fmax(impulses->rounding, resolution->error_bound[slot]);
   }
 }
 
-bool pushes_create(struct Resolution *resolution, struct Pushes *pushes) {
+bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses) {
   const struct SwitchTable *switches = resolution->switches;
   size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraints.count;
   size_t values = resolution_value_count(switches), contacts = 0, frictions = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(resolution, i) ? 1 : 0;
   for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(resolution, i) ? 1 : 0;
-  *pushes = (struct Pushes){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
-  size_t count = pushes->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
+  *impulses =
+      (struct ContactImpulses){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
+  size_t count = impulses->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
   size_t scratch = rows + 2 * n + values;
-  pushes->block =
+  impulses->block =
       scratch_take(resolution->instance, SCRATCH_PUSHES, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
-  if (pushes->block == NULL) {
-    solver_lacks_memory(resolution->instance);
+  if (impulses->block == NULL) {
+    solver_is_out_of_memory(resolution->instance);
     return false;
   }
-  pushes->velocities = pushes->block;
-  double *jacobian_row = pushes->velocities + count * n;
-  pushes->delassus = jacobian_row + count * n;
-  pushes->rate = pushes->delassus + count * count;
-  pushes->coefficient = pushes->rate + count;
-  double *force = pushes->coefficient + frictions * contacts, *response = force + rows, *value = response + 2 * n;
-  pushes->member = (size_t *)(value + values);
+  impulses->velocities = impulses->block;
+  double *jacobian_row = impulses->velocities + count * n;
+  impulses->delassus = jacobian_row + count * n;
+  impulses->rate = impulses->delassus + count * count;
+  impulses->coefficient = impulses->rate + count;
+  double *force = impulses->coefficient + frictions * contacts, *response = force + rows, *value = response + 2 * n;
+  impulses->member = (size_t *)(value + values);
   size_t next = 0;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (contact_takes_part(resolution, i)) pushes->member[next++] = i;
+    if (contact_takes_part(resolution, i)) impulses->member[next++] = i;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (friction_takes_part(resolution, i)) pushes->member[next++] = i;
-  if (respond_to_pushes(resolution, pushes, jacobian_row, force, response)) {
-    find_coefficients(resolution, pushes, force, value);
-    find_rates(resolution, pushes);
+    if (friction_takes_part(resolution, i)) impulses->member[next++] = i;
+  if (respond_to_impulses(resolution, impulses, jacobian_row, force, response)) {
+    find_coefficients(resolution, impulses, force, value);
+    find_rates(resolution, impulses);
     return true;
   }
-  pushes_free(resolution, pushes);
+  contact_impulses_free(resolution, impulses);
   return false;
 }
 
-void pushes_free(const struct Resolution *resolution, struct Pushes *pushes) {
+void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses) {
   scratch_return(resolution->instance, SCRATCH_PUSHES);
-  pushes->block = NULL;
+  impulses->block = NULL;
 }

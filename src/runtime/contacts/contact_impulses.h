@@ -2,14 +2,14 @@
  * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix
  * W = J M^-1 J^T. Contacts come first, then the frictions that rest on them.
  */
-#ifndef PUSHES_H
-#define PUSHES_H
+#ifndef CONTACT_IMPULSES_H
+#define CONTACT_IMPULSES_H
 
 #include "events/resolution.h"
 #include "instance/active_constraints.h"
 
 /* Rows are the contacts that take part, then the frictions on them. delassus is symmetric and positive semidefinite. */
-struct Pushes {
+struct ContactImpulses {
   size_t contact_count, friction_count, count; /* count: the sum of both */
   size_t *member;                              /* indices of contacts, then of frictions, in the switch table */
   double *velocities;                          /* count rows: change of the velocities by each unit impulse */
@@ -24,8 +24,8 @@ struct Pushes {
  * Collects the contacts that take part, and the frictions on them that do, at the rates in resolution->value; active
  * constraints hold. False, and nothing is allocated, if M is singular or memory is missing.
  */
-bool pushes_create(struct Resolution *resolution, struct Pushes *pushes);
-void pushes_free(const struct Resolution *resolution, struct Pushes *pushes);
+bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses);
+void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses);
 
 static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {
   return contact_holds(resolution->instance, contact);
