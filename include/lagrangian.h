@@ -129,7 +129,7 @@ struct StepWork {
 };
 
 /*
- * Pattern of the factors L U of a matrix of symmetric pattern, with a row and a column for each coordinate. place[]
+ * Pattern of the factors L U of a matrix of symmetric pattern, with a row and a column for each coordinate. slot[]
  * maps a coordinate to its position in the order of elimination. By position, row i of L has the columns
  * column[start[i]] to column[start[i + 1] - 1], ascending, the diagonal last. The columns of U have the transposed
  * pattern.
@@ -179,8 +179,8 @@ struct FrictionMetadata {
  */
 struct PlaneMetadata {
   size_t along;             /* index of the friction along; the one across follows */
-  size_t slip_direction[2]; /* modes: the unit vector of the slip direction */
-  size_t lower, upper;      /* modes: speeds; upper < 0 is a bound on the velocity along the slip direction */
+  size_t slip_direction[2]; /* modes that hold the unit vector of the slip direction */
+  size_t lower, upper;      /* modes that hold speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
 /* An assignment of an event, to a state or a mode. */

@@ -1,4 +1,4 @@
-"""Inputs that a function makes of the time and of the values that a simulation has reached. Also a module of the wheel."""
+"""Feedback: inputs computed by a function of the time and of the present values of a simulation. Also a module of the wheel."""
 
 import inspect
 from collections.abc import Mapping
@@ -14,13 +14,13 @@ def is_feedback(data):
     """Return True for a function of two arguments, the time and the simulation."""
     try:
         parameters = inspect.signature(data).parameters.values() if callable(data) else ()
-    except ValueError:  # as of NumPy's functions
+    except ValueError:  # NumPy's functions have no signature
         return False
     return sum(p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters) == 2
 
 
 class Feedback:
-    """Inputs that are constant over a step: function(time, values) returns a dict by name, or a number for each."""
+    """Inputs that are constant over a step: function(time, values) returns a dict of numbers by name, or a number for each input."""
 
     def __init__(self, function, slave, description):
         self.function, self.slave = function, slave

@@ -1,4 +1,4 @@
-// The site's search for pages that are opened as files, from which browsers start no worker: it searches in the page, with the index as a script.
+// Search of the site for pages that are opened as files, where browsers do not start workers: it runs in the page, and loads its index as a script.
 "use strict";
 
 if (location.protocol === "file:") {

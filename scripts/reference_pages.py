@@ -1,6 +1,8 @@
 """
-Pages of the site for the reference of the language: fmu/README.md cut into a page for each section, and a page for each element, whose frame
-(attributes, values, where the element stands) comes from fmu/system.xsd. And the names of the page about the Python package.
+Make the pages of the site for the reference of the language.
+
+fmu/README.md is cut into a page for each section. Each element has a page with its attributes, their values, and its parents, from fmu/system.xsd.
+The module also lists the names on the page about the Python package.
 """
 
 import posixpath
@@ -10,7 +12,7 @@ from dataclasses import dataclass
 from .live_page.schema import XS, Schema, documentation, enumerated
 
 REFERENCE, FOLDER = "fmu/README.md", "fmu/reference"
-# Values of attributes by their type in the schema, as readers know them. Other types list their values.
+# Descriptions for readers of the values of an attribute, by its type in the schema. Other types list their values.
 VALUES = {"xs:string": "text", "xs:boolean": "`true` or `false`", "xs:double": "number", "positive": "number above 0", "number": "number, or expression of constants", "expression": "expression",
           "variableName": "name", "systemName": "name", "reference": "name of another element"}  # fmt: skip
 
@@ -81,7 +83,7 @@ def rows_of_elements(sections):
 
 
 def example_of(name, page, sections):
-    """Return the shortest example of a file with an element, from a page of the reference if it has one; an empty text if there is none."""
+    """Return the shortest example of a file with an element, preferably from this page of the reference; "" if there is none."""
 
     def examples(parts):
         blocks = [block for part in parts for block in re.findall(r"^```xml\n<(?:system|linearization).*?^```$", part.text, re.M | re.S)]
@@ -91,7 +93,7 @@ def example_of(name, page, sections):
 
 
 def element_page(name, row, schema, sections):
-    """Return the page of an element as Markdown, whose links are those of a page in fmu/; row has the elements that it is listed with."""
+    """Return the page of an element as Markdown, whose links are those of a page in fmu/; `row` has the elements in the same row of the table of elements."""
     lines = [f"# `<{name}>`", ""]
     for parents, declaration in schema.kinds(name):
         sentence, attributes, contents, has_text = schema.frame(declaration)
@@ -120,8 +122,9 @@ def row_of(attribute):
 
 def reference_pages(text, schema_text):
     """
-    Return the pages of the reference: texts by path, and the navigation, a list of titles with paths. Links are right, but for those of the
-    other pages of the site, which `relink` adapts.
+    Return the pages of the reference: texts by path, and the navigation, a list of titles with paths.
+
+    Their links are adapted to the new paths; links in other pages of the site are adapted by relink().
     """
     sections, schema = sections_of(text), Schema(schema_text)
     pages = {}

@@ -1,6 +1,6 @@
 """
-Finds words, sentences and paragraphs that src/STYLE.md excludes, in pages, in comments of C and Python, and in the last commit's subject.
-Prints each with its place and what to write instead; the status is 1 if there are any.
+Find words, sentences and paragraphs that src/STYLE.md excludes, in pages, in comments of C and Python, and in the last commit's subject.
+Print each with its place and what to write instead; the status is 1 if there are any.
 """
 
 import io

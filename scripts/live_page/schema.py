@@ -1,4 +1,4 @@
-"""Reads fmu/system.xsd: the elements of the language, their attributes, and the sentences about them."""
+"""Read fmu/system.xsd: the elements of the language, their attributes, and the sentences about them."""
 
 import xml.etree.ElementTree as tree
 
@@ -16,7 +16,7 @@ class Schema:
             self.elements.setdefault(node.get("name"), []).append(node)
 
     def type_of(self, declaration):
-        """Return the complex type of an element, or None if it has text alone."""
+        """Return the complex type of an element, or None if it has only text."""
         inline = declaration.find(f"{XS}complexType")
         return inline if inline is not None else self.named.get((f"{XS}complexType", declaration.get("type")))
 
@@ -29,7 +29,7 @@ class Schema:
         yield node
 
     def attributes(self, node):
-        """Yield the attributes of a type: declarations, in the order of the schema. Attributes of the elements in it are left out."""
+        """Yield the declarations of a type's attributes, in the order of the schema, without those of contained elements."""
         for child in node:
             if child.tag == f"{XS}attribute":
                 yield child
@@ -79,10 +79,10 @@ class Schema:
 
 
 def documentation(node):
-    """Return the documentation of a declaration; an empty text for none."""
+    """Return the documentation of a declaration; "" if there is none."""
     return node.findtext(f"{XS}annotation/{XS}documentation") or ""
 
 
 def enumerated(attribute):
-    """Return the values that an attribute may have, or an empty list if they are not listed."""
+    """Return the values that the schema lists for an attribute; an empty list if it lists none."""
     return [value.get("value") for value in attribute.iter(f"{XS}enumeration")]

@@ -159,7 +159,7 @@ static int run(const struct Arguments *arguments) {
   return diagnostics.errors > 0 ? 1 : 0;
 }
 
-/* Returns false on a write error. */
+/* Prints the words and elements of the language. Returns false on a write error. */
 static bool print_words(void) {
   words_print(stdout);
   schema_print_elements(stdout);

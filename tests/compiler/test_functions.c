@@ -204,7 +204,7 @@ static void test_the_language_follows(void **state) {
   for (enum Operation operation = 0; operation < OPERATION_COUNT; operation++) {
     struct Expressions e = expressions_create();
     const char *name = operation_name(operation);
-    if (strchr(name, '(') != NULL || strchr(name, '/') != NULL) continue; /* of those that stand for formulas */
+    if (strchr(name, '(') != NULL || strchr(name, '/') != NULL) continue; /* internal: a formula as name */
     char one[40], two[40];
     snprintf(one, sizeof one, "%s(x)", name);
     snprintf(two, sizeof two, "%s(x, y)", name);

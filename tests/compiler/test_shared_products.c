@@ -14,7 +14,7 @@ static size_t operations(const struct Expressions *e, const Node *nodes) {
   return operations;
 }
 
-/* Three expressions, of which the leading ones decide; and the number of operations before and after. */
+/* Three expressions, of which the first `leading` ones decide what is shared; and the operations before and after. */
 static void test_operations(void **state) {
   (void)state;
   static const struct {
@@ -29,7 +29,7 @@ static void test_operations(void **state) {
       {{"x*y + 1", "y*z + 2", "x*z + 3"}, COUNT, 6, 6},               /* no pair occurs twice */
       {{"sqrt(x*y*z)", "x*y + 1", "exp(x*z*y)"}, COUNT, 7, 7},        /* operands of functions stay */
       {{"x*z*y", "cos(z)*x*y", "exp(z)*(y*x)"}, 2, 8, 6},             /* the third takes x y from the others */
-      {{"x*y*z", "sin(z)*y", "cos(z)*y*z"}, 2, 7, 7},                 /* and does not decide: y z is not shared */
+      {{"x*y*z", "sin(z)*y", "cos(z)*y*z"}, 2, 7, 7},                 /* the third does not decide: y z is not shared */
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     struct Expressions e = expressions_create();

@@ -156,7 +156,7 @@ class Calls(RuleBasedStateMachine):
         unknown = data.draw(st.sampled_from([v for v in every if v.causality == "output" or v.name.startswith("der(")]))
         known = data.draw(st.sampled_from([v for v in every if v.causality in ("input", "parameter")]))
         result = (c_double * 1)()
-        is_starting = self.state == "initialization"  # which may have a kink: what touches, flies apart or penetrates beside it
+        is_starting = self.state == "initialization"  # the start may be a kink: next to it, touching bodies separate or penetrate
         status = self.call(
             "fmi2GetDirectionalDerivative", (c_uint * 1)(unknown.valueReference), c_size_t(1),
             (c_uint * 1)(known.valueReference), c_size_t(1), (c_double * 1)(seed), result,

@@ -129,7 +129,7 @@ def test_constraints_beside_what_switches(open_in_initialization):
 
 
 def test_an_impact_at_the_start(open_in_initialization):
-    """It starts with -e v."""
+    """A ball that touches the ground at the start begins its motion with the velocity -e v."""
     instance = open_in_initialization("HitAtTheStart")
     assert instance.get("v") == pytest.approx(1.0)
     np.testing.assert_allclose(directional(instance, ["v", "twice"], "v"), [-0.5, -1.0], atol=1e-9)
@@ -137,7 +137,7 @@ def test_an_impact_at_the_start(open_in_initialization):
 
 
 def test_no_derivative_by_the_height_of_an_impact(open_in_initialization):
-    """From a little higher it starts with v, before the impact; from lower not at all."""
+    """From slightly higher the ball starts with v, before the impact; a start below the ground is an error."""
     instance = open_in_initialization("HitAtTheStart")
     with pytest.raises(FMICallException):
         directional(instance, ["v"], "h")

@@ -34,7 +34,7 @@ def test_time_is_set_in_continuous_time_mode(open_fmu):
 
 
 def test_events_that_are_pending_as_continuous_time_begins(open_fmu):
-    """Pending events are errors: from a parameter set after the last update, also in the first event mode, and from a time that is due."""
+    """Pending events are errors, whether a parameter set after the last update causes them, also in the first event mode, or the time is due."""
     timer = fmu.Instance("Timer", kind=FMU2Model).initialize()
     timer.set(t0=-1.0)
     with timer.fails(ERROR, "an event is due; expected an update of the discrete states before it"):

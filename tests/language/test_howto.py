@@ -247,7 +247,7 @@ def test_sweep(lagrange_fmu, tmp_path, monkeypatch):  # noqa: F811
 
 
 def texts_of_sources():
-    """All that compiler, runtime and scripts say, with adjacent literals joined."""
+    """Texts of the sources of compiler, runtime and scripts, which contain all messages, with adjacent literals joined."""
     files = [path for folder in ("src", "scripts", "modelDescription") for kind in ("*.c", "*.h", "*.py") for path in (ROOT / folder).rglob(kind)]
     joined = re.sub(r'"\s*\n\s*"', "", "\n".join(path.read_text(errors="replace") for path in files))
     return joined.replace('\\"', '"')

@@ -11,7 +11,7 @@ METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
 SYSTEMS = {
     "Carried": '<coordinate name="q" velocity="v" start="0.3"/><state name="z" start="0.5" rate="-z + sin(time)"/>'
     '<particle name="b" mass="2" x="q + z"/><potential>3*q^2/2</potential>',
-    # The rate depends on the coordinate, along which the energy must not be differentiated by way of it.
+    # The rate depends on the coordinate; derivatives of the energy by the coordinate must not include this dependence.
     "Pivot": '<coordinate name="th" velocity="w" start="0.7"/><state name="z" start="0.5" rate="-th*z + 0.3"/>'
     '<particle name="b" mass="2" x="1.5*sin(th) + z" y="-1.5*cos(th)"/><potential>2*9.81*b.y</potential><output name="o">der(b.x)</output>',
     "Drawn": '<coordinate name="x" velocity="vx" start="0.6"/><coordinate name="y" velocity="vy" start="-0.8"/><state name="z" start="1" rate="0.3*(1.5 - z)*cos(time)"/>'
@@ -19,7 +19,7 @@ SYSTEMS = {
     "Burning": '<coordinate name="x" velocity="v"/><state name="m" start="3" rate="-0.5 - 0.1*m"/><kinetic>m*v^2/2</kinetic><force coordinate="x">2</force>',
     "Geared": '<coordinate name="x" velocity="v" velocityStart="0.4"/><coordinate name="y" velocity="w"/><particle mass="1" x="x"/><particle mass="1" x="y"/>'
     '<state name="z" start="0.4" rate="-v + cos(time) - 0.2*w"/><potential>(x-y)^2*4</potential><constraint name="c">v - z</constraint>',
-    # A body in a frame that a state turns, whose rate follows another one that follows a velocity.
+    # A body in a frame rotated by a state, whose rate depends on another state, which follows a velocity.
     "Turned": '<coordinate name="th" velocity="w" start="0.7"/><state name="z" start="0.5" rate="0.4*sin(th) + 0.2*y"/><state name="y" start="0.1" rate="w - y"/>'
     '<frame name="arm"><rotate axis="z" angle="z"/></frame><frame name="f" in="arm"><translate x="2"/><rotate axis="z" angle="th"/></frame>'
     '<body name="b" in="f" mass="2" x="0.5" Ixx="0.1" Iyy="0.2" Izz="0.3"/>',

@@ -12,27 +12,27 @@ from building import build_systems
 from motions import lagrange_fmu  # noqa: F401
 
 G = 9.81
-# Inverted, held by a torsion spring that is too weak: it leans.
+# An inverted pendulum on a torsion spring that is too weak to keep it upright: it leans.
 LEANING = """<system name="Leaning"><parameter name="m" start="2" unit="kg"/><parameter name="l" start="0.5" unit="m"/><parameter name="k" start="6" unit="N.m/rad"/>
   <parameter name="b" start="0.3" unit="N.m.s/rad"/><parameter name="g" start="9.81" unit="m/s2"/><input name="tau" unit="N.m"/>
   <coordinate name="theta" velocity="omega" unit="rad"/><particle name="bob" mass="m" x="l*sin(theta)" y="l*cos(theta)"/>
   <potential>m*g*bob.y + k*theta^2/2</potential><dissipation>b*omega^2/2</dissipation><force coordinate="theta">tau</force>
   <output name="height" unit="m">bob.y</output></system>"""
 LINKS = 8
-# Of absolute coordinates: both ends of a chain of rods without mass, with bobs between, are held.
+# A chain of massless rods with bobs between them, held at both ends, in Cartesian coordinates.
 CHAIN = f"""<system name="HangingChain"><parameter name="L" start="0.25" unit="m"/><parameter name="span" start="1.2" unit="m"/><constant name="g" value="9.81" unit="m/s2"/>
   <for index="i" from="1" to="{LINKS - 1}"><coordinate name="x[i]" velocity="vx[i]" unit="m" start="1.2*i/{LINKS}"/><coordinate name="y[i]" velocity="vy[i]" unit="m" start="-0.5*sin(pi*i/{LINKS})"/>
     <particle name="bob[i]" mass="0.1" x="x[i]" y="y[i]"/></for><gravity y="-g"/>
   <constraint name="c[1]" unit="m2">x[1]^2 + y[1]^2 - L^2</constraint>
   <for index="i" from="2" to="{LINKS - 1}"><constraint name="c[i]" unit="m2">(x[i] - x[i-1])^2 + (y[i] - y[i-1])^2 - L^2</constraint></for>
   <constraint name="c[{LINKS}]" unit="m2">(span - x[{LINKS - 1}])^2 + y[{LINKS - 1}]^2 - L^2</constraint></system>"""
-# A piston against a spring: oil comes through a valve by the root law, and leaks.
+# A piston against a spring: the flow of oil through a valve follows the square-root law, and the cylinder leaks.
 CYLINDER = """<system name="Piston"><parameter name="A" start="1e-3" unit="m2"/><parameter name="k" start="2e5" unit="N/m"/><parameter name="ps" start="2e7" unit="Pa"/>
   <parameter name="E" start="1e9" unit="Pa"/><parameter name="V" start="1e-3" unit="m3"/><parameter name="leak" start="1e-11" unit="m3/(s.Pa)"/>
   <parameter name="C" start="1e-7" unit="m3/(s.Pa0.5)"/><input name="u" unit="1" start="0.5"/>
   <coordinate name="x" velocity="v" unit="m" nominal="0.01"/><particle mass="20" x="x"/><potential>k*x^2/2</potential><dissipation>500*v^2/2</dissipation>
   <state name="p" unit="Pa" nominal="1e6" start="1e6" rate="E/(V + A*x)*(C*u*sqrt(ps - p) - leak*p - A*v)"/><force coordinate="x">p*A</force></system>"""
-# A cart on which a weight rests against its wall; a spring pulls it there. Its controller has an integrator.
+# A cart under a constant load, whose controller has an integrator.
 CART = """<system name="Controlled"><parameter name="m" start="3" unit="kg"/><parameter name="r" start="0.4" unit="m"/><parameter name="d" start="7" unit="N"/>
   <coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/><state name="z" unit="m.s" rate="r - x"/>
   <force coordinate="x">40*(r - x) + 30*z - 12*v - d</force></system>"""
@@ -42,7 +42,7 @@ FALLING = """<system name="Landed"><coordinate name="h" velocity="v" unit="m" st
   <particle mass="2" x="x" y="h"/><gravity y="-9.81"/><contact name="floor" gap="h" unit="m"/><potential>50*x^2/2</potential><dissipation>4*w^2/2</dissipation><force coordinate="x">F</force></system>"""
 STUCK = """<system name="Stuck"><coordinate name="x" velocity="v" unit="m" start="0.02"/><particle mass="1" x="x"/><potential>50*x^2/2</potential><friction name="rub" velocity="v" force="2"/></system>"""
 
-# Without a floor, and where a force only fades; and a system without states.
+# Systems that never rest: a fall without a floor, and a force that only decreases; and a system without states.
 DOWN = FALLING.replace("Landed", "Falling").replace('<contact name="floor" gap="h" unit="m"/>', "")
 REPELLED = """<system name="Repelled"><coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>1/x</potential></system>"""
 GAIN = """<system name="Gain"><input name="u" unit="1" start="2"/><output name="y" unit="1">3*u</output></system>"""
@@ -55,7 +55,7 @@ def built():
 
 
 def test_a_pendulum_on_a_spring(lagrange_fmu):  # noqa: F811
-    """k theta = m g l sin(theta); m l^2 s^2 + b s + k - m g l cos(theta) = 0."""
+    """Equilibria satisfy k theta = m g l sin(theta), and their eigenvalues m l^2 s^2 + b s + k - m g l cos(theta) = 0."""
     weight, inertia = 2 * G * 0.5, 2 * 0.25
     leaning = brentq(lambda theta: 6 * theta - weight * math.sin(theta), 0.5, 3, xtol=1e-15)
     for guess, theta, stability in (("60deg", leaning, "stable"), (-2, -leaning, "stable"), (0.01, 0, "unstable")):
@@ -70,7 +70,7 @@ def test_a_pendulum_on_a_spring(lagrange_fmu):  # noqa: F811
 
 
 def test_values_that_are_held(lagrange_fmu):  # noqa: F811
-    """The torque, or the spring, that holds a pendulum where it is wished: tau = k theta - m g l sin(theta)."""
+    """The torque, or the stiffness, that holds a pendulum at a given angle: tau = k theta - m g l sin(theta)."""
     found = lagrange_fmu.equilibrium(fmu.archive("Leaning"), {}, hold={"theta": "30deg"}, vary=["tau"])
     assert found.point["theta"] == pytest.approx(math.pi / 6, abs=1e-14)
     assert found.point["tau"] == pytest.approx(6 * math.pi / 6 - 2 * G * 0.5 * 0.5, rel=1e-12)
@@ -81,7 +81,7 @@ def test_values_that_are_held(lagrange_fmu):  # noqa: F811
     theta = found.point["theta"]
     assert 6 * theta == pytest.approx(2 + G * 0.5 * math.sin(theta), rel=1e-13) and found.point["m"] == 1
     motion = lagrange_fmu.simulate(fmu.archive("Leaning"), found.point, stop_time=5)
-    np.testing.assert_allclose(motion["theta"], theta, atol=1e-12)  # it rests
+    np.testing.assert_allclose(motion["theta"], theta, atol=1e-12)  # it stays at rest
 
 
 def test_a_hanging_chain(lagrange_fmu):  # noqa: F811
@@ -92,7 +92,7 @@ def test_a_hanging_chain(lagrange_fmu):  # noqa: F811
     x, y = (np.array([found.point[f"{name}[{i}]"] for i in range(1, LINKS)]) for name in "xy")
     np.testing.assert_allclose(x, 0.25 * np.cumsum(np.cos(angles))[:-1], atol=1e-9)
     np.testing.assert_allclose(y, 0.25 * np.cumsum(np.sin(angles))[:-1], atol=1e-9)
-    assert found.stability == "undecided"  # it swings without damping
+    assert found.stability == "undecided"  # undamped
     assert len(found.linearization.states) == 2 * (2 * (LINKS - 1) - LINKS)
 
 
@@ -108,7 +108,7 @@ def test_a_hydraulic_cylinder(lagrange_fmu):  # noqa: F811
 
 
 def test_an_integrator(lagrange_fmu):  # noqa: F811
-    """It takes the whole load: 30 z = d at x = r."""
+    """The integrator carries the whole load: 30 z = d at x = r."""
     found = lagrange_fmu.equilibrium(fmu.archive("Controlled"), {"x": 5})
     assert (found.point["x"], found.point["z"]) == pytest.approx((0.4, 7 / 30), rel=1e-13)
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(np.roots([3, 12, 40, 30])), rtol=1e-9)
@@ -127,7 +127,7 @@ def test_contacts_and_friction(lagrange_fmu):  # noqa: F811
     assert found.constraints == ["floor"] and found.point["h"] == 0 and found.point["x"] == pytest.approx(3 / 50, rel=1e-13)
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(np.roots([2, 4, 50])), rtol=1e-7)
     found = lagrange_fmu.equilibrium(fmu.archive("Stuck"), {})
-    assert found.point["x"] == 0.02 and found.constraints == ["rub"] and found.stability == "undecided" and found.eigenvalues.tolist() == [0]  # its neighbours rest, too
+    assert found.point["x"] == 0.02 and found.constraints == ["rub"] and found.stability == "undecided" and found.eigenvalues.tolist() == [0]  # neighbouring positions are equilibria, too
 
 
 def test_without_states(lagrange_fmu):  # noqa: F811
@@ -136,13 +136,13 @@ def test_without_states(lagrange_fmu):  # noqa: F811
 
 
 def test_from_a_horizontal_pendulum(lagrange_fmu):  # noqa: F811
-    """Where Newton's method has no direction: it falls, to the leaning that is nearer."""
+    """Newton's method has no direction at the horizontal: the search moves downhill first, to the hanging position."""
     free = {"theta": "90deg", "k": 0}
     assert lagrange_fmu.equilibrium(fmu.archive("Leaning"), free).point["theta"] == pytest.approx(math.pi, rel=1e-13)
 
 
 def test_the_command(lagrange_fmu, tmp_path):  # noqa: F811
-    """Prints the point and the stability."""
+    """The command prints the point and the stability."""
     words = ["equilibrium", fmu.archive("Leaning"), "theta=60deg", "--hold", "height=400mm", "--vary", "k"]
     result = package.run(package.assemble(tmp_path / "package"), *words, cwd=tmp_path)
     assert result.returncode == 0, result.stderr

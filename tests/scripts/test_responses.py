@@ -12,7 +12,7 @@ import package
 from building import build_systems
 from motions import OSCILLATOR, lagrange_fmu  # noqa: F401
 
-# Two masses of 1 kg in a row, a spring between; on the left a force, of which nothing is damped.
+# Two free masses of 1 kg with a spring between them and a force on each, without damping.
 ROW = """<system name="Row"><input name="F" unit="N"/><input name="G" unit="N"/><coordinate name="x" velocity="v" unit="m"/><coordinate name="y" velocity="w" unit="m"/>
   <particle mass="1" x="x"/><particle mass="1" x="y"/><potential>8*(x - y)^2/2</potential><force coordinate="x">F</force><force coordinate="y">G</force></system>"""
 # An actuator with a lag of 0.5 s, and a direct path.
@@ -63,7 +63,10 @@ def test_step_response(oscillator):
 
 
 def test_several_inputs_and_poles_at_zero(lagrange_fmu):  # noqa: F811
-    """x/F = (s^2 + 8)/(s^2 (s^2 + 16)), x/G = 8/(s^2 (s^2 + 16)): in time, t^2/4 + (1 - cos(4 t))/32, and with - for +."""
+    """
+    x/F = (s^2 + 8)/(s^2 (s^2 + 16)) and x/G = 8/(s^2 (s^2 + 16)). The step responses to F are t^2/4 + (1 - cos(4 t))/32 for x, and
+    t^2/4 - (1 - cos(4 t))/32 for y.
+    """
     linear = lagrange_fmu.linearize(fmu.archive("Row"))
     found = linear.bode(["x"], frequencies=[1, 2, 4, 7])
     w = found.frequency[[0, 1, 3]]
@@ -78,7 +81,7 @@ def test_several_inputs_and_poles_at_zero(lagrange_fmu):  # noqa: F811
 
 
 def test_states_of_first_order(lagrange_fmu):  # noqa: F811
-    """3/(1 + s/2) + 2: 5 at once in the end, 2 at once."""
+    """The step response of 3/(1 + s/2) + 2 begins at 2 and ends at 5."""
     linear = lagrange_fmu.linearize(fmu.archive("Lag"))
     assert linear.poles() == pytest.approx([-2])
     step, bode = linear.step(), linear.bode()
@@ -87,7 +90,7 @@ def test_states_of_first_order(lagrange_fmu):  # noqa: F811
 
 
 def test_closed_contacts_are_named(lagrange_fmu):  # noqa: F811
-    """2 s^2 + 4 s + 18: the floor takes the other direction, and the figure says so."""
+    """The denominator is 2 s^2 + 4 s + 18: the closed contact fixes the height, and the figure names it."""
     linear = lagrange_fmu.linearize(fmu.archive("Lying"))
     np.testing.assert_allclose(np.sort_complex(linear.poles()), np.sort_complex(np.roots([2, 4, 18])), rtol=1e-8)
     for response in (linear.bode("x"), linear.step("x")):

@@ -227,7 +227,7 @@ def test_where_shapes_of_bodies_are():
     """A body's shape is at its centre of mass, shifted along the axes of the frame."""
     values = {"turn": 0.7, "z": 0.1}
     with Running("Lever", values) as instance:
-        # Along the frame's y the body is at 0.3, its shape 0.05 beyond it, and the particle's at 0.2 minus it.
+        # Positions along the frame's y axis: the body is at 0.3 and its shape 0.05 further; the particle's shape is at 0.25.
         heights = [0.1 + length * math.sin(0.7) for length in (0.35, 0.25)]
         assert [instance.get(f"{name}.force") for name in ("one", "two")] == pytest.approx([1e4 * (0.4 - height) for height in heights])
 

@@ -19,7 +19,7 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
-from building import BUILD, LAGC, ROOT, build_systems, built_by_tests  # noqa: F401, for tests, which ask here for all that they open
+from building import BUILD, LAGC, ROOT, build_systems, built_by_tests  # noqa: F401, for tests that import from here
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 

@@ -33,7 +33,7 @@ def build_sdist(folder):
 
 
 def _install(wheel):
-    """Install a wheel with its requirements alone into an environment of its own."""
+    """Install a wheel and its requirements into a separate environment."""
     pip = FOLDER / "venv" / "bin" / "pip"
     if not pip.exists():
         subprocess.run([sys.executable, "-m", "venv", FOLDER / "venv"], check=True)

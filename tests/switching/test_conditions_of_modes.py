@@ -27,7 +27,7 @@ SYSTEM = """
 </system>
 """.format(counters="".join(f'<mode name="{name}"/><event when="{when.replace(">", "&gt;")}"><set mode="{name}">{name} + 1</set></event>' for name, when in CONDITIONS.items()))
 
-# n counts samples of 0.1 s, the first at the start, where it goes from 0 to 1. Expressions of modes and parameters pass 0 like others; each notes n then.
+# n counts the samples, taken every 0.1 s from the start on. Events of expressions of modes and parameters record n when these pass 0.
 PASSAGES = {"lim - n": ("falling", [4]), "n - 2*lim": ("rising", [7]), "5.5 - n": ("falling", [6]), "n - 5.5": ("falling", []), "(n - 2)*(n - 4)": ("both", [3, 5]), "sin(n - 0.5)": ("rising", [1, 7])}
 COUNTER = """
 <system name="Passages{method}">
@@ -56,7 +56,7 @@ def noted(counts):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("step", [1.0, 0.07, 0.001])
 def test_expressions_of_modes_pass_zero(method, step):
-    """The value is 0 at 3 of lim - n, and beyond it at 4."""
+    """lim - n is 0 at n = 3, and has passed 0 at n = 4, where the event occurs; the others likewise."""
     instance = fmu.Instance(f"Passages{method}").initialize()
     instance.run(1.0, step, "n")
     assert [instance.get(f"at[{i}]") for i in range(len(PASSAGES))] == [noted(counts) for _, counts in PASSAGES.values()]

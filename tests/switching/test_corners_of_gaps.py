@@ -63,10 +63,10 @@ def test_a_corner_asks_for_two_contacts_in_model_exchange(corner):
 
 
 def test_bounces_along_a_slope_end_in_model_exchange():
-    """Behind low bounces an integrator's first step is longer than the next, and comes back to the slope while the body still parts."""
+    """After low bounces, the integrator's first step is longer than the next flight: it must not end on the slope while the body departs."""
     archive = str(fmu.archive("CornerSlope"))
     rows = fmpy.simulate_fmu(archive, fmi_type="ModelExchange", stop_time=3, output_interval=0.1, relative_tolerance=1e-6, output=["x", "y", "v", "w"])
-    speed = 9.81 / np.sqrt(2) * (3 - np.sqrt(2 * 1.5 / 9.81)) + np.sqrt(9.81 * 1.5)  # along the slope, which takes nothing from it
+    speed = 9.81 / np.sqrt(2) * (3 - np.sqrt(2 * 1.5 / 9.81)) + np.sqrt(9.81 * 1.5)  # along the slope, which has no friction
     x, y, v, w = (rows[-1][name] for name in "xyvw")
     assert [x + y, v + w, (v - w) / np.sqrt(2)] == pytest.approx([0, 0, speed], abs=1e-3)
 

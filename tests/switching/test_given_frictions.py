@@ -142,7 +142,7 @@ def test_forces_in_a_plane(open_fmu, body, method):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("body", ["Reversing", "Cusp"])
 def test_no_force_where_a_given_velocity_passes_through_0(open_fmu, body, method, steps):
-    """It has no direction there, and the drives give the acceleration alone."""
+    """Friction has no direction there, so that the drives supply only the force of the acceleration."""
     instance = open_fmu(name_of(body, method)).initialize()
     instance.run(1, 1 / steps)
     assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *DRIVEN[body](1)[1]], abs=0.01)

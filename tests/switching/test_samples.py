@@ -76,7 +76,7 @@ KICKED = """
 </system>
 """
 
-# The period is a mode, which the third sample changes: that at 0.3 comes as it was, and those behind it 0.25 apart.
+# The period is a mode, which the third sample changes: the next sample, at 0.3, keeps its time, and later ones are 0.25 apart.
 PACED = """
 <system name="Paced_{method}">
   <state name="x" rate="1"/>

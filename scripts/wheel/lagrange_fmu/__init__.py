@@ -180,7 +180,7 @@ def equilibrium(
     vary: str | Sequence[str] = (),
 ) -> Equilibrium:
     """
-    Find where a system rests, near a guess: all time derivatives of its states are 0, and constraints are fulfilled.
+    Find an equilibrium of a system near a guess: all time derivatives of states are 0, and constraints are satisfied.
 
     Parameters
     ----------
@@ -189,9 +189,9 @@ def equilibrium(
     guess : dict of float, optional
         Coordinates, states, inputs and parameters where the search begins; by default their start values.
     hold : dict of float, optional
-        Coordinates, states, outputs, inputs and parameters that have these values in the end.
+        Values of coordinates, states, outputs, inputs and parameters at the equilibrium.
     vary : str or sequence of str
-        Inputs and parameters that are found, too, such as the torque that holds an arm.
+        Inputs and parameters to solve for, such as the torque that holds an arm.
 
     Returns
     -------
@@ -202,7 +202,7 @@ def equilibrium(
     Raises
     ------
     Problem
-        If a name is unknown, or no point of rest is found; the message names the accelerations and rates that remain.
+        If a name is unknown, or no equilibrium is found; the message names the accelerations and rates that remain.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """
-Respond to sines and steps of the inputs of a linearized system, in the frequency and the time domain.
+Compute frequency responses and step responses of a linearized system.
 
-The transfer function is G(s) = C (s - A)^-1 B + D. The response to a unit step is exact at its times: with the exponential of [[A, B], [0, 0]] h, by scaling
-and squaring of its Taylor series, (x, u) continues from a time to the next one.
+The transfer function is G(s) = C (s - A)^-1 B + D. The step response is exact at its times: the exponential of [[A, B], [0, 0]] h, by scaling and squaring
+of its Taylor series, maps (x, u) from a time to the next one.
 """
 
 from dataclasses import dataclass
@@ -12,17 +12,17 @@ import numpy as np
 from .problem import Problem
 from .variables import instead, names_of
 
-POINTS = 400  # of a default grid
-BEYOND = 10.0  # by which default frequencies exceed those of the poles on both sides
-DECAYS, PERIODS = 7.0, 6.0  # of the slowest pole in the default time
-LARGEST_RATIO = 1e4  # of a decay to the fastest pole: slower ones do not count for the default time
+POINTS = 400  # number of points of a default grid
+BEYOND = 10.0  # factor by which default frequencies extend beyond those of the poles on both sides
+DECAYS, PERIODS = 7.0, 6.0  # time constants, or periods, of the slowest pole in the default time
+LARGEST_RATIO = 1e4  # poles smaller than the largest one by more than this factor do not count for the default time
 TERMS = 18  # of the Taylor series, for a norm of at most 1/2: the rest is below 1e-22
-SMALL = 1e-7  # of the largest pole: smaller poles count as integrators
+SMALL = 1e-7  # poles below this share of the largest one count as integrators
 
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Of each output to each input; response["theta", "F"] is an array over the frequencies or times, response["theta"] that to the only input."""
+    """Responses of each output to each input; response["theta", "F"] is an array over frequencies or times, response["theta"] that to the only input."""
 
     values: np.ndarray  # x outputs x inputs
     outputs: list[str]
@@ -56,7 +56,7 @@ class Bode(Responses):
 
     @property
     def phase(self):
-        """In degrees, continuous in the frequency."""
+        """Phase in degrees, a continuous function of the frequency."""
         return np.degrees(np.unwrap(np.angle(self.values), axis=0))
 
     def plot(self):
@@ -182,7 +182,7 @@ def exponential(matrix):
 
 
 def _duration(linear):
-    """Return a time in s in which the slowest poles that count decay, or swing."""
+    """Return the default time in s: DECAYS time constants, or PERIODS periods, of the slowest pole that counts."""
     own = _rates(linear)
     own = own[np.abs(own) > np.abs(own).max(initial=0.0) / LARGEST_RATIO]
     if not len(own):

@@ -1,10 +1,12 @@
 """
-Points at which a system rests: f(x, p) = 0 for the time derivatives f of all states x, with values that are held, h(x) = h0, and inputs or parameters p that vary.
+Find equilibria of a system: f(x, p) = 0 for the time derivatives f of all states x, and h(x) = h0 for held values, with varying inputs or parameters p.
 
-Newton's method on the constraints: with an orthonormal basis T of the directions in which the states can move, each step solves J (T z, dp) = -(f, h - h0) by least
-squares with least norm, so that coordinates on which nothing depends stay at the guess. A step changes no value by more than a share of its size, is halved until
-the residual falls, and ends on the constraints by the FMU's initialization. Residuals and values count relative to nominal values. Where steps are too long, or none
-lessens the residual, as at a pendulum that is horizontal, coordinates first move a little along their accelerations, downhill: to a rest that is rather stable.
+The search is a damped Newton method on the manifold of the constraints. With an orthonormal basis T of its tangent space, each step solves
+J (T z, dp) = -(f, h - h0) by least squares of least norm, so that coordinates on which nothing depends stay at the guess. A step is limited to a share
+of each value, and halved until the residual decreases; the FMU's initialization projects its end onto the constraints. Residuals and values are
+relative to nominal values. If a full step exceeds the limit, or no part of it decreases the residual, as at a horizontal pendulum, coordinates first
+move a little along their accelerations, which leads towards a stable equilibrium. The search ends when a step is negligible or after STEPS steps.
+Each step costs a Jacobian and, with constraints, a basis of the tangent space, see linearization.py.
 """
 
 from dataclasses import dataclass
@@ -19,31 +21,31 @@ from .quantities import numbers_of
 from .variables import known
 
 STEPS, HALVINGS = 200, 25
-LARGEST = 0.5  # step, relative to a value or its nominal value
-SINGULAR = 1e-10  # of the largest singular value: directions without effect
-PRECEDENCE = 1e3  # of held values over balances, in the error that steps lessen
-BALANCED = 1e-9  # of a rate, relative to the largest terms of its linearization
-CONVERGED = 1e-13  # relative step
-FURTHEST = 1e9  # relative to nominal values and the guess: beyond, forces only fade
-DOWNHILL, NUDGE = 20, 0.1  # moves along accelerations, relative to nominal values
-PERTURBED, DOUBLE = 1e-9, 1e-5  # of the matrix, by which eigenvalues are perturbed in proportion to their condition numbers, and double ones at most
-WORK = "nonConservativeWork"  # a state that nothing depends on
-SHOWN, NOTABLE = 3, 1e-3  # rates in a message, relative to the largest
+LARGEST = 0.5  # largest step, relative to a value or its nominal value
+SINGULAR = 1e-10  # singular values below this share of the largest one belong to directions without effect
+PRECEDENCE = 1e3  # weight of held values relative to rates, in the error that steps decrease
+BALANCED = 1e-9  # a rate below this share of the terms of its linearization counts as 0
+CONVERGED = 1e-13  # relative step that is negligible
+FURTHEST = 1e9  # values beyond this multiple of nominal values and the guess mean that forces only vanish at infinity
+DOWNHILL, NUDGE = 20, 0.1  # number of moves along accelerations at most, and their length relative to nominal values
+PERTURBED, DOUBLE = 1e-9, 1e-5  # errors relative to the norm of the matrix: of an eigenvalue of condition number 1, and of any eigenvalue at most
+WORK = "nonConservativeWork"  # state on which nothing depends
+SHOWN, NOTABLE = 3, 1e-3  # rates in a message: their number at most, and the smallest relative to the largest
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium:
     """
-    Where a system rests. `point` has states, inputs and what varied by name, in SI units, and `outputs` the outputs there; `linearization` is that at the
-    point, `eigenvalues` are those of its A, and `constraints` names closed contacts and sticking frictions, which stay so. `stability` is "stable" if all
-    real parts are negative, "unstable" if one is positive, else "undecided", as for what swings without damping.
+    An equilibrium of a system, in SI units.
+
+    `constraints` lists the closed contacts and the sticking friction, which count as constraints.
     """
 
-    point: dict
-    outputs: dict
-    linearization: Linearization
-    eigenvalues: np.ndarray
-    stability: str
+    point: dict  # states, inputs and varied values by name
+    outputs: dict  # outputs by name
+    linearization: Linearization  # at the point
+    eigenvalues: np.ndarray  # of its A
+    stability: str  # "stable" if all real parts are negative, "unstable" if one is positive, else "undecided", as without damping
 
     @property
     def constraints(self):
@@ -56,7 +58,7 @@ class Equilibrium:
 
 
 def stability_of(matrix):
-    """Return the eigenvalues of a matrix, and what their real parts say; those within their perturbation are 0."""
+    """Return the eigenvalues of a matrix, and the stability by their real parts, which count as 0 within the errors of their condition numbers."""
     eigenvalues, vectors = np.linalg.eig(matrix)
     with np.errstate(over="ignore"):  # infinite where eigenvectors are parallel
         conditions = np.linalg.norm(np.linalg.pinv(vectors, rcond=0.0), axis=1)  # of right eigenvectors of length 1
@@ -73,7 +75,7 @@ def _scaled(linear, nominals):
 
 
 class _Search:
-    """A Point with the values that are sought: its states, and what varies, which are its values."""
+    """The search from a Point. Its unknowns, `values`, are the states followed by the varied inputs and parameters."""
 
     def __init__(self, point, hold, vary):
         self.point, self.vary, self.hold = point, vary, hold
@@ -86,7 +88,7 @@ class _Search:
         self.jacobian = None
 
     def go_to(self, values):
-        """The values on the constraints, and the residuals there."""
+        """Initialize the FMU; return the values after projection onto the constraints, and the residuals there."""
         count = len(self.point.states)
         self.point.values |= dict(zip(self.vary, values[count:]))
         at = self.point.start(values[:count])
@@ -94,7 +96,7 @@ class _Search:
         return np.concatenate([at, values[count:]]), np.array(found)
 
     def linearize(self, values):
-        """Keeps the Jacobian of the residuals there, by all values; returns that by the directions in which these can move, and the directions."""
+        """Store the Jacobian of the residuals by all values; return the Jacobian by the admissible directions, and these as columns."""
         point, count = self.point, len(self.point.states)
         basis = tangents(point, values[:count]) if count else np.empty((0, 0))
         self.go_to(values)
@@ -107,7 +109,7 @@ class _Search:
         return self.jacobian @ directions, directions
 
     def step(self, values, residual):
-        """Return the Newton step, of bounded length. Rows that are a single state, such as der(x) = v, and held values have precedence over balances."""
+        """Return the Newton step, of bounded length. Held values, and residuals that are a single state, such as der(x) = v, are satisfied first."""
         slopes, directions = self.linearize(values)
         lengths = np.linalg.norm(directions / self.size[:, None], axis=0)
         slopes, missing = self.weight[:, None] * slopes / lengths, -self.weight * residual
@@ -122,7 +124,7 @@ class _Search:
         return step * min(1.0, LARGEST / largest) if largest else step
 
     def is_state(self):
-        """Return True for each residual that is a state itself, as der(x) = v."""
+        """Return a mask of the residuals that are a state themselves, such as der(x) = v."""
         return (np.count_nonzero(self.jacobian, axis=1) == 1) & (self.jacobian.max(axis=1, initial=0.0) == 1)
 
     def moving(self):
@@ -147,7 +149,7 @@ class _Search:
         return np.linalg.norm(self.weight * residual)
 
     def shortened(self, values, residual, step):
-        """The values after the longest part of the step that lessens the error, and the residual there; None where none does."""
+        """Return the values after the longest part of the step that decreases the error, and the residual there; None if no part does."""
         for halving in range(HALVINGS):
             try:
                 reached, found = self.go_to(values + step / 2**halving)
@@ -159,7 +161,7 @@ class _Search:
         return None
 
     def unbalanced(self, values, residual):
-        """The residuals that are not 0, by their names."""
+        """Return the residuals that are not 0 up to rounding, by name."""
         terms = np.abs(self.jacobian) @ np.maximum(self.size, np.abs(values))
         names = [*self.point.derivatives, *(self.point.states[i] for i in self.places), *self.outputs]
         return {name: value for name, value, size in zip(names, residual, terms) if abs(value) > BALANCED * max(size, 1e-3)}
@@ -197,7 +199,7 @@ class _Search:
             return self.go_to(values)
 
     def why(self, values, off):
-        """The message about accelerations and rates that are not balanced."""
+        """Return the message about accelerations and rates that are not 0."""
         largest = max(map(abs, off.values()), default=0.0)
         units, shown = self.point.units, [name for name in sorted(off, key=lambda name: -abs(off[name])) if abs(off[name]) > NOTABLE * largest][:SHOWN]
         rates = [f"{name} = {off[name]:.6g} {units[name]}" for name in shown if name not in self.hold]

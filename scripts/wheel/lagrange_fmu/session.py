@@ -1,4 +1,4 @@
-"""A simulation whose steps a program takes one by one."""
+"""Simulations that a program advances step by step."""
 
 import math
 import shutil
@@ -21,7 +21,7 @@ from .variables import checked_start, numbers_by_name, startable, why_not
 
 
 def _release(folder, instances):
-    """Free the instances, of which there is at most one, and their files."""
+    """Free the instance in the list `instances`, if there is one, and its files."""
     while instances:
         instances.pop().freeInstance()
     shutil.rmtree(folder, ignore_errors=True)
@@ -131,7 +131,7 @@ class Simulation(NamedValues):
         self.time = state.time
 
     def reset(self, start_values=None, /, **values):
-        """Start again, with these start values in place of those of start()."""
+        """Start again; these start values replace those of start()."""
         self._check_open()
         start_values = self._checked(numbers_by_name(start_values) | numbers_by_name(values))
         with self._named("cannot start"):

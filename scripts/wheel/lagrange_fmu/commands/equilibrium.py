@@ -1,4 +1,4 @@
-"""Finds where a system rests, near a guess; prints the point, and by the eigenvalues of the linearization whether it is stable."""
+"""Find an equilibrium of a system near a guess; print the point, and its stability by the eigenvalues of the linearization."""
 
 from ..quantities import assignment
 from .words_of_systems import SYSTEM_OR_FMU

@@ -30,7 +30,10 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
   return (struct Quantity){.node = value.node, .dimension = unit, .at_instant = value.at_instant, .whole = value.whole};
 }
 
-/* The expression of a <define>, also as <set> has it. */
+/*
+ * Reads the expression of a <define>. If modes occur in it, also reads it as a <set> sees it: the value at the instant of
+ * an event, where pieces have plain values, and the whole expression.
+ */
 static struct Quantity read_definition(struct Reader *reader, xmlNodePtr node) {
   static const char what[] = "the definition";
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);

@@ -7,7 +7,7 @@
 /* Memory of the method; bdf is its first member. */
 struct SparseBdf {
   struct Bdf bdf;
-  /* The pattern of I - gamma J: that of J, and the diagonal. place[k] is the index of J's element k in it. */
+  /* The pattern of I - gamma J: that of J, and the diagonal. slot[k] is the index of J's element k in it. */
   sunindextype *start, *row, *slot;
 };
 
