@@ -119,8 +119,8 @@ enum Opcode {
 };
 
 /*
- * A block of M that is factored at run time: its slices of SPACE_MASS and SPACE_SIDE, and the pattern of its factor as
- * in ldlt.h.
+ * A block of M that is factored at run time: its slices of SPACE_MASS and SPACE_RIGHT_SIDE, and the pattern of its
+ * factor as in ldlt.h.
  */
 struct BlockTable {
   size_t count, first_mass, first_right_side;

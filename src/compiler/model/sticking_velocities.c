@@ -86,8 +86,8 @@ static struct Gear *read_gears(const struct Model *model, size_t *count) {
 }
 
 /*
- * Replaces a velocity by 0 while friction keeps it at 0, and those coupled to it by gears. is_replaced has an element for
- * each coordinate, which ends the recursion.
+ * Replaces a velocity by 0 while friction keeps it at 0, and those coupled to it by gears. is_replaced has an element
+ * for each coordinate, which ends the recursion.
  */
 static void replace_velocity(const struct Model *model, const struct Gear *gears, size_t gear_count, size_t coordinate,
                              Node is_free, bool *is_replaced, Node *replacements) {

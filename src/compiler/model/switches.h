@@ -38,7 +38,7 @@ enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 struct FrictionPlane {
   enum PlaneAxis axis;
   Node slip_direction; /* a mode: its component of the unit vector, or of the share */
-  Node lower, upper;   /* modes: speeds; upper < 0 is a bound on the velocity along the slip direction */
+  Node lower, upper;   /* modes that hold speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
 /*

@@ -59,6 +59,6 @@ void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *b
 /* Computes and factors all blocks, if the accelerations themselves are not needed. */
 void append_factors(struct CodeGenerator *generator, const struct LoopedBlocks *blocks);
 
-/* Solves a factored block in place of its right side. side: an element for each row of K, computed. */
+/* Solves a factored block in place of its right side. right_side: a computed node for each row of K. */
 void append_solution(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number,
                      const Node *right_side);

@@ -11,6 +11,6 @@ struct ReaderOptions {
   const char *solver;       /* method that replaces the system's own; NULL for none */
   const char *const *point; /* "name=value" of the linearization point; may be empty */
   size_t point_count;
-  bool pull;      /* add inputs for pulling bodies with the pointer, see pulls.h */
+  bool pull;      /* add inputs for pulling bodies with the pointer, see pointer_interaction.h */
   bool linearize; /* linearize, even if point is empty */
 };

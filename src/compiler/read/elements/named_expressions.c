@@ -31,8 +31,8 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
 }
 
 /*
- * Reads the expression of a <define>. If modes occur in it, also reads it as a <set> sees it: the value at the instant of
- * an event, where pieces have plain values, and the whole expression.
+ * Reads the expression of a <define>. If modes occur in it, also reads it as a <set> sees it: the value at the instant
+ * of an event, where pieces have plain values, and the whole expression.
  */
 static struct Quantity read_definition(struct Reader *reader, xmlNodePtr node) {
   static const char what[] = "the definition";

@@ -5,8 +5,8 @@
 #include "read/context/attributes.h"
 
 /*
- * Adds the generalized forces Q_i = F dr/dq_i of a force F along r, and its power F dr/dt. jacobian_rows: derivatives
- * of r with respect to coordinates and time, or of its rate with respect to velocities.
+ * Adds the generalized forces Q_i = F dr/dq_i of a force F along r, and its power F dr/dt. gradient: derivatives of
+ * r with respect to coordinates and time, or of its rate with respect to velocities.
  */
 void add_virtual_work(struct Model *model, Node force, const struct Gradient *gradient);
 

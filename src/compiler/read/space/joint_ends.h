@@ -17,8 +17,8 @@ bool read_displaced_joint_end(struct Reader *reader, xmlNodePtr node, const char
 bool read_joint_end(struct Reader *reader, xmlNodePtr node, const char *name, struct JointEnd *end);
 
 /*
- * Like read_joint_end(), while definitions are parsed. Anything that is not in a frame gets the base's axes. Returns false
- * if the current definition waits for it.
+ * Like read_joint_end(), while definitions are parsed. Anything that is not in a frame gets the base's axes. Returns
+ * false if the current definition waits for it.
  */
 bool read_joint_end_early(struct Reader *reader, xmlNodePtr node, const char *name, struct JointEnd *end);
 
