@@ -67,7 +67,7 @@ void write_units(xmlTextWriterPtr writer, const struct Interface *interface, siz
 }
 
 void write_log_categories(xmlTextWriterPtr writer) {
-  static const char *const categories[][2] = {{"logEvents", "life cycle"},
+  static const char *const categories[][2] = {{"logEvents", "life cycle, and what switches"},
                                               {"logStatusWarning", "warnings"},
                                               {"logStatusDiscard", "steps that were not finished"},
                                               {"logStatusError", "errors"},

@@ -1,6 +1,7 @@
 """Parse the records of a sweep: values at times, extremes, and events of each run. Also a module of the wheel."""
 
 import math
+import zipfile
 
 import numpy as np
 
@@ -8,10 +9,12 @@ from .problem import Problem
 from .signals import REAL
 from .variables import instead, names_of, nearest
 
-VALUE, MAXIMUM, MINIMUM, EVENTS, FIRST = range(5)  # enum RecordKind of sweep_runs.c
-EXTREMES, COUNTS = {".max": MAXIMUM, ".min": MINIMUM}, {".events": EVENTS, ".first": FIRST}
+VALUE, MAXIMUM, MINIMUM, EVENTS, FIRST, EVENTS_OF, FIRST_OF = range(7)  # enum RecordKind of sweep_runs.c
+EXTREMES, COUNTS = {".max": MAXIMUM, ".min": MINIMUM}, {".events": EVENTS_OF, ".first": FIRST_OF}
+SWITCHES = "and what switches"  # in the description of the log category logEvents
+OF_ALL = {"events": EVENTS, "events.first": FIRST}
 COUNTER = "events"  # variable of the FMU that counts events
-FORMS = "NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first, or of a single contact or friction NAME.events, NAME.first"
+FORMS = "NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first, or of a contact or friction NAME.events, NAME.first"
 SAMPLES = 1000  # for extremes, in a run of an FMU without step size
 
 
@@ -37,17 +40,18 @@ def _time_of(item, text, stop):
 
 
 def _check_switching(item, name, description):
-    """Raise Problem unless all events of the FMU are those of this contact or friction."""
-    names = [v.name for v in description.modelVariables]
-    switching = [other for v in names for other, _ in [_split(v, {".closed": 1, ".sliding": 1})] if other]
-    if name not in [COUNTER, *switching]:
+    """Raise Problem unless the FMU has a contact or friction of this name, and reports its events."""
+    switching = [other for v in description.modelVariables for other, _ in [_split(v.name, {".closed": 1, ".sliding": 1})] if other]
+    if name not in switching:
         raise Problem(f"'{name}' of '{item}' is neither a contact nor a friction of {description.modelName}; {instead(name, [COUNTER, *switching])}")
-    others = [other for other in dict.fromkeys(switching) if other != name]
-    own = 2 if f"{name}.across.force" in names else 1  # indicators
-    if name != COUNTER and (others or description.numberOfEventIndicators > own):
-        those = " and ".join(f"'{other}'" for other in others) if 0 < len(others) <= 3 else f"{len(others)} others" if others else "conditions and other expressions"
-        total = COUNTER + (item.removeprefix(name) if item.endswith(".first") else "")
-        raise Problem(f"the events of '{name}' are not known apart from those of {those} of {description.modelName}; expected {total}, of them all")
+
+
+def check_log(path, records):
+    """Raise Problem if the log of an FMU does not name what switches, which records of single contacts and frictions need."""
+    with zipfile.ZipFile(path) as archive:
+        is_silent = SWITCHES not in archive.read("modelDescription.xml").decode()
+    if is_silent and any(kind >= EVENTS_OF for _, kind, _, _ in records):
+        raise Problem(f"{path} does not report which contact or friction switches; expected an FMU that is built anew, or --record {COUNTER}")
 
 
 def _record(item, reals, counts, stop, description):
@@ -57,9 +61,11 @@ def _record(item, reals, counts, stop, description):
     extreme, kind = _split(item, EXTREMES)
     if item in reals:
         return VALUE, item, stop
-    if counts and (item == COUNTER or counted is not None):
-        _check_switching(item, counted or COUNTER, description)
-        return (EVENTS if count is None else count), None, stop
+    if counts and item in OF_ALL:
+        return OF_ALL[item], None, stop
+    if counts and counted is not None:
+        _check_switching(item, counted, description)
+        return count, counted, stop
     if separator and name in reals:
         return VALUE, name, _time_of(item, at, stop)
     if extreme in reals:

@@ -6,6 +6,7 @@
  */
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
@@ -39,15 +40,24 @@ struct Variables {
   const fmi2ValueReference *references;
 };
 
-enum RecordKind { RECORD_VALUE, RECORD_MAXIMUM, RECORD_MINIMUM, RECORD_EVENTS, RECORD_FIRST };
+enum RecordKind {
+  RECORD_VALUE,
+  RECORD_MAXIMUM,
+  RECORD_MINIMUM,
+  RECORD_EVENTS,
+  RECORD_FIRST,
+  RECORD_EVENTS_OF,
+  RECORD_FIRST_OF
+};
 
 /*
  * A column of the result: the value of a sampled variable at a time, its maximum or minimum, the number of events, or
- * the time of the first.
+ * the time of the first; of all, or of the contact or friction with a name.
  */
 struct Record {
   size_t kind, variable;
   double time;
+  const char *name;
 };
 
 /* The task. Arrays of values have a row for each run. */
@@ -66,6 +76,9 @@ struct Sweep {
   double *end_values, *seconds; /* runs x ends; runs */
 };
 
+/* The run that listens to the log of its FMU; NULL while steps are repeated. */
+static _Thread_local struct Course *listener;
+
 static double now(void) {
   struct timespec time;
   timespec_get(&time, TIME_UTC);
@@ -81,6 +94,30 @@ struct Course {
   double time[3];
   size_t count;
 };
+
+/* Records an event of a contact or friction, from the FMU's message on it. */
+static void hear_event(const struct Course *course, const char *message) {
+  char name[1000];
+  double time;
+  int end = 0;
+  if (sscanf(message, "time %lf: '%999[^']' switches%n", &time, name, &end) != 2 || end == 0) return;
+  for (size_t i = 0; i < course->sweep->record_count; i++) {
+    const struct Record *record = &course->sweep->records[i];
+    bool is_of = record->kind == RECORD_EVENTS_OF || record->kind == RECORD_FIRST_OF;
+    if (!is_of || strcmp(record->name, name) != 0) continue;
+    if (record->kind == RECORD_EVENTS_OF) course->recorded[i]++;
+    else if (isnan(course->recorded[i])) course->recorded[i] = time;
+  }
+}
+
+/* The FMU's logger: passes on problems to the logger in the environment. */
+EXPORT void sweep_log(void *environment, fmi2String instance, fmi2Status status, fmi2String category,
+                      fmi2String message, ...) {
+  fmi2CallbackLogger logger;
+  memcpy(&logger, environment, sizeof logger);
+  if (status == fmi2OK && listener != NULL) hear_event(listener, message);
+  else if (status != fmi2OK) logger(NULL, instance, status, category, message);
+}
 
 /* Returns the height of the vertex of the parabola through three samples above the middle one. */
 static double excess_of(const double *time, double late, double middle, double early) {
@@ -175,7 +212,10 @@ static const char *step(struct Course *course, double begin, double end) {
   fmi2FMUstate first = NULL, last = NULL;
   bool looks = course->sweep->counter.count > 0, fails = looks && f->save(course->component, &first) > fmi2Warning;
   int before = events_of(course), after;
-  if (fails || f->step(course->component, begin, end - begin, looks ? fmi2False : fmi2True) > fmi2Warning) {
+  listener = course;
+  bool is_done = !fails && f->step(course->component, begin, end - begin, looks ? fmi2False : fmi2True) <= fmi2Warning;
+  listener = NULL;
+  if (!is_done) {
     if (first != NULL) f->forget(course->component, &first);
     return fails ? "fmi2GetFMUstate" : "fmi2DoStep";
   }
@@ -195,10 +235,10 @@ static const char *step(struct Course *course, double begin, double end) {
 static void begin_records(const struct Sweep *sweep, double *recorded) {
   for (size_t i = 0; i < sweep->record_count; i++) {
     size_t kind = sweep->records[i].kind;
-    recorded[i] = kind == RECORD_MAXIMUM   ? -INFINITY
-                  : kind == RECORD_MINIMUM ? INFINITY
-                  : kind == RECORD_EVENTS  ? 0.0
-                                           : NAN;
+    recorded[i] = kind == RECORD_MAXIMUM                                 ? -INFINITY
+                  : kind == RECORD_MINIMUM                               ? INFINITY
+                  : kind == RECORD_EVENTS || kind == RECORD_EVENTS_OF ? 0.0
+                                                                         : NAN;
   }
 }
 

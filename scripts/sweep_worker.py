@@ -21,6 +21,7 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
+PROBLEMS = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")  # log categories of warnings and errors
 opened = {}  # Instance by (thread, hash of the FMU's archive)
 
 
@@ -37,14 +38,17 @@ class Instance:
         self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
                                modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
         self.callbacks = fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2CallbackLoggerTYPE(lambda *words: self.messages.append(words[4].decode().replace("%%", "%")))
+        self.logger = fmi2CallbackLoggerTYPE(lambda *words: self.messages.append(words[4].decode().replace("%%", "%")))
+        self.environment = c_void_p(cast(self.logger, c_void_p).value)
+        self.runner = CDLL(str(place / "runner"))
+        self.runner.sweep_runs.restype = c_size_t
+        self.callbacks.logger = cast(self.runner.sweep_log, fmi2CallbackLoggerTYPE)
+        self.callbacks.componentEnvironment = addressof(self.environment)
         self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
         self.slave.instantiate(callbacks=self.callbacks)
         called = ("Reset", "SetupExperiment", "SetReal", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal", "GetInteger", "GetFMUstate", "SetFMUstate", "FreeFMUstate")
         self.functions = (c_void_p * len(called))(*(cast(getattr(self.slave.dll, f"fmi2{name}"), c_void_p) for name in called))
-        self.runner = CDLL(str(place / "runner"))
-        self.runner.sweep_runs.restype = c_size_t
 
     def references(self, names):
         known = {variable.name: variable.valueReference for variable in self.description.modelVariables}
@@ -66,13 +70,13 @@ class Instance:
         return problems
 
 
-VALUE, EVENTS = 0, 3  # enum RecordKind of sweep_runs.c; kinds below EVENTS refer to a variable
+VALUE, EVENTS, FIRST, EVENTS_OF = 0, 3, 4, 5  # enum RecordKind of sweep_runs.c; kinds below EVENTS refer to a variable, those from EVENTS_OF on to a contact or friction
 
 
 class Record(Structure):
     """struct Record of sweep_runs.c."""
 
-    _fields_ = [("kind", c_size_t), ("variable", c_size_t), ("time", c_double)]
+    _fields_ = [("kind", c_size_t), ("variable", c_size_t), ("time", c_double), ("name", c_char_p)]
 
 
 def variables_fields(name):
@@ -136,11 +140,13 @@ def run_by_fmi(instance, rows, names, settings):
     """Perform the runs one after another, by the functions of FMI; return their Results."""
     states, watched, sampled, records = states_of(instance.description), lawful_energies(instance.description), sampled_of(settings), settings["records"]
     variables, count = [instance.references(of) for of in (names, watched, states, sampled)], len(rows)
-    counter = instance.references(["events"] if any(kind != VALUE for _, kind, _, _ in records) and instance.counts_events() else [])
+    counter = instance.references(["events"] if any(VALUE < kind < EVENTS_OF for _, kind, _, _ in records) and instance.counts_events() else [])
+    names_events = any(kind >= EVENTS_OF for _, kind, _, _ in records)
+    instance.slave.setDebugLogging(names_events, ["logEvents", *PROBLEMS] if names_events else [])
     before, after = (np.full((count, len(watched)), np.nan) for _ in range(2))
     ends, seconds, rows = np.full((count, len(states)), np.nan), np.zeros(count), np.ascontiguousarray(rows, dtype=float)
     recorded, samples, times = np.full((count, len(records)), np.nan), np.zeros((3, len(sampled))), np.array(settings["times"], dtype=float)
-    wanted = (Record * len(records))(*((kind, sampled.index(name) if name in sampled else 0, time) for _, kind, name, time in records))
+    wanted = (Record * len(records))(*((kind, sampled.index(name) if name in sampled else 0, time, name and name.encode()) for _, kind, name, time in records))
     sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data, settings["tolerance"] or 0.0, len(times), times.ctypes.data,
                   len(counter), counter.ctypes.data, len(records), addressof(wanted), *(a.ctypes.data for a in (recorded, samples, before, after, ends, seconds)))  # fmt: skip
     problems = np.array(instance.run(sweep, count), dtype=object)

@@ -27,7 +27,7 @@ from .problem import Problem
 from .progress import Progress
 from .quantities import number_of
 from .simulation import described
-from .sweep_records import VALUE, records_of, times_of
+from .sweep_records import VALUE, check_log, records_of, times_of
 from .variables import settable, units_of, why_not
 from .whole_files import replace
 
@@ -314,6 +314,7 @@ def sweep(path, folder, words, runner, compile_ensemble):
     experiment = description.defaultExperiment
     stop = words.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
     records = records_of(words.record, description, stop)
+    check_log(path, records)
     settings = {"stop": stop, "times": times_of(records, description, stop, words.step).tolist(), "tolerance": words.tolerance, "records": records}
     output = Path(words.output or Path(folder) / f"{description.modelName}-sweep.parquet")
     archive = Path(path).read_bytes()

@@ -524,7 +524,7 @@ def sweep(
     tolerance : float, optional
         Relative tolerance; by default that of the FMU.
     record : str or sequence of str, optional
-        Columns beside the states at the end: "NAME.max", "NAME.min", "NAME@end", "NAME@TIME", "events", "events.first", and for a single
+        Columns beside the states at the end: "NAME.max", "NAME.min", "NAME@end", "NAME@TIME", "events", "events.first", and for a
         contact or friction "NAME.events" and "NAME.first". Extremes are sampled at each `step`, by default at the FMU's step size.
     scheduler : str, optional
         Address of a Dask cluster, which computes the runs in place of this machine.

@@ -269,6 +269,8 @@ static bool find_fine_impulses(const struct Resolution *resolution, struct Impac
 
 static void add_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
   double *velocity = resolution->state + lagrangian.coordinate_count;
+  for (size_t i = 0; i < impulses->contact_count; i++)
+    if (impulse[i] > 0.0) resolution->struck[impulses->member[i]] = 1.0;
   for (size_t i = 0; i < impulses->count; i++)
     for (size_t k = 0; k < lagrangian.coordinate_count; k++)
       velocity[k] += impulse[i] * impulses->velocities[i * lagrangian.coordinate_count + k];

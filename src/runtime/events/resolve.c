@@ -163,10 +163,37 @@ static void report_missing_for_frictions(const struct Resolution *resolution) {
     switches->friction_laws->report_missing(resolution, "accelerations");
 }
 
+/* Returns the mode of a contact or, after those, of a friction; one in a plane only slides, 1, or sticks, 0. */
+static double switching_mode(const struct Resolution *resolution, size_t i) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t friction = i - switches->contact_count;
+  if (i < switches->contact_count) return mode_of(resolution, switches->contacts[i].mode);
+  double mode = mode_of(resolution, switches->frictions[friction].mode);
+  return is_in_plane(switches, friction) ? mode * mode : mode;
+}
+
+static size_t switching_count(const struct SwitchTable *switches) {
+  return switches->contact_count + switches->friction_count;
+}
+
+/* Logs the name of each contact that switched or was struck, and of each friction that switched. */
+static void log_switches(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contacts = switches->contact_count;
+  for (size_t i = 0; i < switching_count(switches); i++) {
+    bool is_struck = i < contacts && resolution->struck[i] != 0.0;
+    const char *name = i < contacts ? switches->contacts[i].name : switches->frictions[i - contacts].name;
+    if (switching_mode(resolution, i) != resolution->first_mode[i] || is_struck)
+      log_message(resolution->instance, STATUS_DONE, "time %.17g: '%s' switches", resolution->time, name);
+  }
+}
+
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed) {
   struct Resolution resolution = resolution_at(instance, time, state, occasion);
   resolution.indicator = indicator;
+  for (size_t i = 0; i < switching_count(resolution.switches); i++)
+    resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);
   if (problem == NULL) problem = resolve_in_rounds(&resolution);
   bool lacks = problem == no_accelerations || problem == no_first_accelerations;
@@ -178,7 +205,10 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   if (problem == NULL) problem = check_laws(&resolution);
   if (problem == NULL) problem = keep_on_constraints(&resolution);
   if (problem == NULL) problem = continuity_check_corner(&resolution);
-  if (resolution.changed && occasion != AT_START) instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+  if (resolution.changed && occasion != AT_START) {
+    instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+    if (problem == NULL) log_switches(&resolution);
+  }
   *changed = resolution.changed;
   return problem;
 }

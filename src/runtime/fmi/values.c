@@ -145,6 +145,27 @@ static enum Status report_infinite(struct Instance *instance, const struct Scala
                          : reject_call(instance, format, variable->name, value);
 }
 
+/* Relative error of values that importers compute: a few thousand rounding errors, as of tables and ramps. */
+static const double computed_error = 1e-12;
+
+/* Returns the scale of a variable: the largest of its limits, its start value and what an input was set to before. */
+static double scale_of_variable(const struct Instance *instance, const struct ScalarVariable *variable) {
+  double scale = fabs(variable->start);
+  if (isfinite(variable->minimum)) scale = fmax(scale, fabs(variable->minimum));
+  if (isfinite(variable->maximum)) scale = fmax(scale, fabs(variable->maximum));
+  if (variable->kind != VARIABLE_INPUT) return scale;
+  scale = fmax(scale, instance->largest_input[variable->index]);
+  return scale > 0.0 ? scale : 1.0; /* an input that was 0 until now, and whose limit is 0 */
+}
+
+/* Returns a value, moved to the limit that it exceeds by no more than the error of computed values. */
+static double within_limits(const struct Instance *instance, const struct ScalarVariable *variable, double value) {
+  bool is_below = value < variable->minimum;
+  if (!is_below && !(value > variable->maximum)) return value;
+  double limit = is_below ? variable->minimum : variable->maximum;
+  return fabs(value - limit) <= computed_error * scale_of_variable(instance, variable) ? limit : value;
+}
+
 static enum Status check_value(struct Instance *instance, unsigned reference, double value, enum VariableType type) {
   const struct ScalarVariable *variable = check_reference(instance, reference, type);
   if (variable == NULL) return STATUS_ERROR;
@@ -155,6 +176,7 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
     return reject_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
                        value);
+  value = within_limits(instance, variable, value);
   if (value < variable->minimum || value > variable->maximum) return reject_range(instance, variable, value);
   return STATUS_DONE;
 }
@@ -167,7 +189,11 @@ static void end_polynomial(struct Instance *instance, size_t input) {
 }
 
 static void set_value(struct Instance *instance, const struct ScalarVariable *variable, double value) {
-  if (variable->kind == VARIABLE_INPUT) end_polynomial(instance, variable->index);
+  value = within_limits(instance, variable, value);
+  if (variable->kind == VARIABLE_INPUT) {
+    end_polynomial(instance, variable->index);
+    instance->largest_input[variable->index] = fmax(instance->largest_input[variable->index], fabs(value));
+  }
   if (variable->kind == VARIABLE_STATE && is_exchanged(instance)) {
     instance->state[variable->index] = value;
     return;

@@ -40,6 +40,7 @@ void instance_reset(struct Instance *instance) {
     if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
       instance->parameter[variable->index] = variable->start;
   }
+  memset(instance->largest_input, 0, lagrangian.input_count * sizeof *instance->largest_input);
   initial_state_follow(instance);
   instance->fmu_state->changed = CHANGED_VALUES;
   instance->parameter_constants_are_stale = instance->solver_is_stale = true;
@@ -58,7 +59,7 @@ static size_t switching_work_count(void) {
 
 static size_t evaluation_count(void) {
   return lagrangian.parameter_constants_count + lagrangian.work_count + projection_work_count() +
-         switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 2 * lagrangian.input_count +
+         switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 3 * lagrangian.input_count +
          lagrangian.parameter_count + 1;
 }
 
@@ -81,7 +82,8 @@ static void lay_out(struct Instance *instance, double *evaluation) {
   instance->acceleration = instance->switching_work + switching_work_count();
   if (lagrangian.event_laws != NULL)
     instance->event_state = instance->switching_work + lagrangian.event_laws->work_count();
-  instance->work = instance->acceleration + 2 * acceleration_count();
+  instance->largest_input = instance->acceleration + 2 * acceleration_count();
+  instance->work = instance->largest_input + lagrangian.input_count;
 }
 
 static void free_shown(const struct Instance *instance) {

@@ -97,6 +97,7 @@ struct Instance {
   bool shown_is_found; /* the reported values were computed, and differ from those set */
   double *state, *input, *parameter, *input_derivatives, *state_was_set; /* in fmu_state->values */
   void *saved;                                                           /* the solver's part of fmu_state->values */
+  double *largest_input; /* the largest magnitude that each input was set to */
   double *parameter_constants;
   bool parameter_constants_are_stale;
   bool modes_stay;                /* keep modes also before the start: those of the start are computed or read */
