@@ -90,7 +90,7 @@ const char *events_update(struct Instance *instance) {
   if (evaluate_prepare(instance) != STATUS_DONE) return no_modes;
   const struct TimeLaws *times = lagrangian.switches->time_laws;
   bool is_due = fmu_state->waiting_event == 0 && times != NULL && times->is_due(instance);
-  /* Otherwise the modes agree already; the sign of an indicator that leaves 0 is known from its event alone. */
+  /* Otherwise the modes agree already; the sign of an indicator that leaves 0 is known only from its event. */
   if (fmu_state->waiting_event == 0 && fmu_state->changed != CHANGED_VALUES && !is_due) return NULL;
   enum Occasion occasion = fmu_state->waiting_event > 0 ? AT_EVENT : AT_CHANGE;
   size_t indicator = occasion == AT_EVENT ? (size_t)fmu_state->waiting_event - 1 : 0;
@@ -127,7 +127,7 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
   const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
-  double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal to rounding */
+  double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal up to rounding, but without drift */
   const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
   const char *obstacle = start_anew(instance, step, time);
   return problem != NULL ? problem : obstacle;
@@ -150,7 +150,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     progress->searched = near;
     progress->close_events = 0;
   }
-  progress->step_limit *= 2.0;
+  progress->step_limit *= 2.0; /* no event is near: the solver's steps may grow again */
   progress->nearer = 0;
   return false;
 }
@@ -165,7 +165,10 @@ static bool may_go_further(const struct Instance *instance, const struct Communi
   return last->end > step->end && begins && !is_new && !fmu_state->input_derivatives_set;
 }
 
-/* Searches a solver step beyond the present communication step, so that the next ones need no search. */
+/*
+ * Searches a solver step beyond the present communication step, so that the next ones need no search. What prevents
+ * evaluations there must not appear in messages.
+ */
 static void search_further(struct Instance *instance, const struct CommunicationStep *step,
                            struct EventProgress *progress) {
   struct FmuState *fmu_state = instance->fmu_state;

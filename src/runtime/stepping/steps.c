@@ -40,7 +40,11 @@ static const double WORK_LIMIT = 3e10;
 static const char usual_remedy[] = "retrying will not help; restore an earlier state, and use a larger tolerance, "
                                    "other parameters or other coordinates";
 
-/* Brings the solver to the start of the step: it continues its last step or restarts. */
+/*
+ * Brings the solver to the start of the step. It continues its last step if that contains the start and nothing was set
+ * since; after a restored state it must be able to resume. Otherwise it restarts, from a state that fulfils the
+ * constraints.
+ */
 static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
   struct FmuState *fmu_state = instance->fmu_state;
@@ -117,7 +121,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
-  struct CommunicationStep near = *step;
+  struct CommunicationStep near = *step; /* ends sooner if long steps cannot separate the events */
   if (course->progress.step_limit > 0.0) near.end = fmin(step->end, last->end + course->progress.step_limit);
   problem = lagrangian.solver->advance(instance, &near);
   const char *barrier = problem;
@@ -224,7 +228,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
       return STEP_DONE;
     }
   }
-  if (problem == NULL) *reached = last->start;
+  if (problem == NULL) *reached = last->start; /* no valid state at the end: the start of the last step has one */
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* states up to the start were reported already */
   if (law != NULL) return stop(instance, step, law, true, *reached);
