@@ -24,7 +24,7 @@ struct Point {
   const Real *state;
   const Real *input;
   const Real *parameter;
-  const Real *parameter_constants; /* constants that depend on parameters alone, computed by prepare() */
+  const Real *parameter_constants; /* constants that depend only on parameters, computed by prepare() */
   Real *work;                      /* workspace of the generated functions; its values are lost at the next call */
 };
 
@@ -36,7 +36,7 @@ struct Seed {
   const Real *state;
   const Real *input;
   const Real *parameter;
-  const Real *result; /* weights of results; for gradients alone */
+  const Real *result; /* weights of results; only for gradients */
   bool repeats;       /* the point equals that of the previous call, and its workspace has not changed since */
 };
 
@@ -249,7 +249,7 @@ struct SwitchTable {
   void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
   const struct PlaneMetadata *planes; /* ascending; NULL if there are none */
   size_t plane_count;
-  /* Branches whose indicators are affine in time and otherwise depend on parameters and modes alone; ascending. */
+  /* Branches whose indicators are affine in time and otherwise depend only on parameters and modes; ascending. */
   const size_t *timed;
   size_t timed_count;
   const struct TimeLaws *time_laws;     /* time_laws.h; NULL without such branches */
@@ -399,7 +399,7 @@ struct ResultTable {
   const bool *uses_acceleration; /* [count] */
   /*
    * Returns a result. acceleration holds the accelerations and the constraint forces at the point, if they are used.
-   * result_along() returns the derivative along seed, for outputs and calculated parameters alone; acceleration_along
+   * result_along() returns the derivative along seed, only for outputs and calculated parameters; acceleration_along
    * is the derivative of acceleration.
    */
   Real (*result)(const struct Point *point, const Real *acceleration, size_t result);
@@ -471,7 +471,7 @@ struct Lagrangian {
 
   /*
    * Computes parameter_constants[parameter_constants_count] from parameter[parameter_count]: the constants that depend
-   * on parameters alone.
+   * only on parameters.
    */
   int (*prepare)(const Real *parameter, Real *parameter_constants);
   /*

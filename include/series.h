@@ -8,7 +8,7 @@
  * functions that satisfy a differential equation, such as exp and sin, have recurrences of the same shape. An order k
  * costs O(k) operations a function, a series up to order p O(p^2).
  *
- * Each sum is split into a middle part, which needs coefficients below k alone, and the terms with coefficient k. The
+ * Each sum is split into a middle part, which needs only coefficients below k, and the terms with coefficient k. The
  * middle parts of an order do not depend on each other, so the processor can overlap them.
  */
 #ifndef SERIES_H

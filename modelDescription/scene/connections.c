@@ -183,7 +183,7 @@ static void try_joint(struct Connections *connections, const struct Samples *sam
   connections->joints[connections->joint_count++] = joint;
 }
 
-/* True if the pair is tested. Objects in a frame are connected with that alone. */
+/* True if the pair is tested. Objects in a frame are connected only with that. */
 static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
   const struct Thing *a = &samples->things[first], *b = &samples->things[second];
   if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);

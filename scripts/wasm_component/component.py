@@ -10,7 +10,7 @@ MEMORY_PAGES = 128  # initial memory of the module, in pages of 64 kB
 LINK_WORDS = ["-mexec-model=reactor", "-s", "-Wl,--gc-sections", "-Wl,--import-memory", "-Wl,-z,stack-size=1048576",
               f"-Wl,--initial-memory={MEMORY_PAGES * 65536}"]  # fmt: skip
 
-# A module for the memory alone: functions of the host that read the memory must exist before the module that calls them.
+# A module that has only the memory: functions of the host that read the memory must exist before the module that calls them.
 MEMORY = f'(core module $memory (memory (export "memory") {MEMORY_PAGES}))'
 
 # A module that makes an instance: it wraps the instance's address into the handle of a resource, or returns none if the address is 0.

@@ -82,7 +82,7 @@ def start_slopes(point, by, values):
 
 
 def acting_of(point, by):
-    """Return, for each name, the list of references that act along the motion: empty for a state, which acts through the start alone."""
+    """Return, for each name, the list of references that act along the motion: empty for a state, which acts only through the start."""
     return [[] if name in point.states else [point.references[name]] for name in by]
 
 

@@ -63,7 +63,7 @@ static Node named_root(const struct Printer *printer, Node base, double *exponen
   return base;
 }
 
-/* Prints 15 digits: the other two of a double show rounding alone. */
+/* Prints 15 digits: the other two of a double show only rounding. */
 static void print_rounded(FILE *file, double value) {
   fprintf(file, "%.15g", value);
 }

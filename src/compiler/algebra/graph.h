@@ -64,7 +64,7 @@ enum SymbolKind {
   INPUT,
   DISPLACEMENT, /* virtual displacements, always 0: index 2 i is the i-th, 2 i + 1 its rate */
   REACTION,     /* reaction along a displacement, or that of a prescribed coordinate */
-  MODE,         /* changes at events alone; indices continue those of parameters */
+  MODE,         /* changes only at events; indices continue those of parameters */
   DUMMY,        /* variable of an integral or derivative while its expression is read */
   SEED_PARAMETER,
   SEED_TIME,
@@ -149,7 +149,7 @@ double operation_evaluate(enum Operation operation, double left, double right);
 /* True if the node depends on a symbol of this kind. */
 bool graph_depends_on(const struct Graph *graph, Node node, enum SymbolKind kind);
 
-/* True if the node depends on parameters and modes alone, and so is constant between events. */
+/* True if the node depends only on parameters and modes, and so is constant between events. */
 bool graph_is_constant_in_time(const struct Graph *graph, Node node);
 
 /* Marks the targets and all nodes below them; clears other flags. flags has one element for each node. */

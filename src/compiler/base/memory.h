@@ -25,7 +25,7 @@ void release_all(void);
 
 /*
  * Returns the items of a list with room for one more than count, each of size bytes. The list starts as NULL and grows
- * by this function alone: the capacity doubles at each power of two. New bytes are not initialized.
+ * only by this function: the capacity doubles at each power of two. New bytes are not initialized.
  */
 void *make_room(void *items, size_t count, size_t size);
 

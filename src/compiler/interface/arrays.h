@@ -5,7 +5,7 @@
 
 /*
  * Finds arrays: consecutive variables q[1], q[2], ... q[N], as <for> makes them, and der(q[1]), ... with them. They
- * must differ in their start values alone, and no other variable may have the array's name. If several variables of one
+ * must differ only in their start values, and no other variable may have the array's name. If several variables of one
  * <for> alternate among the states, they remain scalars.
  */
 void arrays_find(struct Interface *interface);

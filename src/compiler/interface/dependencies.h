@@ -6,7 +6,7 @@
 /* None, with a constant factor, with a factor of parameters, or other; ascending. */
 enum Dependency { INDEPENDENT, CONSTANT_FACTOR, TUNABLE_FACTOR, DEPENDENT };
 
-/* Workspace for the dependencies of one node after another. Each search visits the nodes below alone. */
+/* Workspace for the dependencies of one node after another. Each search visits only the nodes below. */
 struct Dependencies {
   const struct Model *model;
   const struct Graph *graph;

@@ -342,7 +342,7 @@ static void print_matrix(const struct Model *model, const char *name, const Node
     for (size_t j = 0; j < columns; j++) {
       Node node = matrix[i * columns + j];
       if (j > 0) printf(", ");
-      if (values != NULL) printf("%.15g", values[node]); /* 15 digits: the others show rounding alone */
+      if (values != NULL) printf("%.15g", values[node]); /* 15 digits: further ones show only rounding */
       else {
         printf("%s", expression_text(model->graph, node));
       }

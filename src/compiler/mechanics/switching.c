@@ -341,7 +341,7 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
   switching->rests = any ? rests : NULL;
 }
 
-/* True if the node depends on time, parameters and modes alone, with a nonzero rate that is constant between events. */
+/* True if the node depends only on time, parameters and modes, with a nonzero rate that is constant between events. */
 static bool is_affine_in_time(const struct Model *model, Node node, Node rate) {
   const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
   const struct Vertex *vertices = model->graph->vertices;

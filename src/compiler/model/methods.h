@@ -29,7 +29,7 @@ struct Method {
   bool needs_jacobian; /* it counts the Jacobian's evaluations */
   bool hands_over;     /* it switches between methods, and counts how often */
   bool factors; /* it factors matrices with a row for each velocity and first-order state, by lagrangian.implicit.lu */
-  bool needs_linear; /* it solves linear systems alone, in one step for each communication step */
+  bool needs_linear; /* it solves only linear systems, in one step for each communication step */
   bool uses_library; /* it uses an external library, which allocates memory itself */
 };
 

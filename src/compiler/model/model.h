@@ -156,7 +156,7 @@ struct Mechanism {
 /* In J; the dissipation in W. */
 struct Energies {
   struct Quantity kinetic;          /* K of L = K - U, of bodies and <kinetic> terms */
-  struct Quantity explicit_kinetic; /* of <kinetic> terms alone */
+  struct Quantity explicit_kinetic; /* of <kinetic> terms only */
   struct Quantity kinetic_energy;   /* the energy of both, see energies.h */
   bool driven;                      /* masses have a prescribed velocity, even if all velocities are 0 */
   struct Quantity potential, dissipation;
@@ -171,7 +171,7 @@ struct Forces {
   size_t point_count;
   struct Torque *torques;
   size_t torque_count;
-  struct Quantity driven_power; /* W: power of Cartesian forces along the motion that time alone prescribes */
+  struct Quantity driven_power; /* W: power of Cartesian forces along the motion that only time prescribes */
   bool any;                     /* the model has forces, dissipation or prescribed motions */
 };
 

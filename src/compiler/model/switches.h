@@ -72,7 +72,7 @@ struct Sample {
 struct Event {
   enum Passage passage;
   struct Sample sample; /* with PASSAGE_SAMPLES */
-  Node condition;       /* of modes alone: positive if the condition holds; for an expression, its sign */
+  Node condition;       /* of modes only: positive if the condition holds; for an expression, its sign */
   Node expression;      /* whose zero crossing is the event; ZERO for conditions and samples */
   Node last_sign;       /* of an expression, the mode with its last nonzero sign; else ZERO */
   long line;            /* of the sample, or of when, for messages */

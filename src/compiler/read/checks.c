@@ -86,7 +86,7 @@ static void warn_of_displacements(const struct Reader *reader) {
 
 static void warn_of_inertia(const struct Reader *reader, const struct Body *body, const char *what, Node inertia,
                             const double *values) {
-  /* A body in a frame may consist of moments of inertia alone, as the first link of a robot. */
+  /* A body in a frame may consist of only moments of inertia, such as the first link of a robot. */
   bool may_vanish = graph_is_constant(reader->model->graph, inertia) || body->is_in_frame;
   if (may_vanish ? values[inertia] >= 0 : values[inertia] > 0) return;
   report_warning(reader->diagnostics, body->line, "the %s of '%s' is %g at the start values; expected a positive one",

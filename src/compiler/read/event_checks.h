@@ -3,5 +3,5 @@
 
 #include "read/context/attributes.h"
 
-/* Warns of events whose expression depends on time alone and never crosses zero in the event's direction. */
+/* Warns of events whose expression depends only on time and never crosses zero in the event's direction. */
 void warn_of_events(const struct Reader *reader);

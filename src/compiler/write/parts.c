@@ -7,7 +7,7 @@ enum { PART_LENGTH = 1500 };
 
 /* Where a local variable is used. */
 struct Local {
-  /* part: the part that computes it; shared: 1 + its index in the shared space, 0 if one part alone uses it */
+  /* part: the part that computes it; shared: 1 + its index in the shared space, 0 if only one part uses it */
   size_t part, shared;
 };
 

@@ -34,7 +34,7 @@ const char *evaluate_kind(size_t constraint);
 /* Logs that a constraint cannot be fulfilled with the others. */
 void log_violated(const struct Instance *instance, enum Status status, double time, size_t constraint);
 
-/* Updates the values that depend on parameters alone. Discards, after logging, if a constant matrix is singular. */
+/* Updates the values that depend only on parameters. Discards, after logging, if a constant matrix is singular. */
 enum Status evaluate_prepare(struct Instance *instance);
 
 /*

@@ -17,7 +17,7 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* Assigns the parts of the workspace, and returns its size; with work NULL the size alone. */
+/* Assigns the parts of the workspace, and returns its size; with work NULL only returns the size. */
 static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = resolution_value_count(switches), indicators = indicator_count(switches);

@@ -4,7 +4,7 @@
  * Mathematics with Applications 39, 2000, describe the problem).
  *
  * f(t) = s_i g_i(t) - floor is sampled at the nine nodes of its Chebyshev polynomial of degree 8. The polynomial's
- * coefficients bound it over the whole interval, not at samples alone (judge_signs()). It has no zero if c_0 exceeds
+ * coefficients bound it over the whole interval, not only at samples (judge_signs()). It has no zero if c_0 exceeds
  * the sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
  * throughout, or if f is not negative at first and concave. The last two coefficients estimate the interpolation error,
  * which must be small and is allowed for. Otherwise the interval is halved, with new samples. So pairs of close zeros,

@@ -12,7 +12,7 @@
 #include "stepping/reading.h"
 
 /*
- * Sets the time, which may go back within the last step of the importer alone: not beyond the second last completed
+ * Sets the time, which may go back only within the last step of the importer: not beyond the second last completed
  * step or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
  */
 enum Status exchange_set_time(struct Instance *instance, double time) {

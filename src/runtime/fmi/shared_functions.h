@@ -1,5 +1,5 @@
 /*
- * The FMI functions that differ between versions in their names alone. Each version includes this once, after its
+ * The FMI functions that differ between versions only in their names. Each version includes this once, after its
  * struct Component and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates
  * may be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
  */

@@ -68,7 +68,7 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 }
 
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value) {
-  /* Discrete variables change in event mode alone, if the importer uses it (FMI 3.0.2, section 2.4.7). */
+  /* Discrete variables change only in event mode, if the importer uses it (FMI 3.0.2, section 2.4.7). */
   const struct FmuState *fmu_state = instance->fmu_state;
   const int64_t *counts = instance->uses_event_mode ? fmu_state->reported_statistics : fmu_state->statistics;
   for (size_t i = 0; i < count; i++) {

@@ -113,7 +113,7 @@ static bool have_types(const char *parameters) {
   return true;
 }
 
-/* True if the modes that events alone set are in their ranges. */
+/* True if the modes that only events set are in their ranges. */
 static bool are_modes(const char *parameters) {
   const struct SwitchTable *switches = lagrangian.switches;
   if (switches == NULL) return true;
@@ -126,7 +126,7 @@ static bool are_modes(const char *parameters) {
   return true;
 }
 
-/* True if the solver could have saved its part, which co-simulation alone uses. */
+/* True if the solver could have saved its part, which only co-simulation uses. */
 static bool is_solver_part_valid(const struct Instance *instance, const struct FmuState *fixed, const char *saved) {
   const struct Solver *solver = lagrangian.solver;
   return instance->kind == KIND_MODEL_EXCHANGE || solver == NULL || solver->is_saved_valid == NULL ||

@@ -19,7 +19,7 @@ static inline bool is_period(double period, double offset, double time) {
 
 /* The functions of timing/. */
 struct TimeLaws {
-  /* Finds the next time, from the present on, at which a branch that depends on time alone switches. False for none. */
+  /* Finds the next time, from the present on, at which a branch that depends only on time switches. False for none. */
   bool (*next)(struct Instance *instance, double *time);
   /* True if such a branch switches at the present time, to rounding. */
   bool (*is_due)(struct Instance *instance);

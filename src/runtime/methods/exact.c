@@ -321,7 +321,7 @@ static const char *advance(struct Instance *instance, const struct Communication
   return is_whole ? NULL : "the motion grows without bound";
 }
 
-/* A state inside the step is not available: advance() computes its end alone. */
+/* A state inside the step is not available: advance() computes only its end. */
 static bool interpolate(struct Instance *instance, double time, double *state) {
   const struct Exact *exact = instance->solver_memory;
   const struct Span *span = &instance->fmu_state->last_step;

@@ -129,7 +129,7 @@ static double move_velocities(struct Instance *instance, double time, double *st
   return size;
 }
 
-/* True if redundant constraints agree with the others: a constraint may be redundant at the start alone. */
+/* True if redundant constraints agree with the others: a constraint may be redundant only at the start. */
 static bool others_hold(const struct Work *work, const double *state, size_t first) {
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
@@ -158,7 +158,7 @@ static double project_velocities(struct Instance *instance, double time, double 
   return size;
 }
 
-/* True if all constraints are those of frictions, which leave the coordinates alone. */
+/* True if all constraints are those of frictions, which do not restrict coordinates. */
 static bool holds_velocities_alone(void) {
   return lagrangian.switches != NULL && lagrangian.constraints.count == lagrangian.switches->friction_count;
 }

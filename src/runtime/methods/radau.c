@@ -277,7 +277,7 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
     if (iteration > 1) {
       double theta = change / before;
       *contraction = iteration == 2 ? theta : sqrt(theta * *contraction);
-      bool rounds = change <= 200 * DBL_EPSILON / relative; /* the iterates change by rounding errors alone */
+      bool rounds = change <= 200 * DBL_EPSILON / relative; /* the iterates change only by rounding errors */
       if (*contraction >= 0.99 && !rounds) return 0;
       expected = rounds ? 0.0 : *contraction / (1.0 - *contraction);
       if (expected * change * pow(*contraction, ITERATION_LIMIT - 1 - iteration) > enough && !rounds) return 0;

@@ -53,7 +53,7 @@ bool plane_evaluate(struct Resolution *resolution);
 void plane_count_switch(struct Resolution *resolution, const struct PlaneState *state);
 
 /*
- * Lets the friction stick by its constraint alone. If forces are not unique, the constraint carries its share of those
+ * Lets the friction stick only by its constraint. If forces are not unique, the constraint carries its share of those
  * of least norm.
  */
 void plane_stick(struct Resolution *resolution, const struct PlaneState *state);

@@ -10,7 +10,7 @@ enum { INPUT_NODES = INPUT_ORDER + 1 };
 /* The importer's callbacks within a step, with their workspace. */
 struct Intermediate {
   /*
-   * Called at the end of a solver step, at this time. The instance holds the values of that time, for reading alone, in
+   * Called at the end of a solver step, at this time. The instance holds the values of that time, only for reading, in
    * PHASE_INTERMEDIATE_UPDATE. They are dropped afterwards. Returns the requested end of the step; end if it stays.
    */
   double (*update)(void *receiver, double time, double end);

@@ -1,4 +1,4 @@
-/* Branches that depend on time alone. */
+/* Branches that depend only on time. */
 #ifndef TIME_EVENTS_H
 #define TIME_EVENTS_H
 

@@ -1,4 +1,4 @@
-/* Common factors of products, computed once, as x y in x y z + x w y. Values change by rounding alone. */
+/* Common factors of products, computed once, as x y in x y z + x w y. Values change only by rounding. */
 #pragma once
 
 #include "algebra/graph.h"

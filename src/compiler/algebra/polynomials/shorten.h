@@ -1,6 +1,6 @@
 /*
  * Choice of the shorter of two forms of expressions. Counts the operations of all nodes together: first those that vary
- * in time, then those of parameters alone, which are evaluated once.
+ * in time, then those of only parameters, which are evaluated once.
  */
 #pragma once
 

@@ -18,7 +18,7 @@ struct Quantity {
   Node node;
   struct Dimension dimension;
   struct NumberFactor factor;
-  bool literal;    /* made of numbers alone: takes the unit of the quantity that it is added to or compared with */
+  bool literal;    /* made of plain numbers: takes the unit of the quantity that it is added to or compared with */
   Node at_instant; /* for <set>: a definition with floor, ceil, round and mod as plain values; ZERO without pieces */
   Node whole;      /* the same with all pieces as plain values */
 };

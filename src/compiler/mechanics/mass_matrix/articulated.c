@@ -86,7 +86,7 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
 
 /*
  * Upper bounds of the inertia outward of a link, with all distances stretched. Rotations leave them unchanged, so that
- * outward of revolute joints they depend on parameters alone.
+ * outward of revolute joints they depend only on parameters.
  */
 struct Load {
   Node mass;

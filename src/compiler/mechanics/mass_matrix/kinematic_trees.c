@@ -216,7 +216,7 @@ static void mark_columns(struct Builder *builder, const struct Elements *element
       builder->is_elsewhere[elements->positions[k].column] = true;
 }
 
-/* Excludes constraints that share a link: they may depend on each other, which saddle.h alone detects. */
+/* Excludes constraints that share a link: they may depend on each other, which only saddle.h detects. */
 static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
   size_t *counts = allocate(builder->trees->count, sizeof *counts);
   for (size_t j = 0; j < count; j++)

@@ -12,7 +12,7 @@ struct TreeLink {
   size_t parent;    /* index of an earlier link; NO_LINK for the base */
   size_t tree;      /* number of its tree; NO_TREE if nothing moves it, or its coordinates belong to no tree */
   struct Pose pose; /* relative to its parent */
-  size_t count;     /* number of its rows: coordinates, then constraints of these alone */
+  size_t count;     /* number of its rows: coordinates, then constraints of only these */
   size_t *coordinates;
   struct SpatialVector
       *motion_subspace; /* motion subspace: relative velocity at unit rate, for each row; 0 for a constraint */

@@ -160,7 +160,7 @@ static void append_rates(struct ElementList *list, struct Graph *graph, const st
 }
 
 /*
- * Returns the pattern alone, for a Jacobian by directional derivatives: of kinematic trees, where they cost less than
+ * Returns only the pattern, for a Jacobian by directional derivatives: of kinematic trees, where they cost less than
  * formulas for each element, and of rates that depend on values found at run time.
  */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {

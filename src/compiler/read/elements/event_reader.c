@@ -103,7 +103,7 @@ static bool is_boolean_parameter(const struct Reader *reader, Node node) {
 }
 
 /*
- * Returns a condition as a function of modes alone, so that an event can compare it before and after parameters are
+ * Returns a condition as a function of only modes, so that an event can compare it before and after parameters are
  * set. A condition of modes and parameters becomes the sign of a number that is 1/2 if it holds, else -1/2.
  */
 static Node condition_of_modes(struct Reader *reader, Node value, long line) {

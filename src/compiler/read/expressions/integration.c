@@ -47,7 +47,7 @@ struct Range {
 struct Choice {
   size_t nodes;
   double worst; /* error, relative to the integral of the magnitude */
-  bool is_near; /* the nodes suffice near the start values alone */
+  bool is_near; /* the nodes suffice only near the start values */
   struct Range *ranges;
   size_t range_count;
   bool has_value;

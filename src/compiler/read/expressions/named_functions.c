@@ -27,7 +27,7 @@ static struct Local *parse_arguments(struct Parser *parser, const struct NamedFu
   do {
     struct Quantity value = parse_sum(parser);
     if (value.literal)
-      value.dimension = dimension_unknown; /* adopts the unit of the other operand, in the expression alone */
+      value.dimension = dimension_unknown; /* adopts the unit of the other operand, only in the expression */
     value.literal = false;
     if (count < function->argument_count)
       locals[count] = (struct Local){function->arguments[count], value, count > 0 ? &locals[count - 1] : NULL};

@@ -12,7 +12,7 @@ struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFa
 struct NumberFactor factor_raised(struct NumberFactor factor, double power);
 
 /*
- * Returns the numeric factor of a sum, apart from terms that are numbers alone. There is none unless both terms have
+ * Returns the numeric factor of a sum, apart from terms that are plain numbers. There is none unless both terms have
  * one: a unit on one term would not repair the sum.
  */
 struct NumberFactor factor_of_sum(struct Quantity first, struct Quantity second);

@@ -31,7 +31,7 @@ struct Scope {
   struct Definitions *definitions;   /* names that are still to be parsed; NULL for none */
   struct Switches *switches;         /* of the model; NULL if piecewise functions stay whole, as in a linearization */
   Node *time_derivatives;            /* per symbol: its time derivative; ZERO for parameters and modes */
-  size_t time_derivative_count;      /* symbols that have an entry; modes are added to the graph alone */
+  size_t time_derivative_count;      /* symbols that have an entry; modes are added only to the graph */
   struct Derivatives rates;          /* cache of total_time_derivative() */
   const char *prefix;                /* of names in the current file: "motor." if it is included, else "" */
   bool keeps_whole;                  /* piecewise functions of the current expression stay whole */

@@ -162,7 +162,7 @@ static void write_planar(const struct Writer *writer, const struct Joint *joint,
     write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], NAN, description);
 }
 
-/* Writes the coordinates of a free body from component `first` on: 3 for a quaternion alone. */
+/* Writes the coordinates of a free body from component `first` on: 3 for only the quaternion. */
 static void write_components(const struct Writer *writer, const char *name, int first, const struct JointStart *start,
                              const char *description) {
   static const char *const components[7] = {"x", "y", "z", "qw", "qx", "qy", "qz"};
