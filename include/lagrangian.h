@@ -48,7 +48,7 @@ enum VariableKind {
   VARIABLE_INPUT,
   VARIABLE_PARAMETER,
   VARIABLE_MODE,      /* declared by the author; its index is among the parameters, of which the modes are the last */
-  VARIABLE_CONTACT,   /* of a contact or friction, likewise */
+  VARIABLE_CONTACT,   /* mode of a contact or friction, with an index as of VARIABLE_MODE */
   VARIABLE_RESULT,    /* computed when read */
   VARIABLE_STATISTIC, /* the index is an enum Statistic */
   VARIABLE_INDICATOR  /* of events; computed when read */
@@ -466,7 +466,7 @@ struct Lagrangian {
   struct ImplicitTable implicit;
   struct ConstraintTable constraints;
   const struct SwitchTable *switches;       /* NULL if nothing switches */
-  const struct EventLaws *event_laws;       /* event_laws.h; likewise */
+  const struct EventLaws *event_laws;       /* event_laws.h; NULL if nothing switches */
   const struct ReverseSweep *reverse_sweep; /* reverse_sweep.h; NULL unless lagc was asked for --adjoint */
 
   /*

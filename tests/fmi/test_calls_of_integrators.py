@@ -170,7 +170,7 @@ def test_drift_is_within_the_tolerance_of_the_steps():
 
 
 def test_changed_states_are_reported_at_events(open_fmu):
-    """valuesOfContinuousStatesChanged is true at an impact, and false at a sample that sets modes alone (FMI 2.0.4, section 3.2.2)."""
+    """valuesOfContinuousStatesChanged is true at an impact, and false at a sample that sets only modes (FMI 2.0.4, section 3.2.2)."""
     ball = falling_ball(open_fmu)
     ball.fmu.setTime(0.5)
     ball.fmu.setContinuousStates(*array(-1e-12, -3.0))

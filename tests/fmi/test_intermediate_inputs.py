@@ -114,7 +114,7 @@ def test_no_request_without_inputs_among_the_variables(opened):
 
 
 def test_inputs_that_are_not_set_keep_their_value(opened):
-    """An input set at the first node alone stays constant, while another one varies."""
+    """An input set only at the first node stays constant, while another one varies."""
     supplier = Supplier({}, lambda spring: spring.set(Fx=7.0) if len(supplier.times) == 1 else spring.set(Fy=wave(supplier.times[-1])))
     spring = supplied(opened, "ParticleCartesian", supplier, ["Fx", "Fy"]).initialize(SPRING, tolerance=1e-12)
     spring.step(0.3)

@@ -22,7 +22,7 @@ G = 9.81
 
 
 def at_end(example, values):
-    """A motion of which the values at the end alone have a closed form."""
+    """A motion of which only the values at the end have a closed form."""
     stop = float(re.search(r'stopTime="([\d.]+)"', EXAMPLES[example]).group(1))
     return lambda t: values if t > stop - 1e-9 else {}
 

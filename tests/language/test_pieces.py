@@ -141,7 +141,7 @@ def built():
 
 
 def along_curve(height, slope, curvature, x, speed, end):
-    """x and its rate of the bead at `end`, by the equation in x alone, from the height of the curve and its derivatives."""
+    """x and its rate of the bead at `end`, by the equation in only x, from the height of the curve and its derivatives."""
 
     def rate(_, state):
         f, d = slope(state[0]), curvature(state[0])
@@ -245,7 +245,7 @@ def speed_in_slot(end):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_friction_by_the_size_of_a_force(open_fmu, method):
-    """The argument of abs is a reaction force, an unknown of the equations that is no function of the state alone."""
+    """The argument of abs is a reaction force, an unknown of the equations that is not a function of only the state."""
     instance = open_fmu(f"Pressed{method}").initialize(tolerance=1e-9)
     while instance.time < 2.9:
         instance.step(0.17)

@@ -8,7 +8,7 @@ import pytest
 import fmu
 from fmu import DISCARD, ERROR, lagc
 
-# x = time. The definition is used by a sample alone, and by an event alone.
+# x = time. The definition is used only by a sample, and only by an event.
 ROUNDED = """<system name="Rounded{name}"><state name="x" rate="1"/><mode name="n"/>
 <define name="r">round(3*x) + {more}</define><define name="twice">2*r</define><output name="o">x</output>
 {set}<set mode="n">twice</set>{end}</system>"""

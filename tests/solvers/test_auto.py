@@ -71,7 +71,7 @@ def test_decades_of_damping(b, step, open_fmu):
 
 
 def test_only_systems_that_may_be_stiff():
-    """Systems without dissipation, and without forces that depend on velocities or inputs, use the series alone."""
+    """Systems without dissipation, and without forces that depend on velocities or inputs, use only the series."""
     methods = {}
     for name in TEXTS:
         variables = {v.name for v in fmpy.read_model_description(str(fmu.archive(f"Auto{name}"))).modelVariables}

@@ -1,4 +1,4 @@
-"""Contacts in MJCF: friction, masks, priorities, pairs; and contacts that exist in MuJoCo alone."""
+"""Contacts in MJCF: friction, masks, priorities, pairs; and contacts that exist only in MuJoCo."""
 
 import math
 import re

@@ -132,7 +132,7 @@ def co_simulate(case):
 
 
 def exchange_model(case):
-    """Integrate the case by FMPy's CVode, where the FMU computes derivatives alone."""
+    """Integrate the case by FMPy's CVode, where the FMU computes only derivatives."""
     names, messages = recorded_names(case.system), []
     log = lambda environment, name, status, category, text: status > 1 and messages.append(text.decode())
     try:

@@ -1,4 +1,4 @@
-"""Conditions in `when` of modes and Boolean parameters alone, joined by and, or and not."""
+"""Conditions in `when` of only modes and Boolean parameters, joined by and, or and not."""
 
 import itertools
 

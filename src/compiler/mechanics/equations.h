@@ -27,7 +27,7 @@ struct Equations {
   Node kinetic, potential, total;               /* energies, see energies.h */
   Node *outputs;                                /* of the model */
   Node *reactions;                              /* of the model; may contain acceleration symbols */
-  Node *element_variables;                      /* of the model; likewise */
+  Node *element_variables;                      /* of the model; may contain acceleration symbols */
   const struct Method *method;                  /* solver; NULL without coordinates and states */
   const struct SwitchingExpressions *switching; /* NULL if nothing switches */
 };

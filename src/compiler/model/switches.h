@@ -61,7 +61,7 @@ struct Assignment {
   Node symbol, value;
 };
 
-/* Sampling times base + count period. These are modes, since base and period change if the period is set anew. */
+/* Sampling times base + count period. These are modes, since base and period change when the period is changed. */
 struct Sample {
   Node base, count, period;
   Node every, offset; /* period and first time, constant between events */

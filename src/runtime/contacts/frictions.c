@@ -3,7 +3,7 @@
  * while the force of its constraint is within the stiction. It slides while its velocity, or at rest its acceleration,
  * has the sign of its mode. The accelerations for given modes make this a complementarity problem, which is solved by
  * Murty's least-index method: each round switches the first friction that disagrees, and the accelerations are
- * evaluated anew. For linear complementarity problems with a P-matrix it ends (Cottle, Pang and Stone, The Linear
+ * evaluated again. For linear complementarity problems with a P-matrix it ends (Cottle, Pang and Stone, The Linear
  * Complementarity Problem, chapter 4). Beyond FRICTION_FLIP_LIMIT switches of one friction jams.c tries all modes; if
  * that fails too, the motion ends with a message.
  */

@@ -212,7 +212,7 @@ static const double largest_deviation = 1e-3;
 
 /*
  * Projects the state for the present modes before these are judged. The residual of an integrator is no motion: a
- * closed contact would take a rate of -1e-6 m/s for an impact. The state follows small changes of parameters likewise.
+ * closed contact would take a rate of -1e-6 m/s for an impact. The state also follows small changes of parameters.
  */
 static void return_to_constraints(struct Instance *instance) {
   double *state = instance->event_state;

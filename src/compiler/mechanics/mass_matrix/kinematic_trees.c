@@ -21,7 +21,7 @@ struct Builder {
   struct KinematicTrees *trees;
   size_t row_count;     /* coordinates and constraints */
   size_t *last_link;    /* of each frame; NO_LINK if it is fixed to the base */
-  size_t *link_of_body; /* of each body in a frame, likewise */
+  size_t *link_of_body; /* of each body in a frame: the last link of its frame */
   size_t *link_of;      /* of each row; NO_LINK for none */
   bool *is_elsewhere;   /* of each row: inertia or constraints outside its link depend on it */
   Node *at_rest;        /* replacements of symbols: displacements are 0 */

@@ -11,7 +11,7 @@ struct Similar {
 
 /*
  * Considers a known name. It is similar if it differs only in case, or by one typing error, or two from 6 letters on.
- * Names below 3 letters must match but for case. The best name has the smallest distance, then the longest common
+ * Names below 3 letters must be equal except for case. The best name has the smallest distance, then the longest common
  * beginning, then the first position in the alphabet.
  */
 void similar_consider(struct Similar *similar, const char *known);

@@ -51,7 +51,7 @@ static struct Vector stretch_of(struct Graph *graph, const struct JointEnd *from
 
 /*
  * Returns 2 sin(angle/2) times the unit axis of the relative rotation R: twice the vector part of its unit quaternion,
- * (R[k][j] - R[j][k]) / sqrt(1 + trace R) for cyclic i, j, k. It is smooth but for half turns.
+ * (R[k][j] - R[j][k]) / sqrt(1 + trace R) for cyclic i, j, k. It is smooth except at half turns.
  */
 static struct Vector twist_of(struct Graph *graph, const struct JointEnd *from, const struct JointEnd *to) {
   struct Vector twist;
