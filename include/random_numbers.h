@@ -51,8 +51,8 @@ static inline double random_product(double x, double y) {
 }
 
 /*
- * Returns the natural logarithm of a positive number, to a few roundings: the series of 2 atanh((m - 1)/(m + 1)) up to
- * degree 23, for a mantissa m in [0.7, 1.42).
+ * Returns the natural logarithm of a positive number, to a few rounding errors: the series of 2 atanh((m - 1)/(m + 1))
+ * up to degree 23, for a mantissa m in [0.7, 1.42).
  */
 static inline double random_logarithm(double x) {
   int exponent;

@@ -79,7 +79,7 @@ def column(boxes):
         for k in range(1, boxes + 1)
     )
     return f"""<system name="Column{boxes}">{HEAD}{SIDES}{WEIGHT}<shape name="top0" type="plane"/>{every}<experiment stopTime="2"/></system>"""
-# A stone near the ball: their distance contains a square root, so that the search for events uses windows.
+# A stone near the ball: their distance contains a square root, so that the search for events bounds its intervals.
 BESIDE_STONE = ON_PLANE.replace("OnPlane", "BesideStone").replace("<experiment", """<coordinate name="h" velocity="vh" unit="m" start="3"/>
   <particle name="stone" mass="m" x="0.5" y="1" z="h"/><shape name="pebble" in="stone" type="sphere" radius="r"/>
   <contact name="hit" between="ball" and="pebble"/><solver tolerance="1e-8"/><experiment""")

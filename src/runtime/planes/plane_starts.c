@@ -1,7 +1,7 @@
 /*
  * Slip directions at the onset of slip. A friction at its limit S slides from rest along the unit vector d for which
- * its acceleration a(d), with the friction force -S d, is a nonnegative multiple of d. With the mobility K of its
- * velocity, a(d) = b - S K d; for a symmetric positive definite K there is one d if |K^-1 b| >= S, else it sticks. The
+ * its acceleration a(d), with the friction force -S d, is a nonnegative multiple of d. With the Delassus matrix W of its
+ * velocity, a(d) = b - S W d; for a symmetric positive definite W there is one d if |W^-1 b| >= S, else it sticks. The
  * acceleration across d is a function of the angle of d. Where it changes from left to right, the angle is bracketed in
  * one of SECTORS sectors, the nearest to the last direction first. It is located by false position with halved weights
  * (a variant of the Illinois method) and a bisection every third step. The directions of several frictions are found

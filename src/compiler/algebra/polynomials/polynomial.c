@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 
-/* A sum below this share of its summands is a rounding error of 0: some hundred roundings. */
+/* A sum below this share of its summands is a rounding error of 0: some hundred rounding errors. */
 static const double cancellation = 1e-13;
 
 static struct Polynomial with_capacity(size_t count) {
