@@ -373,13 +373,27 @@ def test_many_runs_at_once():
     ('when="time &lt; 1 or time &gt; 2"', None),
     ('when="time &gt;= o"', None),
     ('when="time &gt;= 0 and x &lt; 1"', None),
+    ('when="x^2"', 'when="x\\^2" is never below 0, so that it does not pass 0; expected an expression that changes its sign'),
+    ('when="abs(v)"', "is never below 0"),
+    ('when="-exp(x) - x^2"', "is never above 0"),
+    ('when="2 + sin(x)*cos(v)"', "is never below 0"),
+    ('when="2*sin(x) - cos(v)"', None),
+    ('when="x^2 - 1e-9"', None),
+    ('when="x^3"', None),
+    ('when="x^2*v"', None),
+    ('when="sin(x) &gt; 2"', 'when="sin\\(x\\) > 2" holds at no time; expected a condition that comes to hold'),
+    ('when="abs(v) &lt; -1 or tanh(x) &gt; 1"', "holds at no time"),
+    ('when="cos(x) &lt; 2"', "holds at all times"),
+    ('when="cos(x) &lt; 2 and v &gt; 1"', None),
+    ('when="abs(v) &gt; 1"', None),
+    ('when="Ts &gt; 1"', None),
 ])  # fmt: skip
 def test_events_that_never_happen(event, message, tmp_path):
     """A mode that another event sets may make the event occur."""
     import re
 
     system = tmp_path / "system.xml"
-    system.write_text('<system name="A"><parameter name="Ts" start="0.1" unit="s"/><coordinate name="x" velocity="v" unit="m"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
+    system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><coordinate name="x" velocity="v"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
                       f'<event {event}><set mode="n">n + 1</set></event><event when="x - 1"><set mode="o">2</set></event></system>')  # fmt: skip
     said = fmu.lagc(system, "-o", tmp_path).stderr
     assert re.search(f"the event never happens: .*{message}", said) if message else "never happens" not in said, said

@@ -5,6 +5,7 @@
 
 #include "algebra/cone.h"
 #include "base/memory.h"
+#include "read/bounds.h"
 
 /* Samples of an expression: at the start, 1 s and 2 s later. */
 enum { TIMES = 3 };
@@ -146,13 +147,42 @@ static void warn_of_condition(const struct Reader *reader, const struct Event *e
                  event->text, at_start ? "holds at the start, and does not come to hold later" : "holds at no time");
 }
 
+/* Warns of an expression that does not change its sign. */
+static void warn_of_sign(const struct Reader *reader, const struct Event *event) {
+  struct Bounds bounds = bounds_of(reader->model, event->expression, NULL);
+  if (bounds.low < 0.0 && bounds.high > 0.0) return;
+  report_warning(reader->diagnostics, event->line,
+                 "the event never happens: when=\"%s\" is never %s 0, so that it does not pass 0; expected an "
+                 "expression that changes its sign, or a condition such as x > 1",
+                 event->text, bounds.low < 0.0 ? "above" : "below");
+}
+
+/* Warns of a condition whose comparisons have one outcome for all values. False if there is no warning. */
+static bool warn_of_outcome(const struct Reader *reader, const struct Event *event) {
+  const struct Model *model = reader->model;
+  size_t count = model->switches.branch_count;
+  struct Bounds *indicators = allocate(count, sizeof *indicators);
+  bool *is_used = allocate(count, sizeof *is_used);
+  cone_collect(model->graph->cone, model->graph, &event->condition, 1);
+  for (size_t i = 0; i < count; i++) is_used[i] = cone_has(model->graph->cone, model->switches.branches[i].mode);
+  for (size_t i = 0; i < count; i++)
+    if (is_used[i]) indicators[i] = bounds_of(model, model->switches.branches[i].indicator, NULL);
+  struct Bounds bounds = bounds_of(model, event->condition, indicators);
+  if (bounds.low <= 0.0 && bounds.high > 0.0) return false;
+  report_warning(reader->diagnostics, event->line,
+                 "the event never happens: when=\"%s\" holds at %s; expected a condition that comes to hold",
+                 event->text, bounds.high > 0.0 ? "all times" : "no time");
+  return true;
+}
+
 void warn_of_events(const struct Reader *reader) {
   const struct Model *model = reader->model;
   for (size_t i = 0; i < model->switches.event_count; i++) {
     const struct Event *event = &model->switches.events[i];
-    if (event->passage == PASSAGE_HOLDS) warn_of_condition(reader, event);
+    if (event->passage == PASSAGE_HOLDS && !warn_of_outcome(reader, event)) warn_of_condition(reader, event);
     if (event->expression == ZERO) continue;
     cone_collect(model->graph->cone, model->graph, &event->expression, 1);
     if (count_switches(model) == 0 && is_alone(model, event)) warn_of_event(reader, event);
+    else warn_of_sign(reader, event);
   }
 }

@@ -24,6 +24,14 @@ static bool is_moving(const struct Model *model, Node constraint) {
   return simplify_fraction(graph, value) != ZERO;
 }
 
+/* Returns what gives the input as many time derivatives as a constraint needs. */
+static char *remedy_for_input(const struct Model *model, size_t input, size_t needed) {
+  if (!is_input_rate(model, input)) return format_text("derivatives=\"%zu\" of this <input>", needed);
+  if (needed == 1 && !is_input_rate(model, input - 1))
+    return format_text("derivatives=\"2\" of the <input> '%s'", model->inputs.items[input - 1].name);
+  return copy_text("the <input> itself in place of its derivative");
+}
+
 /*
  * Reports inputs with too few time derivatives. The constraint on accelerations contains second derivatives of inputs
  * in holonomic constraints, and first ones in those of velocities.
@@ -38,9 +46,7 @@ static void require_rates(const struct Reader *reader, const struct Variable *co
     report_error(reader->diagnostics, constraint->line,
                  "the constraint '%s' needs the %s derivative of '%s'; expected %s", constraint->name,
                  needed == 1 ? "time" : "second", model->inputs.items[input].name,
-                 is_input_rate(model, input) ? "the <input> itself in place of its derivative"
-                 : needed == 1               ? "derivatives=\"1\" of this <input>"
-                                             : "derivatives=\"2\" of this <input>");
+                 remedy_for_input(model, input, needed));
   }
 }
 

@@ -123,9 +123,10 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   consider_own(&similar, parser->scope->tables, parser->scope->prefix);
   consider_own(&similar, parser->scope->functions, parser->scope->prefix);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
+  bool joins_conditions = strcmp(name, "and") == 0 || strcmp(name, "or") == 0;
   if (similar.best != NULL && *hint_for_function(name) == '\0')
     FAIL(parser, "%s: unknown function '%s'; did you mean '%s'?", parser->location.what, name, similar.best);
-  else if (is_known(parser, name))
+  else if (is_known(parser, name) && !joins_conditions)
     FAIL(parser, "%s: '%s' is not a function; write * for a product", parser->location.what, name);
   else if (*hint_for_function(name) != '\0')
     FAIL(parser, "%s: unknown function '%s'%s", parser->location.what, name, hint_for_function(name));

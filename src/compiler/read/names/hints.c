@@ -80,6 +80,26 @@ static const struct Hint of_functions[] = {
     {"randn", "; write gauss(seed, k) with whole numbers k, such as floor(time/0.01)"},
     {"noise", "; write gauss(seed, k) with whole numbers k, such as floor(time/0.01)"},
     {"cbrt", "; write sign(x)*abs(x)^(1/3)"},
+    {"fix", "; write sign(x)*floor(abs(x))"},
+    {"sqr", "; write x^2"},
+    {"sec", "; write 1/cos(x)"},
+    {"csc", "; write 1/sin(x)"},
+    {"cot", "; write 1/tan(x)"},
+    {"erf", "; write 2/sqrt(pi)*integral(s, 0, x, exp(-s^2))"},
+    {"deg2rad", "; write x*pi/180"},
+    {"radians", "; write x*pi/180"},
+    {"rad2deg", "; write x*180/pi"},
+    {"degrees", "; write x*180/pi"},
+    {"derivative", "; write der for a time derivative, diff(e, s) for one by a name"},
+    {"pulse", "; write if(w > mod(time, T), 1, 0) for pulses of the length w"},
+    {"piecewise", "; write if(c, a, b), or <table name=\"f\"> and f(x)"},
+    {"and", "; write and between two conditions, as in x > 0 and y > 0"},
+    {"or", "; write or between two conditions, as in x > 0 or y > 0"},
+    {"pre", "; write the name alone, whose value in <set> is that before the event"},
+    {"previous", "; write the name alone, whose value in <set> is that before the event"},
+    {"edge", "; write the condition alone in when=\"...\", which is an event when it comes to hold"},
+    {"sample", "; write <sample every=\"...\"> in place of the <event>"},
+    {"initial", "; write start=\"...\" of what has another value at the start"},
 };
 
 static const struct Hint of_names[] = {
@@ -159,6 +179,8 @@ const char *hint_for_text(const char *begin, const char *next) {
   if (next > begin && isdigit((unsigned char)*next) && next[-1] == ' ')
     return "; write * for a product, and nothing between thousands, as in 1000";
   if (strncmp(next, "deg", 3) == 0 && next > begin) return "; write radians, as in 30*pi/180";
+  if (strncmp(next, "mod ", 4) == 0) return "; write mod(a, b)";
+  if (strncmp(next, "AND ", 4) == 0 || strncmp(next, "OR ", 3) == 0) return "; write and, or in small letters";
   if (next > begin && isalpha((unsigned char)*next) && next[-1] == ' ')
     return "; write * for a product, and units in unit=\"...\"";
   for (size_t i = 0; i < sizeof of_text / sizeof *of_text; i++)
