@@ -82,7 +82,8 @@ static fmi2Status initialize(void) {
   fmu.fmi2SetupExperiment(c, fmi2True, 1e-4, now, fmi2False, 0.0);
   fmu.fmi2EnterInitializationMode(c);
   fmi2Status status = fmu.fmi2ExitInitializationMode(c);
-  if (one_in(2)) fmu.fmi2EnterContinuousTimeMode(c);
+  fmi2EventInfo event;
+  if (one_in(2) && fmu.fmi2NewDiscreteStates(c, &event) == fmi2OK) fmu.fmi2EnterContinuousTimeMode(c);
   return status;
 }
 

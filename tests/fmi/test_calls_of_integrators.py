@@ -4,8 +4,11 @@ from ctypes import c_double
 
 import numpy as np
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model
+from fmpy.fmi3 import FMU3Model
 
+import fmi3
 import fmu
 from fmu import DISCARD, ERROR
 
@@ -69,14 +72,54 @@ def test_a_time_before_the_last_step(open_fmu):
     ball.free_state(state)
 
 
+@pytest.mark.parametrize("kind", [FMU2Model, FMU3Model])
+def test_times_past_the_stop_time(kind):
+    """
+    Nobody computes past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2): no step is completed and no event handled there. An
+    integrator such as CVode may still evaluate beyond it, and interpolate back.
+    """
+    module = fmu if kind is FMU2Model else fmi3
+    opened = lambda: module.Instance("BouncingBall", kind=kind)
+
+    def falling(instance):
+        if kind is FMU2Model:
+            instance.initialize(stop_time=1.0).fmu.newDiscreteStates()
+        else:
+            instance.initialize(stopTime=1.0).fmu.updateDiscreteStates()
+        instance.fmu.enterContinuousTimeMode()
+        return instance
+
+    for call in ("completedIntegratorStep", "enterEventMode"):
+        ball = falling(opened())
+        ball.fmu.setTime(1.5)
+        ball.get("der(v)")
+        ball.fmu.setTime(1.0 + 1e-15)
+        ball.fmu.completedIntegratorStep()
+        ball.fmu.setTime(1.0 + 1e-6)
+        with pytest.raises(FMICallException) as raised:
+            getattr(ball.fmu, call)()
+        assert raised.value.status == ERROR
+        assert "the time is 1.000001; expected none past stopTime 1" in ball.messages[-1][2]
+        ball.free()
+
+
 def test_a_due_event_cannot_be_skipped(open_fmu):
-    """Event mode cannot end while a bounce is due for which the discrete states were not updated (FMI 2.0.4, section 3.2.2)."""
-    ball = falling_ball(open_fmu)
-    ball.fmu.enterEventMode()
-    ball.fmu.enterContinuousTimeMode()  # no event is due
+    """Event mode cannot end without an update of the discrete states, also if no event is due (FMI 2.0.4, section 3.2.2)."""
+    missing = "expected an update of the discrete states before it, in each event mode"
+    ball = open_fmu("BouncingBall", kind=FMU2Model).initialize()
+    state = ball.fmu.getFMUstate()
+    with ball.fails(ERROR, missing):
+        ball.fmu.enterContinuousTimeMode()
+    ball.fmu.setFMUstate(state)
+    with ball.fails(ERROR, missing):
+        ball.fmu.enterContinuousTimeMode()
+    ball.free_state(state)
+    ball.reset().initialize()
+    ball.fmu.newDiscreteStates()
+    ball.fmu.enterContinuousTimeMode()
     ball.fmu.setContinuousStates(*array(-1e-6, -1.0))
     ball.fmu.enterEventMode()
-    with ball.fails(ERROR, "an event is due; expected an update of the discrete states"):
+    with ball.fails(ERROR, missing):
         ball.fmu.enterContinuousTimeMode()
     ball.reset().initialize()
     ball.fmu.newDiscreteStates()

@@ -168,6 +168,7 @@ def test_event_indicators(opened):
     """The indicator of a ball in the air is its gap; that of the ball at rest on the ground is the force, m g."""
     ball = opened("BouncingBall", kind=FMU3Model).initialize({"h": 0.5})
     for height in (0.5, -0.1):
+        ball.fmu.updateDiscreteStates()
         ball.fmu.enterContinuousTimeMode()
         ball.fmu.setContinuousStates((c_double * 2)(height, 0.0), 2)
         value = (c_double * 1)()

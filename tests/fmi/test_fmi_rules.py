@@ -74,6 +74,7 @@ def test_setting_by_state(open_fmu):
 def test_parameters_of_model_exchange_wait_for_an_event(open_fmu):
     instance = open_fmu("DampedPendulum", kind=FMU2Model).initialize()
     instance.set(b=0.7)
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     instance.set(tau=0.1)
     with instance.fails(ERROR, "'b' cannot be set"):
@@ -301,6 +302,7 @@ def test_velocities_are_read_where_there_are_no_accelerations(open_fmu):
     """
     name, speed = "ParticleSpherical", 3.0
     instance = open_fmu(name, kind=FMU2Model).initialize()
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     states = fmu.states_of(name)
     values = dict.fromkeys(states, 1.0) | {states[0]: 0.0, states[3]: speed}  # at the centre, where accelerations are undefined

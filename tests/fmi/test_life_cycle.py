@@ -159,6 +159,8 @@ def bring_to(instance, state):
         with pytest.raises(FMICallException) as raised:
             instance.step(2.0)
         assert raised.value.status == DISCARD
+    if isinstance(instance.fmu, FMU2Model):
+        instance.fmu.newDiscreteStates()
     if state == "continuous":
         instance.fmu.enterContinuousTimeMode()
     if state == "terminated":
@@ -215,6 +217,7 @@ def test_every_function_survives_null(kind, open_fmu):
         assert raw(None, *arguments(instance, function)) == ERROR
     instance.initialize()
     if kind is FMU2Model:
+        instance.fmu.newDiscreteStates()
         instance.fmu.enterContinuousTimeMode()
     for function in ("fmi2GetReal", "fmi2SetReal", "fmi2GetInteger"):
         assert call(instance, function, None, c_size_t(1), None) == ERROR

@@ -44,8 +44,8 @@ TABLE = {
     "fmi3GetContinuousStates":        {"CS": "-    -    -    -    -    -", "ME": "-    x    x    x    x    x"},
     "fmi3GetNominalsOfContinuousStates": {"CS": NEVER["CS"], "ME": "-    x    x    x    x    x"},
     "fmi3GetEventIndicators":         {"CS": "-    -    -    -    -    -", "ME": "-    x    x    x    x    x"},
-    "fmi3GetNumberOfContinuousStates": {"CS": NEVER["CS"], "ME": "x    x    x    x    x    x"},
-    "fmi3GetNumberOfEventIndicators": {"CS": "-    -    -    -    -    -", "ME": "x    x    x    x    x    x"},
+    "fmi3GetNumberOfContinuousStates": {"CS": NEVER["CS"], "ME": "x    -    x    -    -    -"},
+    "fmi3GetNumberOfEventIndicators": {"CS": "-    -    -    -    -    -", "ME": "x    -    x    -    -    -"},
     "fmi3GetOutputDerivatives":       {"CS": "-    -    x    x    x    x", "ME": "-    -    -    -    -    -"},
     "fmi3DoStep":                     {"CS": "-    -    x    -    -    -", "ME": "-    -    -    -    -    -"},
     # Features that the FMU does not declare: structural parameters, clocks, event mode of co-simulation, model partitions.
@@ -123,6 +123,8 @@ def bring_to(instance, state):
     if state == "initialization":
         return
     instance.fmu.exitInitializationMode()
+    if isinstance(instance.fmu, FMU3Model):
+        instance.fmu.updateDiscreteStates()
     if state == "continuous":
         instance.fmu.enterContinuousTimeMode()
     if state == "terminated":

@@ -37,7 +37,7 @@ def test_events_that_are_pending_as_continuous_time_begins(open_fmu):
     """Pending events are errors, whether a parameter set after the last update causes them, also in the first event mode, or the time is due."""
     timer = fmu.Instance("Timer", kind=FMU2Model).initialize()
     timer.set(t0=-1.0)
-    with timer.fails(ERROR, "an event is due; expected an update of the discrete states before it"):
+    with timer.fails(ERROR, "expected an update of the discrete states before it"):
         timer.fmu.enterContinuousTimeMode()
     timer.reset().initialize()
     timer.fmu.newDiscreteStates()
@@ -50,10 +50,11 @@ def test_events_that_are_pending_as_continuous_time_begins(open_fmu):
         timer.fmu.enterContinuousTimeMode()
     timer.free_state(state)
     timer.reset().initialize()
+    timer.fmu.newDiscreteStates()
     timer.fmu.enterContinuousTimeMode()
     timer.fmu.setTime(0.5)
     timer.fmu.enterEventMode()
-    with timer.fails(ERROR, "an event is due"):
+    with timer.fails(ERROR, "expected an update of the discrete states before it"):
         timer.fmu.enterContinuousTimeMode()
     timer.free()
 
@@ -81,6 +82,51 @@ def test_counts_change_in_event_mode_alone(early):
         before = after
 
 
+def test_events_without_early_return():
+    """
+    An importer that uses event mode without early return sees an event at the end of its step (FMI 3.0.2, section 4.2.1): the ball, released at
+    1 m, hits the ground at sqrt(2/g) = 0.4515 s. Event mode then has nothing more to do.
+    """
+    ball = fmi3.Instance("BouncingBall", eventModeUsed=True, earlyReturnAllowed=False).initialize({"h": 1.0, "v": 0.0})
+    assert ball.get("g") == 9.81
+    ball.fmu.updateDiscreteStates()
+    ball.fmu.enterStepMode()
+    signals = []
+    for k in range(1, 7):
+        needed, _, early, time = ball.step(0.1)
+        assert not early and time == pytest.approx(0.1 * k, rel=1e-14)
+        signals.append(needed)
+        if needed:
+            before = list(ball.get("h", "v"))
+            ball.fmu.enterEventMode()
+            assert not any(ball.fmu.updateDiscreteStates())
+            assert list(ball.get("h", "v")) == before and before[1] > 0
+            ball.fmu.enterStepMode()
+    assert signals == [False, False, False, False, True, False]
+
+
+def test_events_at_the_end_of_a_step():
+    """An event that is due at the end of a step is signalled there, and left to event mode."""
+    servo = fmi3.Instance("DigitalServo", eventModeUsed=True, earlyReturnAllowed=False).initialize()
+    for _ in range(3):
+        following = servo.fmu.updateDiscreteStates()[-1]
+        servo.fmu.enterStepMode()
+        before = servo.get("u")
+        assert not servo.step((following - servo.time) / 2)[0]
+        needed, _, early, time = servo.step(following - servo.time)
+        assert needed and not early and time == following
+        assert list(servo.get("u")) == list(before)
+        servo.fmu.enterEventMode()
+
+
+def test_step_mode_without_an_update():
+    """Step mode begins after an update of the discrete states, as continuous-time mode does (FMI 3.0.2, section 2.3.5)."""
+    ball = fmi3.Instance("BouncingBall", eventModeUsed=True).initialize()
+    with pytest.raises(FMICallException):
+        ball.fmu.enterStepMode()
+    assert "expected an update of the discrete states before it, in each event mode" in ball.messages[-1][2]
+
+
 def test_counts_without_event_mode_are_present_ones():
     ball = fmi3.Instance("BouncingBall").initialize()
     ball.step(1.0)
@@ -93,6 +139,7 @@ def test_calls_that_may_not_be_discarded(open_fmu):
     error ends the simulation.
     """
     particle = open_fmu("ParticleSpherical", kind=FMU2Model).initialize()
+    particle.fmu.newDiscreteStates()
     particle.fmu.enterContinuousTimeMode()
     particle.fmu.setContinuousStates((c_double * 6)(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 6)
     with particle.fails(fmu.DISCARD, "singular"):

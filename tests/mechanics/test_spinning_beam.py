@@ -39,6 +39,7 @@ def test_frequencies(eta, open_fmu):
     """Frequencies are eigenvalues of the linearized motion about steady rotation, by directional derivatives."""
     unit = np.sqrt(EI / (RHO_A * L**4))
     instance = open_fmu("SpinningBeam", kind=FMU2Model).initialize({"W": eta * unit, "T": 1.0}, start_time=2.0)
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     names = [*(f"w[{i}]" for i in range(1, 4)), *(f"u[{i}]" for i in (1, 2))]
     states = [*names, *(name[0] + "Dot" + name[1:] for name in names)]

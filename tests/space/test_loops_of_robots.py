@@ -257,6 +257,7 @@ def test_accelerations_and_forces(name, open_fmu):
     states, random = fmu.states_of(name), np.random.default_rng(1)
     order = [states.index(f"r.{joint}") for joint in reference.names] + [states.index(f"r.{joint}_velocity") for joint in reference.names]
     instance.initialize({f"r.{joint}": float(q) for joint, q in zip(reference.names, start_of(name, reference, random))})
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     state, derivatives = (c_double * len(states))(), (c_double * len(states))()
     torque_of = lambda joint: f"r.{joint}_{'force' if joint.startswith('piston') else 'torque'}"

@@ -395,6 +395,7 @@ def enter_and_leave_events(instance):
 def check_accelerations(name, text, instance, digits, files=None):
     reference = Reference(text, files)
     instance.initialize({})
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     states, inputs, names = fmu.states_of(name), fmu.names_of(name, "input"), reference.names()
     order = [states.index(joint) for joint in names]
@@ -460,6 +461,7 @@ def test_joints_that_follow_others(open_fmu):
     share = np.array([[1.0, 0.0], [-0.5, 0.0], [0.0, 1.0]])
     random = np.random.default_rng(1)
     instance.initialize({})
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     names = fmu.states_of("Coupled")
     state, derivatives = (c_double * 4)(), (c_double * 4)()
@@ -597,6 +599,7 @@ def test_loops(name, open_fmu):
     reference, instance = Reference(LOOPED.format(EQUALITIES[name])), open_fmu(name, kind=FMU2Model)
     loops, model, data, random = Loops(reference), reference.model, reference.data, np.random.default_rng(1)
     instance.initialize({})
+    instance.fmu.newDiscreteStates()
     instance.fmu.enterContinuousTimeMode()
     states, names = fmu.states_of(name), reference.names()
     order = [states.index(joint) for joint in names]

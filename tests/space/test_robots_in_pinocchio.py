@@ -111,6 +111,7 @@ class Evaluation:
         description = self.instance.description
         losses = [v.name for v in description.modelVariables if v.name.endswith(("_damping", "_friction"))]
         self.instance.initialize(dict.fromkeys(losses, 0.0))
+        self.instance.fmu.newDiscreteStates()
         self.instance.fmu.enterContinuousTimeMode()
         self.states = fmu.states_of(name)
         self.inputs = fmu.names_of(name, "input")

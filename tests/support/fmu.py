@@ -185,6 +185,7 @@ class Instance:
         """Enter continuous-time mode of model exchange at these values, whose states need not satisfy the constraints."""
         values, states = dict(values), [unknown.variable.derivative.name for unknown in self.description.derivatives]
         self.reset().initialize(start_time=time)
+        self.fmu.newDiscreteStates()
         self.set({name: value for name, value in values.items() if name not in states})
         if self.description.numberOfEventIndicators:
             self.fmu.newDiscreteStates()

@@ -126,6 +126,9 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
                               size_t indicator) {
   if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
   if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
+  /* an importer in event mode without early return handles the events at the end of a step */
+  if (instance->uses_event_mode && step->end - time <= rounding_of_time(step->end))
+    return stop_at_event(instance, step, step->end, indicator);
   const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
   double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal up to rounding, but without drift */
   const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);

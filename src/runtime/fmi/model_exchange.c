@@ -84,15 +84,29 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
   return status;
 }
 
-void exchange_enter_event_mode(struct Instance *instance) {
+/*
+ * Refuses to compute past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2). Completed steps and events
+ * count. Trial points of an integrator do not: CVode steps past the last output, and interpolates back.
+ */
+static enum Status check_stop_time(struct Instance *instance) {
+  const struct FmuState *fmu_state = instance->fmu_state;
+  double time = fmu_state->time, stop = fmu_state->stop_time;
+  double rounding = 8.0 * DBL_EPSILON * fabs(time) + 1e-6 * fmax(0.0, time - fmu_state->last_step.end);
+  if (!fmu_state->stop_time_defined || time - stop <= rounding) return STATUS_DONE;
+  return reject_call(instance, "the time is %.15g; expected none past stopTime %.15g", time, stop);
+}
+
+enum Status exchange_enter_event_mode(struct Instance *instance) {
   struct FmuState *fmu_state = instance->fmu_state;
+  if (check_stop_time(instance) != STATUS_DONE) return STATUS_ERROR;
+  if (fmu_state->phase != PHASE_EVENT) fmu_state->update = UPDATE_MISSING;
   if (fmu_state->phase == PHASE_CONTINUOUS_TIME) {
-    instance->lacks_update = true;
     /* States set from here on may jump; those set before follow the motion. */
     fmu_state->changed = CHANGED_NOTHING;
     fmu_state_begin(fmu_state, fmu_state->time);
   }
   fmu_state->phase = PHASE_EVENT;
+  return STATUS_DONE;
 }
 
 /* Returns NULL if the system has no time events. */
@@ -100,18 +114,20 @@ static const struct TimeLaws *laws_of_time(void) {
   return lagrangian.switches != NULL ? lagrangian.switches->time_laws : NULL;
 }
 
-/* True if modes do not agree with the present state and time. */
-static bool is_event_due(struct Instance *instance) {
+bool exchange_is_event_due(struct Instance *instance) {
   const struct TimeLaws *times = laws_of_time();
   if (lagrangian.event_laws == NULL) return false;
   return lagrangian.event_laws->is_due(instance) || (times != NULL && times->is_due(instance));
 }
 
-enum Status exchange_enter_continuous_time_mode(struct Instance *instance) {
-  if (instance->lacks_update && is_event_due(instance))
+enum Status exchange_leave_event_mode(struct Instance *instance) {
+  struct FmuState *fmu_state = instance->fmu_state;
+  bool is_exchange = instance->kind == KIND_MODEL_EXCHANGE;
+  if (fmu_state->update == UPDATE_MISSING)
+    return reject_call(instance, "expected an update of the discrete states before it, in each event mode");
+  if (is_exchange && fmu_state->update == UPDATE_BEFORE_CHANGE && exchange_is_event_due(instance))
     return reject_call(instance, "an event is due; expected an update of the discrete states before it");
-  instance->lacks_update = false;
-  instance->fmu_state->phase = PHASE_CONTINUOUS_TIME;
+  fmu_state->phase = is_exchange ? PHASE_CONTINUOUS_TIME : PHASE_STEP_COMPLETE;
   return STATUS_DONE;
 }
 
@@ -139,12 +155,14 @@ static bool has_drifted(struct Instance *instance) {
   return drift > largest;
 }
 
-bool exchange_complete_step(struct Instance *instance) {
+enum Status exchange_complete_step(struct Instance *instance, bool *needs_event) {
   struct FmuState *fmu_state = instance->fmu_state;
+  if (check_stop_time(instance) != STATUS_DONE) return STATUS_ERROR;
   fmu_state->completed_steps++;
   fmu_state->last_step = (struct Span){fmin(fmu_state->last_step.end, fmu_state->time), fmu_state->time};
   fmu_state->searched = fmu_state->last_step.start;
-  return has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
+  *needs_event = has_drifted(instance) || (lagrangian.event_laws != NULL && lagrangian.event_laws->is_due(instance));
+  return STATUS_DONE;
 }
 
 /* Brings the modes into agreement with the state. */
@@ -157,7 +175,7 @@ static enum Status resolve_modes(struct Instance *instance) {
 
 /* Brings the modes into agreement with the state, and projects it. */
 static enum Status update_state(struct Instance *instance) {
-  instance->lacks_update = false;
+  instance->fmu_state->update = UPDATE_DONE;
   enum Status status = resolve_modes(instance);
   memcpy(instance->fmu_state->reported_statistics, instance->fmu_state->statistics,
          sizeof instance->fmu_state->statistics);

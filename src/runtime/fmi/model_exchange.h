@@ -18,16 +18,24 @@ enum Status exchange_get_nominals(struct Instance *instance, double *nominal, si
 /* The array has an element for each event indicator; another count is an error. */
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count);
 
-void exchange_enter_event_mode(struct Instance *instance);
+/* Enters event mode; an error past stopTime. */
+enum Status exchange_enter_event_mode(struct Instance *instance);
 
-/* Enters continuous-time mode; an error if an event is due and the discrete states were not updated. */
-enum Status exchange_enter_continuous_time_mode(struct Instance *instance);
+/* True if modes do not agree with the present state and time. */
+bool exchange_is_event_due(struct Instance *instance);
 
 /*
- * Counts a step of the importer. True if an event is needed: a mode must change, or the drift is as large as the error
- * of the motion (model_exchange.c).
+ * Enters continuous-time mode, or step mode in co-simulation. An error if the discrete states were not updated since
+ * event mode began, or since a value was set by which an event is due: the event iteration has not converged (FMI
+ * 2.0.4, section 3.2.2; FMI 3.0.2, section 2.3.5).
  */
-bool exchange_complete_step(struct Instance *instance);
+enum Status exchange_leave_event_mode(struct Instance *instance);
+
+/*
+ * Counts a step of the importer; an error past stopTime. *needs_event: a mode must change, or the drift is as large as
+ * the error of the motion (model_exchange.c).
+ */
+enum Status exchange_complete_step(struct Instance *instance, bool *needs_event);
 
 /*
  * Brings the modes into agreement with the state, and projects it. Sets *states_changed if a continuous state changed

@@ -43,7 +43,7 @@ FMI(Status) FMI(Reset)(void *c) {
 FMI(Status) FMI(EnterContinuousTimeMode)(void *c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__);
   if (instance == NULL) return FMI(Error);
-  return status_of(exchange_enter_continuous_time_mode(instance));
+  return status_of(exchange_leave_event_mode(instance));
 }
 
 /* --- States, saved and restored ------------------------------------------------------------------------------------ */
@@ -89,9 +89,11 @@ FMI(CompletedIntegratorStep)
   if (instance == NULL || !check_array(instance, enterEventMode, 1, "enterEventMode") ||
       !check_array(instance, terminateSimulation, 1, "terminateSimulation"))
     return FMI(Error);
-  *enterEventMode = exchange_complete_step(instance);
+  bool needs_event = false;
+  enum Status status = exchange_complete_step(instance, &needs_event);
+  *enterEventMode = needs_event;
   *terminateSimulation = FMI(False);
-  return FMI(OK);
+  return status_of(status);
 }
 
 FMI(Status) FMI(SetTime)(void *c, double time) {

@@ -28,7 +28,7 @@ enum Status simulation_start(struct Instance *instance) {
   fmu_state_begin(instance->fmu_state, instance->fmu_state->time);
   memcpy(instance->fmu_state->reported_statistics, instance->fmu_state->statistics,
          sizeof instance->fmu_state->statistics);
-  instance->lacks_update = true;
+  instance->fmu_state->update = UPDATE_MISSING;
   log_message(instance, STATUS_DONE, "initialised at time %g", instance->fmu_state->time);
   return STATUS_DONE;
 }

@@ -137,14 +137,6 @@ static enum Status reject_range(struct Instance *instance, const struct ScalarVa
                       is_below ? variable->minimum : variable->maximum);
 }
 
-/* Discards an infinite state of an importer that integrates, which may try a shorter step; an error otherwise. */
-static enum Status report_infinite(struct Instance *instance, const struct ScalarVariable *variable, double value) {
-  static const char format[] = "the value for '%s' is %g; expected a finite number";
-  bool may_try_another = variable->kind == VARIABLE_STATE && is_exchanged(instance);
-  return may_try_another ? discard_call(instance, format, variable->name, value)
-                         : reject_call(instance, format, variable->name, value);
-}
-
 /* Relative error of values that importers compute: a few thousand rounding errors, as of tables and ramps. */
 static const double computed_error = 1e-12;
 
@@ -172,7 +164,8 @@ static enum Status check_value(struct Instance *instance, unsigned reference, do
   if (is_calculated_parameter(variable)) return reject_calculated(instance, variable);
   if (!is_settable(instance, variable))
     return reject_call(instance, "'%s' cannot be set in the state '%s'", variable->name, instance_phase_name(instance));
-  if (!isfinite(value)) return report_infinite(instance, variable, value);
+  if (!isfinite(value))
+    return discard_call(instance, "the value for '%s' is %g; expected a finite number", variable->name, value);
   if (type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
     return reject_call(instance, "the value for '%s' is %g; expected true or false, which are 1 and 0", variable->name,
                        value);
@@ -210,7 +203,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
   if (*target == value) return;
   *target = value;
   instance->fmu_state->changed = CHANGED_VALUES;
-  instance->lacks_update |= instance->fmu_state->phase == PHASE_EVENT;
+  if (instance->fmu_state->update == UPDATE_DONE) instance->fmu_state->update = UPDATE_BEFORE_CHANGE;
   if (variable->kind != VARIABLE_INPUT && variable->kind != VARIABLE_STATE)
     instance->parameter_constants_are_stale = true;
 }

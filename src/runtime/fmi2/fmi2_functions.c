@@ -53,9 +53,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_EVENT_MODE, __func__);
-  if (instance == NULL) return fmi2Error;
-  exchange_enter_event_mode(instance);
-  return fmi2OK;
+  return instance == NULL ? fmi2Error : status_of(exchange_enter_event_mode(instance));
 }
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo) {

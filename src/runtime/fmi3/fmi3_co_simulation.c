@@ -3,6 +3,7 @@
 
 #include "fmi/check.h"
 #include "fmi/life_cycle.h"
+#include "fmi/model_exchange.h"
 #include "fmi3/fmi3_component.h"
 #include "stepping/steps.h"
 
@@ -55,6 +56,17 @@ static void observe(struct Component *component) {
   if (component->sets_inputs) component->instance.request_inputs = intermediate_request_inputs;
 }
 
+/*
+ * True if the importer must enter event mode at the end of the step. An importer without early return sees events at
+ * the end alone (FMI 3.0.2, section 4.2.1): one that is due there, or one inside the step, which the FMU has handled
+ * and after which discrete variables differ.
+ */
+static bool needs_event_mode(struct Instance *instance, int64_t events_before) {
+  if (instance->fmu_state->waiting_event != 0) return true;
+  if (!instance->uses_event_mode || instance->stops_at_events) return false;
+  return instance->fmu_state->statistics[STATISTIC_EVENTS] != events_before || exchange_is_event_due(instance);
+}
+
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
                       fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
                       fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
@@ -71,6 +83,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
                                            "fmi3UpdateDiscreteStates and fmi3EnterStepMode"));
   memcpy(component->before, instance->fmu_state, fmu_state_size());
   component->has_returned_early = false;
+  int64_t events_before = instance->fmu_state->statistics[STATISTIC_EVENTS];
   observe(component);
   enum Status status = communication_step(instance, currentCommunicationPoint, communicationStepSize);
   /*
@@ -81,7 +94,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
   if (status == STATUS_DONE && instance->fmu_state->phase == PHASE_STEP_COMPLETE) update_at_end(component);
   /* An error in the callback was logged. */
   if (instance->fmu_state->phase == PHASE_ERROR) status = STATUS_ERROR;
-  bool is_at_event = status == STATUS_DONE && instance->fmu_state->waiting_event != 0;
+  bool is_at_event = status == STATUS_DONE && needs_event_mode(instance, events_before);
   bool is_early = is_at_event && instance->fmu_state->time < currentCommunicationPoint + communicationStepSize;
   *eventHandlingNeeded = is_at_event;
   *terminateSimulation = fmi3False;
@@ -92,9 +105,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi
 
 fmi3Status fmi3EnterStepMode(fmi3Instance c) {
   struct Instance *instance = enter(c, FUNCTION_ENTER_STEP_MODE, __func__);
-  if (instance == NULL) return fmi3Error;
-  instance->fmu_state->phase = PHASE_STEP_COMPLETE;
-  return fmi3OK;
+  return instance == NULL ? fmi3Error : status_of(exchange_leave_event_mode(instance));
 }
 
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime) {

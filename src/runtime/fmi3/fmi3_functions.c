@@ -55,8 +55,7 @@ fmi3Status fmi3EnterEventMode(fmi3Instance c) {
                                "%s is not allowed in the state '%s' of an instance that was made with eventModeUsed "
                                "false; expected true",
                                __func__, instance_phase_name(instance)));
-  exchange_enter_event_mode(instance);
-  return fmi3OK;
+  return status_of(exchange_enter_event_mode(instance));
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {

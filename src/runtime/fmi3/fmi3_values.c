@@ -13,18 +13,27 @@ static const unsigned *enter_with_values(fmi3Instance c, enum Function function,
   return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct CodeGenerator){values, nValues});
 }
 
+/* Turns fmi3Discard into an error in intermediate update mode, where it is not allowed (section 4.2.2). */
+static fmi3Status status_in_mode(struct Instance *instance, enum Status status) {
+  int32_t phase = instance->fmu_state->phase;
+  bool is_inside = phase == PHASE_INTERMEDIATE_UPDATE || phase == PHASE_INPUT_REQUEST;
+  if (status != STATUS_DISCARD || !is_inside) return status_of(status);
+  instance->fmu_state->phase = PHASE_ERROR;
+  return fmi3Error;
+}
+
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Float64 values[],
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_GET_VALUE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_get(c, references, nValues, values));
+  return status_in_mode(c, values_get(c, references, nValues, values));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, const fmi3Float64 values[],
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_set(c, references, nValues, values));
+  return status_in_mode(c, values_set(c, references, nValues, values));
 }
 
 /* Statistics have the type Int64. */

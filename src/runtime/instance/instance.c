@@ -125,7 +125,6 @@ void instance_restore(struct Instance *instance, const void *fmu_state) {
   memcpy(instance->fmu_state, fmu_state, fmu_state_size());
   instance->parameter_constants_are_stale = instance->solver_is_stale = true;
   instance->reported_singularity = 0;
-  instance->lacks_update = instance->fmu_state->phase == PHASE_EVENT;
 }
 
 const char *instance_phase_name(const struct Instance *instance) {

@@ -36,6 +36,9 @@ enum Phase {
  */
 enum Change { CHANGED_NOTHING, CHANGED_VALUES, CHANGED_BY_EVENT, CHANGED_COURSE };
 
+/* The update of the discrete states in event mode: missing; done before a value was set; done. */
+enum Update { UPDATE_MISSING, UPDATE_BEFORE_CHANGE, UPDATE_DONE };
+
 /* An interval of time in s; start <= end. */
 struct Span {
   double start, end;
@@ -53,10 +56,11 @@ struct FmuState {
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the next step */
   int32_t changed;               /* enum Change, since the last step */
-  int32_t waiting_event;         /* 1 + the indicator that ended the last step, if stops_at_events; 0 for none */
+  int32_t waiting_event;         /* 1 + the indicator at the end of the last step, if uses_event_mode; 0 for none */
   int32_t close_events;          /* Zeno counter of such events; in model exchange, of those at corners of gaps */
   int64_t statistics[STATISTIC_COUNT];
   int64_t completed_steps;                      /* of an importer that integrates, since the start */
+  int64_t update;                               /* enum Update */
   int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode of a co-simulation */
   double time, start_time, stop_time;
   double tolerance;
@@ -114,7 +118,6 @@ struct Instance {
   double *projection_work;        /* projection_work_count() */
   double *switching_work;         /* event_laws->work_count() */
   double departure;               /* the sign with which a branch at rest at 0 last left it */
-  bool lacks_update;              /* model exchange, event mode: discrete states were not updated since a change */
   bool uses_event_mode;           /* co-simulation: the importer handles events between steps */
   bool stops_at_events;           /* an event ends a communication step */
   bool was_at_zero;               /* the last event's indicator had not left 0 before by more than rounding */

@@ -24,7 +24,7 @@ struct Header {
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
 /* Version of the layout of snapshots; a change of struct FmuState or of a solver's part raises it. */
-enum { VERSION = 8 };
+enum { VERSION = 9 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + fmu_state_size();
@@ -69,7 +69,7 @@ static bool has_phase(const struct Instance *instance, int32_t phase) {
 static bool can_wait(const struct Instance *instance, const struct FmuState *fixed) {
   if (fixed->close_events < 0 || fixed->close_events > 100) return false;
   if (fixed->waiting_event == 0) return true;
-  return instance->stops_at_events && fixed->waiting_event > 0 &&
+  return instance->uses_event_mode && fixed->waiting_event > 0 &&
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
@@ -84,7 +84,8 @@ static bool are_choices(const struct FmuState *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (flags[i] != 0 && flags[i] != 1) return false;
-  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE;
+  return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE && fixed->update >= UPDATE_MISSING &&
+         fixed->update <= UPDATE_DONE;
 }
 
 /* True if the element is an integer from lowest to highest. */
