@@ -193,6 +193,7 @@ struct LimitCheck {
   Slot guard_condition;
 };
 
+/* Bounds the step in `limit` by `count` checks of a table, for the rows of the frame's series. */
 void instructions_limit(const struct Frame *frame, const struct LimitCheck *checks, size_t count,
                         struct SeriesLimit *limit);
 

@@ -83,6 +83,7 @@ struct ScalarVariable {
   const char *follows_from;
 };
 
+/* True if the variable is a parameter that is calculated from others, see follows_from. */
 static inline bool is_calculated_parameter(const struct ScalarVariable *variable) {
   return variable->kind == VARIABLE_RESULT && variable->follows_from != NULL;
 }
@@ -298,7 +299,7 @@ static inline size_t assignment_slot(const struct SwitchTable *switches, size_t 
   return condition_slot(switches, switches->event_count) + assignment;
 }
 
-/* Index of the kinetic energy; the potential energy and the momenta follow. */
+/* Returns the index of the kinetic energy; the potential energy and the momenta follow. */
 static inline size_t energy_slot(const struct SwitchTable *switches) {
   return assignment_slot(switches, switches->assignment_count);
 }
@@ -311,7 +312,7 @@ static inline size_t sample_slot(const struct SwitchTable *switches, size_t samp
   return plane_slot(switches, switches->plane_count) + SAMPLE_VALUES * sample + part;
 }
 
-/* Layout of indicator[] of struct SwitchTable: branches, contacts, frictions. */
+/* Return indices in indicator[] of struct SwitchTable: branches, contacts, frictions. */
 static inline size_t contact_indicator(const struct SwitchTable *switches, size_t contact) {
   return switches->branch_count + contact;
 }
@@ -327,6 +328,7 @@ static inline size_t plane_of(const struct SwitchTable *switches, size_t frictio
   return plane;
 }
 
+/* True if the friction is one of the two of a friction in a plane. */
 static inline bool is_in_plane(const struct SwitchTable *switches, size_t friction) {
   return plane_of(switches, friction) < switches->plane_count;
 }
@@ -338,6 +340,7 @@ static inline const struct SampleMetadata *sample_of(const struct SwitchTable *s
   return NULL;
 }
 
+/* Returns the number of indicators; 0 for NULL. */
 static inline size_t indicator_count(const struct SwitchTable *switches) {
   return switches == NULL ? 0 : friction_indicator(switches, switches->friction_count);
 }

@@ -22,7 +22,7 @@
 /* Numbers of storage after those of saddle.h, see above. */
 #define NONSYMMETRIC_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
 
-/* As in saddle.h. nonsymmetric_factor() also returns 1 if 1 + E^T S C is singular: the friction jams. */
+/* Do the same as those of saddle.h. nonsymmetric_factor() also returns 1 if 1 + E^T S C is singular: friction jams. */
 size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);
 void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                         double *x);

@@ -45,7 +45,7 @@ void series_limit_exponential(struct SeriesLimit *limit, const double *u, const 
 /* Reduces it by sinh(u) or cosh(u). */
 void series_limit_hyperbolic(struct SeriesLimit *limit, const double *u, const char *function);
 
-/* 1/(1 + exp(u)), 1/cosh(u) and their logarithms, whose tails may be factors of large numbers */
+/* Reduces it by 1/(1 + exp(u)), 1/cosh(u) or their logarithms, whose tails may be factors of large numbers. */
 void series_limit_bounded(struct SeriesLimit *limit, const double *u, const char *function);
 
 void series_limit_tanh(struct SeriesLimit *limit, const double *u);

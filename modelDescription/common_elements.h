@@ -8,6 +8,7 @@
 /* Writes UnitDefinitions with the units of the first variable_count variables; nothing if they have none. */
 void write_units(xmlTextWriterPtr writer, const struct Interface *interface, size_t variable_count);
 
+/* Writes <LogCategories>. */
 void write_log_categories(xmlTextWriterPtr writer);
 
 /* Writes DefaultExperiment. */

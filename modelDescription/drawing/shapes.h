@@ -43,6 +43,7 @@ struct Drawing {
   size_t count;
 };
 
+/* Append a polygon, filled or not, and a line; they copy the points. */
 void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count);
 void append_line(struct Drawing *drawing, enum Look look, struct Spot from, struct Spot to);
 
@@ -51,6 +52,7 @@ struct Rectangle {
   struct Spot least, most;
 };
 
+/* Returns the bounding rectangle of all shapes. */
 struct Rectangle rectangle_of(const struct Drawing *drawing);
 
 /*

@@ -21,6 +21,7 @@ void typeset_sign(FILE *file, const struct Formula **term, bool first);
 /* Writes a parenthesis with a fixed height, as its counterpart may be in another <math> element. */
 void typeset_parenthesis(FILE *file, const char *parenthesis, bool is_tall);
 
+/* Typesets the name of a function, upright. */
 void typeset_function(FILE *file, const char *function);
 
 /* True if a formula needs no parentheses as a factor or term, and as the base of a power. */

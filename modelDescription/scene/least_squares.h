@@ -10,8 +10,10 @@ struct LeastSquares {
   double *entries; /* rows x (columns + 1) */
 };
 
+/* Returns a system of zeros. */
 struct LeastSquares least_squares_create(size_t rows, size_t columns);
 
+/* Returns a row: `columns` coefficients and the right side. */
 double *least_squares_row(const struct LeastSquares *system, size_t row);
 
 /*

@@ -33,16 +33,19 @@ typedef uint64_t Bits __attribute__((vector_size(LANES * sizeof(uint64_t))));
   { number, number }
 #endif
 
+/* Returns `first` in the lanes of the mask, and `second` in the others. */
 LANES_INLINE Lanes lanes_select(Mask mask, Lanes first, Lanes second) {
   return (Lanes)(((Mask)first & mask) | ((Mask)second & ~mask));
 }
 
+/* True if the mask holds in any lane. */
 LANES_INLINE bool any_lane(Mask mask) {
   int64_t found = 0;
   for (int i = 0; i < LANES; i++) found |= mask[i];
   return found != 0;
 }
 
+/* Returns the absolute values. */
 LANES_INLINE Lanes lanes_absolute(Lanes a) {
   return (Lanes)((Mask)a & INT64_MAX);
 }
@@ -56,6 +59,7 @@ LANES_INLINE Lanes lanes_smaller(Lanes a, Lanes b) {
   return lanes_select(a < b, a, b);
 }
 
+/* Returns the lanes in which the number is neither infinite nor NaN. */
 LANES_INLINE Mask lanes_are_finite(Lanes a) {
   return lanes_absolute(a) < INFINITY;
 }

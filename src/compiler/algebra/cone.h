@@ -15,6 +15,7 @@ struct Cone {
   size_t work; /* steps of all sweeps so far, see graph_work() */
 };
 
+/* Returns an empty cone, for which cone_release() frees all memory. */
 struct Cone *cone_create(void);
 void cone_release(struct Cone *cone);
 

@@ -16,6 +16,7 @@ struct Requirements {
   size_t count;
 };
 
+/* True if the function has a real value at the argument. */
 bool domain_contains(enum Operation operation, double argument);
 
 /* Returns the end of "expected an argument ..." for a value that is not finite. */

@@ -12,13 +12,13 @@
 
 struct Factor;
 
-/* base^n for a number n < 0. */
+/* Rewrites base^n for a number n < 0. */
 bool bounded_power(struct Graph *graph, Node base, double n, Node *result);
 
-/* The natural logarithm of a node. */
+/* Rewrites the natural logarithm of a node. */
 bool bounded_logarithm(struct Graph *graph, Node node, Node *result);
 
-/* A product in which a growing factor cancels against a scale. */
+/* Rewrites a product in which a growing factor cancels against a scale. */
 bool bounded_product(struct Graph *graph, const struct Factor *left, int left_count, const struct Factor *right,
                      int right_count, Node *result);
 

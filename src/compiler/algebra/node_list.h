@@ -9,6 +9,7 @@ struct NodeList {
   size_t count;
 };
 
+/* Appends nodes at the end of the list. */
 void append_node(struct NodeList *list, Node node);
 void append_nodes(struct NodeList *list, const Node *nodes, size_t count);
 

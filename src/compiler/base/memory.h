@@ -36,10 +36,11 @@ struct TextStream {
   size_t length;
 };
 
-/* open_text() returns the stream to write to; close_text() returns the string. */
+/* Begin and end writing to a string: open_text() returns the stream, close_text() the string. */
 FILE *open_text(struct TextStream *text);
 char *close_text(struct TextStream *text);
 
+/* Returns a copy of the text. */
 char *copy_text(const char *text);
 
 /* Returns a new string, formatted as by printf. */

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+/* Sorts in ascending order. */
 void sort_sizes(size_t *sizes, size_t count);
 
 /* Compares two sizes, for qsort(). */
@@ -13,6 +14,7 @@ static inline size_t larger(size_t a, size_t b) {
   return a > b ? a : b;
 }
 
+/* Returns the smaller of two numbers. */
 static inline size_t smaller(size_t a, size_t b) {
   return a < b ? a : b;
 }

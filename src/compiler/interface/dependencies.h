@@ -17,6 +17,7 @@ struct Dependencies {
   struct SymbolList *symbols_of_block; /* of blocks that are solved at run time; filled in when needed */
 };
 
+/* Returns a workspace for a model and its equations, which must outlive it. */
 struct Dependencies *dependencies_create(const struct Model *model, const struct Equations *equations);
 
 /*

@@ -19,4 +19,5 @@ struct Summary {
   size_t motion_count, reaction_count, rate_count, output_count; /* numbers of formulas that are shown */
 };
 
+/* Returns the formulas of a model and its equations. */
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations);

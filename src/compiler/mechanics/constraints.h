@@ -26,6 +26,7 @@ struct Constraints {
   struct Elements driven; /* elements of J for prescribed coordinates, which constraints do not accelerate */
 };
 
+/* Derives the constraints of the model at all three levels. */
 struct Constraints *constraints_derive(const struct Model *model);
 
 /* Returns the contribution of an element of J to J^T F. */

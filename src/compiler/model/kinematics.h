@@ -38,6 +38,7 @@ Node vector_dot(struct Graph *graph, struct Vector a, struct Vector b);
 struct Vector matrix_apply(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 struct Vector matrix_apply_transposed(struct Graph *graph, const struct Matrix *matrix, struct Vector a);
 
+/* Returns the transpose, which is the inverse of a rotation matrix. */
 struct Matrix matrix_transposed(const struct Matrix *matrix);
 
 /* Returns the pose of the base. */

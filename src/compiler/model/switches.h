@@ -96,6 +96,7 @@ struct Switches {
   size_t event_count;
 };
 
+/* Appends a branch to the list. */
 void append_branch(struct Switches *switches, struct Branch branch);
 
 /* True if events may occur. */

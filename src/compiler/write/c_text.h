@@ -3,8 +3,10 @@
 
 #include <stdio.h>
 
+/* Writes a number with as many digits as distinguish it from all others. */
 void write_c_number(FILE *file, double value);
 
+/* Writes a string literal. */
 void write_c_string(FILE *file, const char *text);
 
 /* Writes the definition of a static array of whole numbers; an empty one gets an element 0, as C requires. */

@@ -5,5 +5,5 @@
 
 #include "program/program.h"
 
-/* The file uses the macro GUID, which the caller must define before it. */
+/* Writes the file. It uses the macro GUID, which the caller must define before it. */
 void code_write(FILE *file, const struct Program *program);

@@ -8,5 +8,5 @@
 /* Writes initializers of the function pointers in these groups. */
 void write_fields(FILE *file, const struct Program *program, enum FunctionGroup first, enum FunctionGroup last);
 
-/* work_count: length of Point.work that the functions need. */
+/* Writes the tables and struct Lagrangian. work_count: length of Point.work that the functions need. */
 void description_write(FILE *file, const struct Program *program, size_t work_count);

@@ -2,7 +2,7 @@
 #ifndef SINGLE_LANE_H
 #define SINGLE_LANE_H
 
-/* series_power() of include/series.h */
+/* Returns a coefficient as series_power() of include/series.h. */
 double single_power(int k, double n, const double *a, const double *c);
 
 /* A function of include/series_limit.h: returns the shortened step. Each rule uses the arguments that it needs. */

@@ -27,14 +27,17 @@ struct ContactImpulses {
 bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses);
 void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses);
 
+/* True if the contact is closed in the present modes. */
 static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {
   return contact_holds(resolution->instance, contact);
 }
 
+/* Closes or opens a contact. */
 static inline void set_contact(struct Resolution *resolution, size_t contact, bool is_closed) {
   resolution_set_mode(resolution, resolution->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
 }
 
+/* Returns a part of a contact's values, such as CONTACT_GAP, from the last evaluation. */
 static inline double contact_value(const struct Resolution *resolution, size_t contact, size_t part) {
   return resolution->value[contact_slot(resolution->switches, contact, part)];
 }
@@ -45,6 +48,7 @@ static inline double contact_force(const struct Resolution *resolution, size_t c
   return resolution->acceleration[lagrangian.coordinate_count + constraint];
 }
 
+/* True if the friction sticks in the present modes. */
 static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
   return friction_holds(resolution->instance, friction);
 }

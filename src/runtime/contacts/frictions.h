@@ -4,13 +4,14 @@
 
 #include "events/resolution.h"
 
+/* Implement the functions of these names in struct FrictionLaws. */
 const char *frictions_act(struct Resolution *resolution, bool *again);
 bool frictions_report(struct Resolution *resolution, bool *again);
 const char *frictions_check(struct Resolution *resolution);
 
 /*
- * Sets *held if others constrain the velocity, in a plane both, of a friction that counts as sliding. False if that
- * cannot be determined.
+ * Sets *is_constrained if other constraints fix the velocity, in a plane both velocities, of a friction that counts as
+ * sliding. False if that cannot be determined.
  */
 bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained);
 

@@ -21,11 +21,13 @@ enum RestingSolutions { ONE_MOTION, PERHAPS_OTHERS, SEVERAL_MOTIONS, PERHAPS_NON
 /* Forces and accelerations below this fraction of the largest free acceleration may be rounding errors. */
 static const double rounded_force = 1e-9;
 
+/* Returns the bytes of a problem with this number of contacts. */
 size_t resting_forces_bytes(size_t count);
 
 /* Divides a block of resting_forces_bytes() among the parts. */
 struct RestingForces resting_forces_in(void *block, size_t count);
 
+/* Returns the largest magnitude of the free accelerations. */
 double largest_free_acceleration(const struct RestingForces *resting);
 
 /*

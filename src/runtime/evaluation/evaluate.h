@@ -43,7 +43,10 @@ enum Status evaluate_prepare(struct Instance *instance);
  */
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
 
-/* The same at the instance's state, parameter constants included. Discards after logging why there is no derivative. */
+/*
+ * Does the same at the instance's state, and updates parameter constants. Discards, after logging why, if there is no
+ * derivative.
+ */
 enum Status evaluate_fmu_state(struct Instance *instance, double *derivative);
 
 /* Returns the name of a state whose rate is not finite at the instance's state; NULL if there is none. */
@@ -52,7 +55,7 @@ const char *evaluate_rate_without_value(struct Instance *instance);
 /* Logs why evaluate_derivatives() returned false, with this status. */
 void log_singularity(struct Instance *instance, enum Status status, double time);
 
-/* The same for a value or derivative that was asked for; logs once for each snapshot. Returns STATUS_DISCARD. */
+/* Does the same for a requested value or derivative, once for each snapshot. Returns STATUS_DISCARD. */
 enum Status discard_for_singularity(struct Instance *instance);
 
 /*
@@ -61,7 +64,7 @@ enum Status discard_for_singularity(struct Instance *instance);
  */
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative);
 
-/* The same along a seed, from the derivative of the state along it. */
+/* Returns their derivatives along a seed, from the derivative of the state along it. */
 const double *evaluate_accelerations_along(struct Instance *instance, const struct Point *point,
                                            const struct Seed *seed, const double *derivative_along);
 

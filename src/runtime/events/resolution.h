@@ -130,7 +130,7 @@ bool resolution_evaluate(struct Resolution *resolution);
 /* Evaluates the values at a state, without rounding error bounds. */
 bool resolution_values(struct Resolution *resolution, const double *state, double *value);
 
-/* The same at another time, with the inputs of that time. */
+/* Does the same at another time, with the inputs of that time. */
 bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value);
 
 /* Evaluates value[] at a point with accelerations of 0, and the force of one constraint; constraints.count for none. */
@@ -151,6 +151,7 @@ bool resolution_moves(const struct Resolution *resolution, size_t constraint);
 /* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */
 bool resolution_project_coordinates(struct Resolution *resolution);
 
+/* True if the zero of this indicator is the event. */
 static inline bool is_hit(const struct Resolution *resolution, size_t indicator) {
   return resolution->occasion == AT_EVENT && resolution->indicator == indicator;
 }
@@ -160,10 +161,12 @@ static inline bool may_change_gaps(const struct Resolution *resolution) {
   return resolution->switched != NULL || resolution->set_mode;
 }
 
+/* Returns the value of a mode, given its index among the parameters. */
 static inline double mode_of(const struct Resolution *resolution, size_t mode) {
   return resolution->instance->parameter[mode];
 }
 
+/* Sets a mode, and notes that something changed. */
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
 
 /* Save and restore the modes, around trials of others. */

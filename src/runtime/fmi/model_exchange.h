@@ -9,16 +9,16 @@
 
 enum Status exchange_set_time(struct Instance *instance, double time);
 
-/* Arrays have state_count elements; another count is an error. */
+/* Set or get arrays of state_count elements; another count is an error. */
 enum Status exchange_set_states(struct Instance *instance, const double *state, size_t count);
 enum Status exchange_get_states(struct Instance *instance, double *state, size_t count);
 enum Status exchange_get_derivatives(struct Instance *instance, double *derivative, size_t count);
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count);
 
-/* The array has an element for each event indicator; another count is an error. */
+/* Gets an array with an element for each event indicator; another count is an error. */
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count);
 
-/* Enters event mode; an error past stopTime. */
+/* Enters event mode, in which modes and discrete variables may change; an error past stopTime. */
 enum Status exchange_enter_event_mode(struct Instance *instance);
 
 /* True if modes do not agree with the present state and time. */

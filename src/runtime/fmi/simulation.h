@@ -11,11 +11,13 @@ struct Experiment {
   bool has_stop_time, has_tolerance;
 };
 
+/* Stores the experiment and checks it. */
 enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment);
 
 /* Ends initialization mode; an error if there is no start with accelerations. */
 enum Status simulation_start(struct Instance *instance);
 
+/* Ends the simulation; the instance can be read or reset afterwards. */
 void simulation_terminate(struct Instance *instance);
 
 #endif

@@ -4,22 +4,23 @@
 
 #include "fmi/life_cycle.h"
 
+/* Gets Real variables. */
 enum Status values_get(struct Instance *instance, const unsigned *reference, size_t count, double *value);
 
-/* Integer or Boolean variables; a larger count than INT_MAX is reported as that. */
+/* Gets Integer or Boolean variables; a statistic beyond INT_MAX is reported as INT_MAX. */
 enum Status values_get_whole(struct Instance *instance, const unsigned *reference, size_t count, int *value,
                              enum VariableType type);
 
-/* The statistics, as 64-bit counters. */
+/* Gets statistics as 64-bit counters. */
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value);
 
-/* For types without variables: any reference is an error. */
+/* Does nothing, for types without variables: any reference is an error. */
 enum Status values_none(void *component, enum Function function, size_t count, const char *name);
 
-/* Sets all values or none. */
+/* Sets Real variables: all or none. */
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value);
 
-/* The same for Integer or Boolean variables. */
+/* Sets Integer or Boolean variables: all or none. */
 enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
                              enum VariableType type);
 

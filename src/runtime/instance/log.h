@@ -29,8 +29,10 @@ struct Log {
   unsigned wanted; /* bits 1 << status; other messages are not formatted */
 };
 
+/* Formats a message and writes it to the receiver, if its status is wanted. */
 void log_write(const struct Log *log, enum Status status, const char *format, ...) LIKE_PRINTF(3, 4);
 
+/* Writes a message to the log of the instance. */
 void log_message(const struct Instance *instance, enum Status status, const char *format, ...) LIKE_PRINTF(3, 4);
 
 /* Logs an error and puts the instance into PHASE_ERROR until it is reset. Returns STATUS_ERROR. */

@@ -7,6 +7,7 @@
 /* Returns the bytes of a block. */
 size_t snapshot_size(void);
 
+/* Writes the instance's state into a block of snapshot_size() bytes. */
 void snapshot_take(const struct Instance *instance, void *block);
 
 /* Returns what is wrong with bytes that claim to be a saved state of this instance; NULL if they are valid. */

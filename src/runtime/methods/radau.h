@@ -56,7 +56,7 @@ bool radau_systems_factor(struct RadauSystems *systems, const struct RadauMethod
 /* Solves system j for systems->right_side, which is overwritten; the solution is in systems->solution. */
 void radau_systems_solve(struct RadauSystems *systems, int j);
 
-/* For auto.c: the proposed step in s, the stages for the tolerance, and the Jacobian of the last step. */
+/* Return, for auto.c, the proposed step in s, the stages for the tolerance, and the Jacobian of the last step. */
 double radau_next_step(const struct Instance *instance);
 int radau_stage_count(const struct Instance *instance);
 const double *radau_jacobian(const struct Instance *instance);

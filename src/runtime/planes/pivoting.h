@@ -10,6 +10,7 @@ struct Pivoting {
   double *matrix, *order;
 };
 
+/* Sets the order of the columns to the original one. */
 void pivoting_begin(const struct Pivoting *pivoting);
 
 /*

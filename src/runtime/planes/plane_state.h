@@ -36,6 +36,7 @@ struct PlaneState {
   bool is_first;     /* it has not switched in this event resolution */
 };
 
+/* Returns the state of a friction in a plane from the last evaluation. */
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane);
 
 /* True if the friction slides faster than counts as 0. */
@@ -62,8 +63,8 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state);
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]);
 
 /*
- * plane_push() keeps the given force as a friction force without a constraint, while other constraints hold the
- * velocity. plane_hold() lets the friction stick again, with the same force.
+ * Release and hold a friction whose velocity other constraints hold. plane_push() keeps the given force as a friction
+ * force without a constraint. plane_hold() lets the friction stick again, with the same force.
  */
 void plane_push(struct Resolution *resolution, const struct PlaneState *state);
 void plane_hold(struct Resolution *resolution, const struct PlaneState *state);

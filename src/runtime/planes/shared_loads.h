@@ -13,6 +13,7 @@ struct SharedLoad {
   double *work;
 };
 
+/* Returns the bytes of a problem with these numbers of rows and planes. */
 size_t shared_load_bytes(size_t rows, size_t count);
 
 /* Divides a block of shared_load_bytes() among the parts. */

@@ -9,8 +9,9 @@
 #include "instance/instance.h"
 
 /*
- * Between these two calls variables have their reported values; nothing may be set. If there is no start, a warning
- * says why, once, and the values are those that were set. The same holds if the next step will be discarded.
+ * Begin and end reading: between these calls variables have their reported values, and nothing may be set. If there is
+ * no start, a warning says why, once, and the values are those that were set. The same holds if the next step will be
+ * discarded.
  */
 void reading_begin(struct Instance *instance);
 void reading_end(struct Instance *instance);

@@ -9,6 +9,7 @@
 #include "lagrangian.h"
 #include "support/number.h"
 
+/* Returns the number of rows: velocities and further states. */
 static inline size_t lu_rows(void) {
   return lagrangian.state_count - lagrangian.coordinate_count;
 }

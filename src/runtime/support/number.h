@@ -8,11 +8,12 @@
 /* Widths: doubles in an element. */
 enum { REAL = 1, COMPLEX = 2 };
 
+/* Returns the magnitude; of a complex number the sum of those of its parts. */
 static inline double number_size(size_t width, const double *a) {
   return width == REAL ? fabs(a[0]) : fabs(a[0]) + fabs(a[1]);
 }
 
-/* sum += a b */
+/* Adds a b to sum. */
 static inline void number_add_product(size_t width, double *sum, const double *a, const double *b) {
   if (width == REAL) {
     sum[0] += a[0] * b[0];
@@ -22,7 +23,7 @@ static inline void number_add_product(size_t width, double *sum, const double *a
   }
 }
 
-/* sum -= a b */
+/* Subtracts a b from sum. */
 static inline void number_subtract_product(size_t width, double *sum, const double *a, const double *b) {
   if (width == REAL) {
     sum[0] -= a[0] * b[0];

@@ -61,7 +61,7 @@ void block_factor(struct Graph *graph, struct InertiaBlock *block);
 /* Solves for the unknowns of an unrolled block in place, in their order of elimination. */
 void block_solve(struct Graph *graph, const struct InertiaBlock *block, Node *x);
 
-/* sum += K vector */
+/* Adds K vector to sum. */
 void inertia_add_product(struct Graph *graph, const struct Inertia *inertia, const Node *vector, Node *sum);
 
 /* Returns the index of element (i, j) in its block's mass; the number of elements if it is not in the pattern. */

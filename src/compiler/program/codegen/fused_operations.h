@@ -32,6 +32,7 @@ struct Needs {
   bool preparing; /* builds prepare(): expressions of parameters are computed, not fetched */
 };
 
+/* Returns an empty collection, which needs_collect() fills. */
 struct Needs *needs_create(const struct Graph *graph);
 
 /* Collects the nodes that the targets need, in place of those collected before. */

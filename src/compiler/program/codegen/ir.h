@@ -29,6 +29,7 @@ struct IrFunction {
   uint32_t spaces;        /* bit s: some operand or result is in space s */
 };
 
+/* Returns the slot with this index in a space. */
 static inline Slot slot_in(enum Space space, size_t index) {
   return (Slot)space << SLOT_BITS | (Slot)index;
 }
@@ -38,10 +39,12 @@ static inline Slot target_slot(size_t index) {
   return slot_in(SPACE_TARGET, index);
 }
 
+/* Returns the space of a slot. */
 static inline enum Space space_of(Slot slot) {
   return (enum Space)(slot >> SLOT_BITS);
 }
 
+/* Returns the index of a slot in its space. */
 static inline size_t index_in(Slot slot) {
   return slot & ((1u << SLOT_BITS) - 1);
 }
@@ -68,6 +71,7 @@ struct OpcodeMetadata {
   bool is_recurrence;
 };
 
+/* Returns the row of the opcode in the table, which is static. */
 const struct OpcodeMetadata *opcode_metadata(enum Opcode opcode);
 
 /* Returns the arguments of the opcode's Cauchy product for SERIES_MIDDLES of include/series.h; NULL if it has none. */
@@ -76,15 +80,19 @@ const char *opcode_factors(enum Opcode opcode);
 /* True if the opcode stores a result in a slot. */
 bool opcode_has_result(enum Opcode opcode);
 
+/* Returns the number of operands. */
 int opcode_arity(enum Opcode opcode);
 
+/* Returns a function without instructions. */
 struct IrFunction *ir_create(void);
 
 /* Appends an instruction; operands beyond the opcode's arity are ignored. */
 void ir_append(struct IrFunction *ir, enum Opcode opcode, Slot result, Slot a, Slot b, Slot c);
 
+/* Appends an instruction that copies one slot to another. */
 void ir_copy(struct IrFunction *ir, Slot to, Slot from);
 
+/* Appends a call of a function of one or two operands. */
 void ir_append_call(struct IrFunction *ir, enum Operation function, Slot result, Slot a, Slot b);
 
 /* Returns a new local variable. */

@@ -16,6 +16,7 @@ struct LimitMetadata {
   bool has_two_rows, has_function, has_exponent, has_share;
 };
 
+/* Returns the row of the rule in the table, which is static. */
 const struct LimitMetadata *limit_metadata(enum LimitRule rule);
 
 /* Returns the checks of all nodes in the series; their arguments get rows. */

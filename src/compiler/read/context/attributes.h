@@ -108,7 +108,7 @@ bool expression_attribute(struct Reader *reader, xmlNodePtr node, const char *na
 /* Returns the node at zero virtual displacements. Reports a node that has no finite value there. */
 Node without_displacements(struct Reader *reader, long line, const char *what, Node node);
 
-/* The same for the components of a vector and the elements of a matrix. */
+/* Do the same for the components of a vector and the elements of a matrix. */
 struct Vector vector_without_displacements(struct Reader *reader, long line, const char *what, struct Vector vector);
 struct Matrix matrix_without_displacements(struct Reader *reader, long line, const char *what, struct Matrix matrix);
 

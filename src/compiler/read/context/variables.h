@@ -15,4 +15,5 @@ void check_range(struct Reader *reader, const struct Variable *variable);
 /* Appends an input without time derivatives to the model and returns its symbol. */
 Node append_input(struct Reader *reader, struct Variable variable);
 
+/* Appends a copy of the variable; returns it. It moves when the list grows. */
 struct Variable *append_variable(struct VariableList *list, struct Variable variable);

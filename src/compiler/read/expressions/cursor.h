@@ -38,6 +38,7 @@ struct Parser {
   bool failed;
 };
 
+/* Moves the reading position past white space. */
 void skip_space(struct Parser *parser);
 
 /* Skips white space, and the character c if it follows. Returns false if another character follows. */

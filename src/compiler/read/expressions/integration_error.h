@@ -12,6 +12,7 @@ struct Rule {
   double nodes[QUADRATURE_LIMIT], weights[QUADRATURE_LIMIT];
 };
 
+/* Returns the Gauss-Legendre rule of this number of nodes. */
 struct Rule rule_of(size_t count);
 
 /*
@@ -28,6 +29,7 @@ struct Sampling {
   uint64_t random;
 };
 
+/* Returns a sampling of an integrand over the last dummy of the scope. */
 struct Sampling sampling_create(struct Scope *scope, Node value);
 
 /* True if the motion or the user may change the symbol. */

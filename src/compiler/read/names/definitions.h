@@ -55,6 +55,7 @@ struct Definitions {
   size_t stack_count, waiting;
 };
 
+/* Returns an empty collection. */
 struct Definitions *definitions_create(void);
 
 /* Enter a <for> with a value of its index, and leave it again. */

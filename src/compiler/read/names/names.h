@@ -15,6 +15,7 @@ struct Names {
   size_t capacity, count;
 };
 
+/* Returns an empty table. */
 struct Names *names_create(void);
 
 /* Returns the value of a name; NULL if it is not in the table. */

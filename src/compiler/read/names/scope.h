@@ -43,6 +43,7 @@ struct Scope {
   long table_line;                   /* on which the current table is used */
 };
 
+/* Returns a scope without names, which reports to the diagnostics. */
 struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics);
 
 /* Defines a name. Returns false after reporting that it is already defined. */

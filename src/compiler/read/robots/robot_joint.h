@@ -10,8 +10,10 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
 /* Writes the coordinates of a joint, and its other elements except its frame. */
 void write_joint(const struct Writer *writer, const struct Joint *joint);
 
-/* Return, for a joint with one degree of freedom, whether it is prismatic, and the unit of its position. */
+/* True if a joint with one degree of freedom is prismatic. */
 bool joint_slides(const struct Joint *joint);
+
+/* Returns the unit of the position of a joint with one degree of freedom. */
 const char *joint_unit(const struct Joint *joint);
 
 /* Return expressions of the joint's position, and of the ratio of its velocity to that of its leader. */

@@ -12,5 +12,6 @@ struct Slip {
   Node along, across;
 };
 
+/* Returns the slip velocity of two shapes at a touch. */
 struct Slip slip_of_touch(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
                           const struct Touch *touch);

@@ -22,6 +22,7 @@ struct ContactSide {
   struct Pose pose; /* of the shape's frame or particle */
 };
 
+/* Returns a shape with its pose. line: for messages about displacements. */
 struct ContactSide contact_side_of(struct Reader *reader, long line, const struct ContactShape *shape);
 
 /*

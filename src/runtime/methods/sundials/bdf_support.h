@@ -29,7 +29,7 @@ struct Bdf {
 /* Configures CVODE with matrix, linear_solver and fill, which the caller has set. False if that fails. */
 bool bdf_configure(struct Instance *instance);
 
-/* The functions of struct Solver, for both kinds of matrix. */
+/* Implement the functions of these names in struct Solver, for both kinds of matrix. */
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);

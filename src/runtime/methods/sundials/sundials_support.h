@@ -49,7 +49,7 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
  */
 bool sundials_tiny_step(struct Instance *instance, const struct CommunicationStep *step);
 
-/* Error handler for SUNDIALS that prints nothing: the callers report by the returned flags. */
+/* Ignores errors, as the handler of SUNDIALS: the callers report them by the returned flags. */
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data);
 
 #endif

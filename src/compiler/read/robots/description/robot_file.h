@@ -31,6 +31,7 @@ struct RobotFile {
 /* Returns the next of several names separated by blanks and advances *rest past it; NULL at the end. */
 char *next_name(const char **rest);
 
+/* Records a part of the file that is not read, each once, for one common message. */
 void leave_out(struct RobotFile *file, const char *what);
 
 /* Records child elements with names that are not in the list, which ends with NULL. */
@@ -45,6 +46,7 @@ bool says_nothing(const char *text);
 /* When an attribute influences the motion: always, with a ground, or with stops. */
 enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS };
 
+/* True if an attribute with this condition influences the motion under these options. */
 bool condition_holds(const struct RobotOptions *options, enum Condition condition);
 
 /*

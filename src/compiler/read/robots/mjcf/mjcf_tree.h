@@ -6,6 +6,7 @@
 /* Name of the link of the <worldbody>. */
 extern const char mjcf_world[];
 
+/* Adds a link for an element; returns it. */
 struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
 
 /* Adds a joint along z, without limits and friction. */

@@ -70,6 +70,7 @@ double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double 
 /* Like mjcf_number(), but reports negative numbers. */
 double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
 
+/* True if the attribute of an element, or of its default class, has this value. */
 bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value);
 
 /* Returns the index of the value among the words, which end with NULL; 0 if it is missing. Reports others. */
