@@ -9,7 +9,7 @@ extern const char license_text[];
 void licenses_write(FILE *file, const struct Program *program) {
   const struct Method *method = program->equations->method;
   const char *solver = program->solver;
-  fprintf(file, "%s.fmu was made with lagrange-fmu, of which it has a part in it, under the licence below.\n",
+  fprintf(file, "%s.fmu was made with lagrange-fmu, and contains parts of it under the licence below.\n",
           program->model->name);
   if (method != NULL && method->uses_library) fputs("SUNDIALS is linked into it: sundials.txt\n", file);
   if (solver != NULL && strcmp(solver, "bdf_sparse") == 0)

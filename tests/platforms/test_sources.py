@@ -65,7 +65,7 @@ def test_no_names_of_the_runtime_clash(version):
     unit = clashes.unit(version)
     assert clashes.complaints(unit) == ""
     assert "'rests_on' redeclared" in clashes.complaints(unit + "static const int rests_on[] = {0};\n").replace("‘", "'").replace("’", "'")
-    assert {"rests", "variables", "derivatives", "lu_place", "switching_values"} <= set(clashes.generated_names())
+    assert {"rests", "variables", "derivatives", "lu_slot", "switching_values"} <= set(clashes.generated_names())
 
 
 # Systems and lagc's arguments that select different files of the runtime; FMI 2.0 and 3.0 alternately.

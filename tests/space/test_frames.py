@@ -331,7 +331,7 @@ MESSAGES = [
     ('<frame name="f"><rotate quaternion="1 0 0 0"/></frame>', "the quaternion of 'f' contains no coordinate"),
     ('<frame name="f"><translate x="q"/></frame>', "unit mismatch: x has the unit rad, expected m"),
     ('<frame name="f"><rotate axis="x" angle="p"/></frame>', "unit mismatch: the angle has the unit m, expected rad"),
-    ('<body name="b" mass="1" in="base" x="p*q" angle="q" inertia="1"/>', "a <body> in a frame turns with it; expected Ixx"),
+    ('<body name="b" mass="1" in="base" x="p*q" angle="q" inertia="1"/>', "a <body> in a frame rotates with it; expected Ixx"),
     ('<body name="b" mass="1" x="p*q"/>', "<body> needs either angle and inertia, of a planar body, or in="),
     ('<body name="b" mass="1" in="f" Ixx="q"/><frame name="f"/>', "Ixx of <body> cannot depend on coordinates"),
     ('<particle name="b" mass="1" x="p*q"/><torque on="b" z="1"/>', "there is no frame or body 'b' for this torque"),

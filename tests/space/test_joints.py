@@ -381,7 +381,7 @@ def test_bushing(joints):
 
 BAD = [
     ('<joint name="h" type="pin" from="base" to="tip"/>', "there is nothing named 'tip' for this <joint>"),
-    ('<frame name="far"><translate z="0.1"/></frame><joint name="h" type="revolute" from="far" to="bob"/>', "the joint 'h' holds z, which nothing moves: it is -0.1 at all times; expected 0"),
+    ('<frame name="far"><translate z="0.1"/></frame><joint name="h" type="revolute" from="far" to="bob"/>', "the joint 'h' cannot be assembled: z is -0.1 at all times; expected ends for which it is 0"),
     ('<joint name="h" type="spherical" from="base" to="bob" axis="x"/>', '<joint type="spherical"> has no axis; expected it without the attribute \'axis\''),
     ('<spring from="bob" to="base"/>', "<spring> has neither stiffness nor damping"),
     ('<spring from="bob" to="tip" stiffness="k"/>', "there is no point 'tip'"),
@@ -392,7 +392,7 @@ BAD = [
     ('<bushing from="base" to="bob"/>', "<bushing> has neither stiffness nor damping"),
     ('<bushing from="base" to="bob" stiffness="1 2"/>', "the stiffness of <bushing> has 2 parts; expected one, or three"),
     ('<bushing from="base" to="tip" stiffness="1"/>', "there is nothing named 'tip' for this <bushing>"),
-    ('<bushing from="base" to="bob" torsion="1"/>', "the energy of <bushing> is the same at all times; expected 'base' and 'bob' that move or turn"),
+    ('<bushing from="base" to="bob" torsion="1"/>', "the energy of <bushing> is the same at all times; expected 'base' and 'bob' that move or rotate"),
     ('<output name="o">dot(bob, tip)</output>', "there is no point 'tip'"),
     ('<output name="o">dot(bob)</output>', "expected ',' between the two vectors of dot"),
     ('<output name="o">norm(bob, bob)</output>', "expected ')' after the vector of norm"),

@@ -195,7 +195,8 @@ static void warn_of_dissipation(const struct Reader *reader, double odd) {
     if (!(growth < -rounding)) continue;
     if (dissipation->line != reported)
       report_warning(reader->diagnostics, dissipation->line,
-                     "the dissipation is %g for velocities of +-1 at the start values, and drives the motion; expected "
+                     "the dissipation is %g for velocities of +-1 at the start values, so that it accelerates the "
+                     "motion; expected "
                      "a positive one, such as b*v^2/2",
                      growth);
     reported = dissipation->line;

@@ -144,7 +144,7 @@ static void warn_of_condition(const struct Reader *reader, const struct Event *e
   report_warning(reader->diagnostics, event->line,
                  "the event never happens: when=\"%s\" %s; expected <sample every=\"...\"> for what happens at the "
                  "start and then at equal distances, or a condition that comes to hold later",
-                 event->text, at_start ? "holds at the start, and does not come to hold later" : "holds at no time");
+                 event->text, at_start ? "holds at the start, and does not begin to hold later" : "never holds");
 }
 
 /* Warns of an expression that does not change its sign. */

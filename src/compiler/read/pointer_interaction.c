@@ -15,7 +15,7 @@ struct Pointer {
   Node time;              /* s, ratio of damping to stiffness */
 };
 
-static Node append_pointer_force(struct Reader *reader, const char *name, const char *unit) {
+static Node append_pointer_input(struct Reader *reader, const char *name, const char *unit) {
   struct Variable variable = variable_create(format_text("pull.%s", name), NULL, 0);
   variable.unit = copy_text(unit);
   variable.dimension = unit_of(unit);
@@ -25,7 +25,7 @@ static Node append_pointer_force(struct Reader *reader, const char *name, const 
 
 static struct Vector append_vector(struct Reader *reader, const char *const names[3]) {
   struct Vector vector;
-  for (int axis = 0; axis < 3; axis++) vector.along[axis] = append_pointer_force(reader, names[axis], "m");
+  for (int axis = 0; axis < 3; axis++) vector.along[axis] = append_pointer_input(reader, names[axis], "m");
   return vector;
 }
 
@@ -61,7 +61,7 @@ static void pull_body(struct Reader *reader, const struct Body *body, const stru
   struct Graph *graph = reader->model->graph;
   struct Vector grabbed = grabbed_point(reader->model, body, pointer->grabbed);
   if (!moves(graph, &grabbed)) return;
-  Node stiffness = append_pointer_force(reader, format_text("of.%s", body->name), "N/m");
+  Node stiffness = append_pointer_input(reader, format_text("of.%s", body->name), "N/m");
   for (int axis = 0; axis < 3; axis++) {
     Node point = without_displacements(reader, body->line, body->name, grabbed.along[axis]);
     Node behind = multiply(graph, pointer->time, total_time_derivative(reader->scope, point));
@@ -75,7 +75,7 @@ void add_pointer_interaction(struct Reader *reader) {
   struct Model *model = reader->model;
   size_t count = model->mechanism.body_count, every = count / MOST_PULLED + 1;
   struct Pointer pointer = {.position = append_vector(reader, position), .grabbed = append_vector(reader, grabbed)};
-  pointer.time = append_pointer_force(reader, "time", "s");
+  pointer.time = append_pointer_input(reader, "time", "s");
   model->forces.any = true;
   /* Includes the last body: the end of a chain is the natural part to pull. */
   for (size_t i = (count + every - 1) % every; i < count; i += every)

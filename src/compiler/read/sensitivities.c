@@ -146,7 +146,8 @@ static void add_sensitivity(struct Model *model, const struct Equations *equatio
 void add_sensitivities(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
                        struct Diagnostics *diagnostics) {
   const char *reason = why_not(model, equations);
-  if (reason != NULL) report_error(diagnostics, 0, "--along cannot follow %s; expected a system without them", reason);
+  if (reason != NULL)
+    report_error(diagnostics, 0, "--along does not support %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
       report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate, a velocity or a state",

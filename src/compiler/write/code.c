@@ -141,13 +141,13 @@ static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row
             row + 1, last, row);
     return;
   }
-  fprintf(file, ", mobility%zu = REAL(0.0)", row);
+  fprintf(file, ", delassus%zu = REAL(0.0)", row);
   for (size_t k = first; k < last; k++) fprintf(file, " + saddle_delassus(term%zu)", k);
   fprintf(file,
-          ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, mobility%zu, weakest))) {\n"
+          ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, delassus%zu, weakest))) {\n"
           "    for (size_t k = 0; k < %zu; k++) mass[k] = mass[%zu + k];\n"
           "    return saddle_factor(%zu, start%zu, column%zu, coordinate%zu, mass);\n  }\n"
-          "  mass[%zu] = saddle_pivot(-pivot%zu, mobility%zu, &weakest);\n",
+          "  mass[%zu] = saddle_pivot(-pivot%zu, delassus%zu, &weakest);\n",
           row, row, elements, elements, n, number, number, number, last, row, row);
 }
 

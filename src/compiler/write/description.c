@@ -78,7 +78,7 @@ static void write_patterns(FILE *file, const struct Lagrangian *metadata) {
   write_whole_numbers(file, "jacobian_start", pattern->start, metadata->state_count + 1);
   write_whole_numbers(file, "jacobian_row", pattern->row, pattern->count);
   if (lu->slot != NULL) {
-    write_whole_numbers(file, "lu_place", lu->slot, n);
+    write_whole_numbers(file, "lu_slot", lu->slot, n);
     write_whole_numbers(file, "lu_start", lu->start, n + 1);
     write_whole_numbers(file, "lu_column", lu->column, (size_t)lu->start[n]);
   }
@@ -165,7 +165,7 @@ static void write_tables(FILE *file, const struct Program *program, const struct
     fprintf(file, "    .implicit.pattern = {%zu, jacobian_start, jacobian_row},\n", metadata->implicit.pattern.count);
   if (program->lu != NULL) fprintf(file, "    .implicit.lu = &%s,\n", program->lu);
   if (metadata->implicit.lu_pattern.slot != NULL)
-    fputs("    .implicit.lu_pattern = {lu_place, lu_start, lu_column},\n", file);
+    fputs("    .implicit.lu_pattern = {lu_slot, lu_start, lu_column},\n", file);
   write_constraints(file, program, &metadata->constraints);
   if (program->equations->switching != NULL)
     fputs("    .switches = &switches,\n    .event_laws = &event_laws,\n", file);

@@ -100,7 +100,7 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
   const char *type = tables.largest_slot <= UINT8_MAX ? "unsigned char" : "uint16_t";
   write_words(file, text->name, &tables.words);
   write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, groups->count);
-  write_sizes(file, type, format_text("%s_place", text->name), tables.slot, groups->count);
+  write_sizes(file, type, format_text("%s_slot", text->name), tables.slot, groups->count);
   fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic Real %s(%s, size_t result) {\n", text->comment,
           tables.operation_count, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
@@ -108,7 +108,7 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
   set_base(file, "TARGET", "value");
   set_base(file, "ACCELERATION", "(Real *)a");
   if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
-  fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_place[result]];\n}\n\n",
+  fprintf(file, "  instructions_run(&frame, %s_code + %s_start[result]);\n  return value[%s_slot[result]];\n}\n\n",
           text->name, text->name, text->name);
 }
 

@@ -94,8 +94,8 @@ static size_t size_of_group(const struct Program *program, size_t leader) {
 static void write_group(FILE *file, const struct Program *program, size_t first, size_t size, const char *suffix) {
   statements_function(file, program, FUNCTION_RESULTS, suffix, program->result[first]);
   fprintf(file,
-          "static Real result%s(const struct Point *point, const Real *a, size_t place) {\n  Real value[%zu];\n"
-          "  results%s(point, a, value);\n  return value[place];\n}\n\n",
+          "static Real result%s(const struct Point *point, const Real *a, size_t slot) {\n  Real value[%zu];\n"
+          "  results%s(point, a, value);\n  return value[slot];\n}\n\n",
           suffix, size, suffix);
 }
 

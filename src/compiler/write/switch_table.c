@@ -17,7 +17,7 @@ static void write_name(FILE *file, const char *name) {
 
 static void write_branches(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->branch_count == 0) return;
-  fputs("static const struct BranchMetadata branch_facts[] = {", file);
+  fputs("static const struct BranchMetadata branch_metadata[] = {", file);
   for (size_t i = 0; i < metadata->branch_count; i++) {
     const struct BranchMetadata *branch = &metadata->branches[i];
     fprintf(file, "{%zu, ", branch->mode);
@@ -31,7 +31,7 @@ static void write_branches(FILE *file, const struct SwitchTable *metadata) {
 
 static void write_contacts(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->contact_count == 0) return;
-  fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactMetadata contact_facts[] = {",
+  fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactMetadata contact_metadata[] = {",
         file);
   for (size_t i = 0; i < metadata->contact_count; i++) {
     fprintf(file, "{%zu, %zu, ", metadata->contacts[i].mode, metadata->contacts[i].constraint);
@@ -46,7 +46,7 @@ static const char *friction_laws_of(const struct SwitchTable *metadata) {
 
 static void write_frictions(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->friction_count == 0) return;
-  fprintf(file, "extern const struct FrictionLaws %s;\n\nstatic const struct FrictionMetadata friction_facts[] = {",
+  fprintf(file, "extern const struct FrictionLaws %s;\n\nstatic const struct FrictionMetadata friction_metadata[] = {",
           friction_laws_of(metadata));
   for (size_t i = 0; i < metadata->friction_count; i++) {
     const struct FrictionMetadata *friction = &metadata->frictions[i];
@@ -59,7 +59,7 @@ static void write_frictions(FILE *file, const struct SwitchTable *metadata) {
 
 static void write_planes(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->plane_count == 0) return;
-  fputs("static const struct PlaneMetadata plane_facts[] = {", file);
+  fputs("static const struct PlaneMetadata plane_metadata[] = {", file);
   for (size_t i = 0; i < metadata->plane_count; i++) {
     const struct PlaneMetadata *plane = &metadata->planes[i];
     fprintf(file, "{%zu, {%zu, %zu}, %zu, %zu}, ", plane->along, plane->slip_direction[0], plane->slip_direction[1],
@@ -89,11 +89,11 @@ static void write_event(FILE *file, const struct EventMetadata *event) {
 
 static void write_events(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->event_count == 0) return;
-  fputs("static const struct AssignmentMetadata assignment_facts[] = {", file);
+  fputs("static const struct AssignmentMetadata assignment_metadata[] = {", file);
   for (size_t i = 0; i < metadata->assignment_count; i++)
     fprintf(file, "{%s, %zu}, ", metadata->assignments[i].kind == VARIABLE_MODE ? "VARIABLE_MODE" : "VARIABLE_STATE",
             metadata->assignments[i].index);
-  fputs("};\n\nstatic const struct EventMetadata event_facts[] = {", file);
+  fputs("};\n\nstatic const struct EventMetadata event_metadata[] = {", file);
   for (size_t i = 0; i < metadata->event_count; i++) write_event(file, &metadata->events[i]);
   fputs("};\n\n", file);
 }
@@ -106,7 +106,7 @@ static void write_timed(FILE *file, const struct SwitchTable *metadata) {
 
 static void write_samples(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->sample_count == 0) return;
-  fputs("static const struct SampleMetadata sample_facts[] = {", file);
+  fputs("static const struct SampleMetadata sample_metadata[] = {", file);
   for (size_t i = 0; i < metadata->sample_count; i++) {
     const struct SampleMetadata *sample = &metadata->samples[i];
     fprintf(file, "{%zu, %zu, %zu, %zu, %zu}, ", sample->event, sample->branch, sample->base, sample->count,
@@ -127,7 +127,7 @@ static void write_table(FILE *file, const struct Program *program, const struct 
           metadata->mode_count, metadata->branch_count, metadata->contact_count, metadata->friction_count,
           metadata->event_count, metadata->assignment_count, metadata->energy_count);
   write_fields(file, program, IN_SWITCHES, IN_SWITCHES);
-  if (metadata->branch_count > 0) fputs("    .branches = branch_facts,\n", file);
+  if (metadata->branch_count > 0) fputs("    .branches = branch_metadata,\n", file);
   if (program->watched_series != NULL)
     fprintf(file,
             "    .watched_rows = %zu,\n    .watched_acceleration_row = %zu,\n    .watched_acceleration_count = %zu,\n",
@@ -135,18 +135,20 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   write_flag(file, "friction_varies", metadata->friction_varies);
   write_flag(file, "feels_forces", metadata->feels_forces);
   write_flag(file, "has_last_signs", metadata->has_last_signs);
-  if (metadata->contact_count > 0) fputs("    .contacts = contact_facts,\n    .contact_laws = &contact_laws,\n", file);
+  if (metadata->contact_count > 0)
+    fputs("    .contacts = contact_metadata,\n    .contact_laws = &contact_laws,\n", file);
   if (metadata->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
   if (metadata->friction_count > 0)
-    fprintf(file, "    .frictions = friction_facts,\n    .friction_laws = &%s,\n", friction_laws_of(metadata));
+    fprintf(file, "    .frictions = friction_metadata,\n    .friction_laws = &%s,\n", friction_laws_of(metadata));
   if (metadata->plane_count > 0)
-    fputs("    .planes = plane_facts,\n    .plane_count = sizeof plane_facts / sizeof *plane_facts,\n", file);
-  if (metadata->event_count > 0) fputs("    .events = event_facts,\n    .assignments = assignment_facts,\n", file);
+    fputs("    .planes = plane_metadata,\n    .plane_count = sizeof plane_metadata / sizeof *plane_metadata,\n", file);
+  if (metadata->event_count > 0)
+    fputs("    .events = event_metadata,\n    .assignments = assignment_metadata,\n", file);
   if (metadata->timed_count > 0)
     fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n",
             metadata->timed_count);
   if (metadata->sample_count > 0)
-    fprintf(file, "    .samples = sample_facts,\n    .sample_count = %zu,\n", metadata->sample_count);
+    fprintf(file, "    .samples = sample_metadata,\n    .sample_count = %zu,\n", metadata->sample_count);
   fputs("};\n\n", file);
 }
 

@@ -52,7 +52,8 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
   if (is_state && reader->model->given.prescribed_motions[target->index].given)
-    report_at(reader, node, "<set> of '%s', which is driven; expected another one", target->name);
+    report_at(reader, node, "<set> of '%s', which is driven; expected a coordinate without an acceleration",
+              target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
     if (event->assignments[i].symbol == symbol)
       report_at(reader, node, "a second <set> of '%s' in one <%s>; expected one", target->name,

@@ -230,10 +230,11 @@ static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
   if (!is_element(node, "body")) return true;
   if (is_in_frame ? !has_angle && !has_inertia : has_angle && has_inertia && !has_moments) return true;
   report_at(reader, node,
-            is_in_frame ? "a <body> in a frame turns with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
-                          "and inertia"
-                        : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
-                          "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
+            is_in_frame
+                ? "a <body> in a frame rotates with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
+                  "and inertia"
+                : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
+                  "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
   return false;
 }
 

@@ -81,7 +81,7 @@ static void add_springs(struct Reader *reader, xmlNodePtr node, struct Vector fa
   Node energy = half_of_squares(reader->model->graph, factors, values);
   if (!is_zero(factors) && graph_is_constant_in_time(reader->model->graph, energy))
     report_at(reader, node,
-              "the energy of <bushing> is the same at all times; expected '%s' and '%s' that move or turn",
+              "the energy of <bushing> is the same at all times; expected '%s' and '%s' that move or rotate",
               attribute(node, "from"), attribute(node, "to"));
   else if (!is_zero(factors))
     add_energy(reader, node, "the energy of <bushing>", energy, &energies->displaced_potential, &energies->potential);

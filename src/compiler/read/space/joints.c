@@ -265,14 +265,15 @@ static void leave_out_idle(struct Reader *reader, xmlNodePtr node, struct Variab
     bool is_idle_here = is_idle(graph, &first[i], from, to);
     idle_count += is_idle_here;
     if (is_idle_here && attribute_is(node, "type", "rolling"))
-      report_at(reader, node,
-                "the joint '%s' holds %s, which nothing moves; expected the axes along which something moves, such as "
-                "holds=\"x y\"",
-                joint, quantity);
+      report_at(
+          reader, node,
+          "the joint '%s' constrains %s, which nothing changes; expected the axes along which something moves, such "
+          "as holds=\"x y\"",
+          joint, quantity);
     else if (is_idle_here) first[i].node = ZERO;
     else if (graph_is_constant(graph, first[i].node))
       report_at(reader, node,
-                "the joint '%s' holds %s, which nothing moves: it is %g at all times; expected 0, where it fits", joint,
+                "the joint '%s' cannot be assembled: %s is %g at all times; expected ends for which it is 0", joint,
                 quantity, graph_value(graph, first[i].node));
   }
   if (idle_count == count && reader->diagnostics->errors == 0)
