@@ -1,8 +1,8 @@
 """
 Write the C source of an FMU as one file, made of the system and the runtime: one_file.py ROOT GLOBAL_NAMES VERSION SYSTEM.c NAME FILE
 
-GLOBAL_NAMES is the output of nm for the compiled runtime. The names in it get the FMU's name as a prefix, so that several FMUs can be linked
-into one program.
+GLOBAL_NAMES is the output of nm for the compiled runtime. The names in it get the FMU's name and the version of FMI as a prefix, so that
+several FMUs, and both versions of one, can be linked into one program.
 """
 
 import re
@@ -66,7 +66,7 @@ def one_file(root, global_names, version, system, name):
         name=name,
         fmi=fmi,
         section=NAMING[version],
-        names="".join(f"#define {symbol} {name}_{symbol}\n" for symbol in names),
+        names="".join(f"#define {symbol} {name}_fmi{version}_{symbol}\n" for symbol in names),
         functions="".join(f"#define {symbol} {fmi}_FULL_NAME({fmi}_FUNCTION_PREFIX, {symbol})\n" for symbol in functions),
         text=text,
     )

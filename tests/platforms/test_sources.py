@@ -104,7 +104,7 @@ def test_global_names_are_those_of_the_fmu(tmp_path):
     """FMI 2.0.4, section 2.1.1: sources of several FMUs may be linked into one program."""
     for name in ("SimplePendulum", "SimplePendulumLinear", "StateFeedback", "ChainPendulum"):
         defined = global_names(source_of(name), tmp_path)
-        assert f"{name}_fmi2DoStep" in defined and f"{name}_instance_create" in defined
+        assert f"{name}_fmi2DoStep" in defined and f"{name}_fmi2_instance_create" in defined
         assert [symbol for symbol in defined if not symbol.startswith(f"{name}_")] == []
 
 
@@ -134,6 +134,22 @@ def test_two_fmus_in_one_program(names, tmp_path, open_fmu):
         for i in range(steps):
             instance.fmu.doStep(i * size, size)
         np.testing.assert_allclose([float(word) for word in line.split()], instance.fmu.getReal([0, 1]), rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["FourBar", "StickSlip"])
+def test_both_versions_in_one_program(name, tmp_path):
+    """The sources for FMI 2.0 and for FMI 3.0 share no global name."""
+    main = f"""
+        #include <stdio.h>
+        const char *{name}_fmi2GetVersion(void), *{name}_fmi3GetVersion(void);
+        int main(void) {{ return printf("%s %s", {name}_fmi2GetVersion(), {name}_fmi3GetVersion()) < 0; }}"""
+    (tmp_path / "main.c").write_text(main)
+    sources = [module.unpacked(name) / "sources" / f"{name}.c" for module in (fmu, fmi3)]
+    objects = [tmp_path / "2.o", tmp_path / "3.o"]
+    for source, compiled in zip(sources, objects):
+        subprocess.run(["gcc", "-std=c11", "-O0", "-c", source, "-o", compiled], check=True)
+    subprocess.run(["gcc", tmp_path / "main.c", *objects, "-o", tmp_path / "program", "-lm"], check=True)
+    assert subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout == "2.0 3.0"
 
 
 def refuses_to_be_fast(source, compiler, option):
