@@ -67,12 +67,10 @@ void write_units(xmlTextWriterPtr writer, const struct Interface *interface, siz
 }
 
 void write_log_categories(xmlTextWriterPtr writer) {
-  static const char *const categories[][2] = {{"logEvents", "life cycle, and what switches"},
-                                              {"logStatusWarning", "warnings"},
-                                              {"logStatusDiscard", "steps that were not finished"},
-                                              {"logStatusError", "errors"},
-                                              {"logStatusFatal", "errors that end all instances"},
-                                              {"logAll", "all messages"}};
+  static const char *const categories[][2] = {
+      {"logEvents", "life cycle, and what switches"},       {"logStatusWarning", "warnings"},
+      {"logStatusDiscard", "steps that were not finished"}, {"logStatusError", "errors"},
+      {"logStatusFatal", "errors that end all instances"},  {"logAll", "all messages"}};
   xmlTextWriterStartElement(writer, BAD_CAST "LogCategories");
   for (size_t i = 0; i < sizeof categories / sizeof *categories; i++) {
     xmlTextWriterStartElement(writer, BAD_CAST "Category");
