@@ -5,6 +5,7 @@
 
 #include "algebra/units/other_units.h"
 #include "base/memory.h"
+#include "scene.h"
 #include "xml_output.h"
 
 static bool contains(const char *const *names, size_t count, const char *name) {
@@ -90,6 +91,45 @@ void write_experiment(xmlTextWriterPtr writer, const struct Model *model) {
   write_number(writer, "tolerance", interface_tolerance(model));
   write_number(writer, "stepSize",
                isnan(model->experiment.step_size) ? (stop - start) / 1000 : model->experiment.step_size);
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_preset(xmlTextWriterPtr writer, const struct Preset *preset) {
+  xmlTextWriterStartElement(writer, BAD_CAST "preset");
+  write_attribute(writer, "name", preset->name);
+  if (preset->description != NULL) write_attribute(writer, "description", preset->description);
+  for (size_t i = 0; i < preset->count; i++) {
+    xmlTextWriterStartElement(writer, BAD_CAST "at");
+    write_attribute(writer, "name", preset->values[i].name);
+    write_number(writer, "value", preset->values[i].value);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_presets(xmlTextWriterPtr writer, const struct Model *model) {
+  xmlTextWriterStartElement(writer, BAD_CAST "presets");
+  for (size_t i = 0; i < model->preset_count; i++) write_preset(writer, &model->presets[i]);
+  xmlTextWriterEndElement(writer);
+}
+
+void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const char *all, const char *each,
+                       const char *attribute) {
+  const struct {
+    bool exists;
+    const char *name;
+    void (*write)(xmlTextWriterPtr writer, const struct Model *model);
+  } annotations[] = {{has_scene(model), "lagrange-fmu", scene_write},
+                     {model->preset_count > 0, "lagrange-fmu.presets", write_presets}};
+  if (!annotations[0].exists && !annotations[1].exists) return;
+  xmlTextWriterStartElement(writer, BAD_CAST all);
+  for (size_t i = 0; i < sizeof annotations / sizeof *annotations; i++) {
+    if (!annotations[i].exists) continue;
+    xmlTextWriterStartElement(writer, BAD_CAST each);
+    write_attribute(writer, attribute, annotations[i].name);
+    annotations[i].write(writer, model);
+    xmlTextWriterEndElement(writer);
+  }
   xmlTextWriterEndElement(writer);
 }
 

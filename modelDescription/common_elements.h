@@ -14,6 +14,15 @@ void write_log_categories(xmlTextWriterPtr writer);
 /* Writes DefaultExperiment. */
 void write_experiment(xmlTextWriterPtr writer, const struct Model *model);
 
+/*
+ * Writes the data that pages need in addition to the variables: <scene>, see scene.h, and <presets>, with
+ * <at name value/> in each <preset name description>, as in the system. Each is in an annotation of its own, since one
+ * of FMI 2.0 has at most one element. all, each: names of the elements around all of them and around each; attribute:
+ * that of each with its name.
+ */
+void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const char *all, const char *each,
+                       const char *attribute);
+
 /* True if the description has a start value of the variable. */
 bool has_start(const struct ScalarVariable *entry);
 

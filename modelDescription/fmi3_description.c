@@ -11,7 +11,6 @@
 #include "interface/arrays.h"
 #include "model_structure.h"
 #include "quantities.h"
-#include "scene.h"
 #include "xml_output.h"
 
 static void write_abilities(xmlTextWriterPtr writer, const struct Model *model) {
@@ -110,16 +109,6 @@ static void write_variables(xmlTextWriterPtr writer, const struct Interface *int
   xmlTextWriterEndElement(writer);
 }
 
-static void write_annotations(xmlTextWriterPtr writer, const struct Model *model) {
-  if (!has_scene(model)) return;
-  xmlTextWriterStartElement(writer, BAD_CAST "Annotations");
-  xmlTextWriterStartElement(writer, BAD_CAST "Annotation");
-  write_attribute(writer, "type", "lagrange-fmu");
-  scene_write(writer, model);
-  xmlTextWriterEndElement(writer);
-  xmlTextWriterEndElement(writer);
-}
-
 bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, const char *token) {
   const struct Model *model = program->model;
   xmlTextWriterPtr writer = open_document(buffer, "fmiModelDescription");
@@ -136,6 +125,6 @@ bool fmi3_description_write(xmlBufferPtr buffer, const struct Program *program, 
   write_experiment(writer, model);
   write_variables(writer, program->interface);
   model_structure_write(writer, program, &structure_of_fmi3);
-  write_annotations(writer, model);
+  write_annotations(writer, model, "Annotations", "Annotation", "type");
   return close_document(writer);
 }

@@ -7,7 +7,6 @@
 #include "common_elements.h"
 #include "model_structure.h"
 #include "quantities.h"
-#include "scene.h"
 #include "xml_output.h"
 
 /* Writes SourceFiles. FMUs without SUNDIALS contain all their sources, as one C file. */
@@ -114,14 +113,7 @@ bool model_description_write(xmlBufferPtr buffer, const struct Program *program,
   write_types(writer, interface, interface->count_in_fmi2, "Real");
   write_log_categories(writer);
   write_experiment(writer, model);
-  if (has_scene(model)) {
-    xmlTextWriterStartElement(writer, BAD_CAST "VendorAnnotations");
-    xmlTextWriterStartElement(writer, BAD_CAST "Tool");
-    write_attribute(writer, "name", "lagrange-fmu");
-    scene_write(writer, model);
-    xmlTextWriterEndElement(writer);
-    xmlTextWriterEndElement(writer);
-  }
+  write_annotations(writer, model, "VendorAnnotations", "Tool", "name");
   write_variables(writer, interface);
   model_structure_write(writer, program, &structure_of_fmi2);
   return close_document(writer);

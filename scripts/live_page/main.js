@@ -326,7 +326,10 @@ function addEnergyBar() {
 
 async function begin() {
   if (laboratory) showTitle();
-  if (!recording) addControls();
+  if (!recording) {
+    addControls();
+    addPresets();
+  }
   addPlots();
   addActions();
   addKeys();

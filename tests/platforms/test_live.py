@@ -301,6 +301,18 @@ def test_presentation(browser, page_file):
         page.wait_for_function("!document.body.classList.contains('presented') && getComputedStyle(document.querySelector('footer')).display === 'flex'")
 
 
+def test_presets(browser, page_file):
+    """A button sets its values and starts anew; the next one sets everything else back."""
+    with opened(browser, page_file("SimplePendulum")) as page:
+        values = lambda: dict(zip(page.evaluate("live.names"), page.evaluate("Array.from(live.history.samples.at(-1)[0])")))
+        page.evaluate("live.run(0.5)")
+        for words, theta, omega in (("Release it near the top", 3.1, 0), ("Over the top, again and again", 0, 10), ("start values of the file", 1, 0)):
+            page.click(f"text={words}")
+            page.wait_for_function("([theta, omega, i, k]) => live.history.length === 1 && live.history.samples[0][0][i] === theta && live.history.samples[0][0][k] === omega",
+                                   arg=[theta, omega, page.evaluate("live.names.indexOf('theta')"), page.evaluate("live.names.indexOf('omega')")])  # fmt: skip
+            assert values()["theta"] == theta
+
+
 def test_energy_bar(browser, page_file):
     """Kinetic energy and potential energy above its lowest value so far, as shares of their largest sum; the sum is constant here."""
     with opened(browser, page_file("DoublePendulum")) as page:

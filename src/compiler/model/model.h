@@ -194,6 +194,19 @@ struct Experiment {
   double start_time, stop_time, step_size;
 };
 
+/* A value of <preset>, which the variable of this name gets before the start. */
+struct PresetValue {
+  const char *name;
+  double value; /* in the unit of the variable */
+};
+
+/* Start values that users may choose by a name. */
+struct Preset {
+  const char *name, *description; /* description: NULL if none was given */
+  struct PresetValue *values;     /* at least one, of different variables */
+  size_t count;
+};
+
 /* The content of a system. Lists keep the order of declaration. */
 struct Model {
   char *name, *description;
@@ -223,6 +236,8 @@ struct Model {
   struct LinearizationPoint point; /* if linearized */
   struct SolverChoice solver;
   struct Experiment experiment;
+  struct Preset *presets;
+  size_t preset_count;
 };
 
 /* Returns the index of a coordinate, velocity or first-order state in the state; of other symbols, their index. */

@@ -13,6 +13,7 @@
 #include "read/elements/constraint_reader.h"
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
+#include "read/elements/preset_reader.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
@@ -366,6 +367,7 @@ static const struct Element elements[] = {
     {"particle", number_body, collect_components, read_body, NULL, false},
     {"point", NULL, collect_components, read_body, NULL, false},
     {"potential", NULL, NULL, NULL, read_potential, false},
+    {"preset", NULL, NULL, NULL, read_preset, true},
     {"sample", NULL, NULL, NULL, read_sample, false},
     {"shape", declare_shape, NULL, place_shape, NULL, false},
     {"solver", read_solver, NULL, NULL, NULL, true},

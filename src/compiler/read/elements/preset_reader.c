@@ -1,0 +1,76 @@
+#include "read/elements/preset_reader.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* Returns the variable that a name denotes if it can be set before the start; NULL otherwise. */
+static const struct Variable *settable_variable(const struct Reader *reader, const char *name) {
+  struct Model *model = reader->model;
+  const struct Quantity *quantity = scope_find(reader->scope, name);
+  if (quantity == NULL || model->graph->vertices[quantity->node].operation != SYMBOL) return NULL;
+  const struct Symbol *symbol = graph_symbol_of(model->graph, quantity->node);
+  const struct VariableList *lists[] = {[PARAMETER] = &model->parameters,
+                                        [INPUT] = &model->inputs,
+                                        [COORDINATE] = &model->coordinates,
+                                        [VELOCITY] = &model->velocities,
+                                        [STATE] = &model->states};
+  size_t kind = (size_t)symbol->kind;
+  if (kind >= sizeof lists / sizeof *lists || lists[kind] == NULL) return NULL;
+  const struct Variable *variable = &lists[kind]->items[symbol->index];
+  /* A calculated parameter that equals another one has the symbol of that one. */
+  return strcmp(variable->name, name) == 0 ? variable : NULL;
+}
+
+static bool has_value_for(const struct Preset *preset, const char *name) {
+  for (size_t i = 0; i < preset->count; i++)
+    if (strcmp(preset->values[i].name, name) == 0) return true;
+  return false;
+}
+
+static void check_value(struct Reader *reader, xmlNodePtr node, const struct Variable *variable, double value) {
+  if (value < variable->minimum || value > variable->maximum)
+    report_at(reader, node, "'%s': %g is outside min and max; expected a value between them", variable->name, value);
+  else if (variable->type == TYPE_INTEGER && value != floor(value))
+    report_at(reader, node, "'%s': %g is not an Integer; expected a whole number", variable->name, value);
+  else if (variable->type == TYPE_BOOLEAN && value != 0.0 && value != 1.0)
+    report_at(reader, node, "'%s': %g is not a Boolean; expected 1 for true or 0 for false", variable->name, value);
+}
+
+/* Reads <at name value/> of a preset. */
+static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *preset) {
+  char *name = reference_attribute(reader, node, "name");
+  double value = NAN;
+  if (name == NULL || !number_attribute(reader, node, "value", &value)) return;
+  const struct Variable *variable = settable_variable(reader, name);
+  const char *similar = scope_find(reader->scope, name) == NULL ? scope_similar_name(reader->scope, name) : NULL;
+  if (similar != NULL)
+    report_at(reader, node, "the preset names '%s'; did you mean '%s'?", name, similar);
+  else if (variable == NULL)
+    report_at(reader, node,
+              "the preset names '%s'; expected a parameter with a start, an input, a coordinate, a velocity or a state",
+              name);
+  else if (has_value_for(preset, name))
+    report_at(reader, node, "the preset names '%s' twice; expected one value", name);
+  else {
+    check_value(reader, node, variable, value);
+    preset->values = make_room(preset->values, preset->count, sizeof *preset->values);
+    preset->values[preset->count++] = (struct PresetValue){name, value};
+  }
+}
+
+void read_preset(struct Reader *reader, xmlNodePtr node) {
+  struct Model *model = reader->model;
+  struct Preset preset = {.name = name_attribute(reader, node, "name"), .description = attribute(node, "description")};
+  if (preset.name == NULL) return;
+  for (size_t i = 0; i < model->preset_count; i++)
+    if (strcmp(model->presets[i].name, preset.name) == 0)
+      report_at(reader, node, "a second preset '%s'; expected another name", preset.name);
+  for (xmlNodePtr child = xmlFirstElementChild(node); child != NULL; child = xmlNextElementSibling(child))
+    read_value(reader, child, &preset);
+  if (xmlFirstElementChild(node) == NULL)
+    report_at(reader, node, "the preset '%s' sets nothing; expected <at name=\"...\" value=\"...\"/> in it", preset.name);
+  model->presets = make_room(model->presets, model->preset_count, sizeof *model->presets);
+  model->presets[model->preset_count++] = preset;
+}
