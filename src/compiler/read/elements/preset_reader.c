@@ -45,8 +45,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *pr
   if (name == NULL || !number_attribute(reader, node, "value", &value)) return;
   const struct Variable *variable = settable_variable(reader, name);
   const char *similar = scope_find(reader->scope, name) == NULL ? scope_similar_name(reader->scope, name) : NULL;
-  if (similar != NULL)
-    report_at(reader, node, "the preset names '%s'; did you mean '%s'?", name, similar);
+  if (similar != NULL) report_at(reader, node, "the preset names '%s'; did you mean '%s'?", name, similar);
   else if (variable == NULL)
     report_at(reader, node,
               "the preset names '%s'; expected a parameter with a start, an input, a coordinate, a velocity or a state",
@@ -70,7 +69,8 @@ void read_preset(struct Reader *reader, xmlNodePtr node) {
   for (xmlNodePtr child = xmlFirstElementChild(node); child != NULL; child = xmlNextElementSibling(child))
     read_value(reader, child, &preset);
   if (xmlFirstElementChild(node) == NULL)
-    report_at(reader, node, "the preset '%s' sets nothing; expected <at name=\"...\" value=\"...\"/> in it", preset.name);
+    report_at(reader, node, "the preset '%s' sets nothing; expected <at name=\"...\" value=\"...\"/> in it",
+              preset.name);
   model->presets = make_room(model->presets, model->preset_count, sizeof *model->presets);
   model->presets[model->preset_count++] = preset;
 }
