@@ -57,8 +57,8 @@ static void observe(struct Component *component) {
 }
 
 /*
- * True if the importer must enter event mode at the end of the step. An importer without early return sees events at
- * the end alone (FMI 3.0.2, section 4.2.1): one that is due there, or one inside the step, which the FMU has handled
+ * True if the importer must enter event mode at the end of the step. An importer without early return sees events only
+ * at the end (FMI 3.0.2, section 4.2.1): one that is due there, or one inside the step, which the FMU has handled
  * and after which discrete variables differ.
  */
 static bool needs_event_mode(struct Instance *instance, int64_t events_before) {
