@@ -28,4 +28,18 @@ static inline double log_cosh(double u) {
   return fabs(u) < 20.0 ? log1p(2.0 * half * half) : fabs(u) - 0.693147180559945309417;
 }
 
+/*
+ * exp(u) in the argument of a function that is constant to rounding for large arguments, such as exp(-exp(u)). From
+ * u = EXPONENT_CAP on it is constant, where it is beyond that range even with a factor of 1e-80.
+ */
+#define EXPONENT_CAP 200.0
+static inline double capped_exp(double u) {
+  return exp(fmin(u, EXPONENT_CAP));
+}
+
+/* Returns the derivative of capped_exp(). */
+static inline double capped_exp_slope(double u) {
+  return u < EXPONENT_CAP ? exp(u) : 0.0;
+}
+
 #endif

@@ -9,6 +9,7 @@ Represent the inputs of an FMU as piecewise polynomials in time, from tables or 
 The cubic spline solves a tridiagonal system by Thomas' algorithm, with O(n) operations for n rows (C. de Boor: A practical guide to splines).
 """
 
+import inspect
 from collections.abc import Mapping
 
 import numpy as np
@@ -205,7 +206,7 @@ def _rates(name, own, inputs):
         rate, order = f"der({rate})", order + 1
 
 
-def _columns_of(data):
+def columns_of(data):
     """Return the columns of a table as arrays by name; the index of a DataFrame may be the time."""
     if hasattr(data, "reset_index"):
         data = data if "time" in data.columns else data.reset_index()
@@ -241,7 +242,7 @@ def _kind(variable, inputs, hold):
 
 
 def _from_table(data, inputs, description, hold):
-    given = _checked(_columns_of(data))
+    given = _checked(columns_of(data))
     times, columns = given.pop("time"), []
     known(given, list(inputs), description, "is not an input")
     for name, values in given.items():
@@ -264,8 +265,19 @@ def _finite(numbers, time):
     return found
 
 
+def _check_takes_time(function):
+    try:
+        inspect.signature(function).bind(0.0)
+    except ValueError:  # NumPy's functions have no signature
+        pass
+    except TypeError:
+        raise Problem("the function of the input cannot be called with the time alone; expected one such as lambda t: 2*t, or lambda t, sim: -sim['x'] for a controller") from None
+
+
 def _function_of(data):
     """Return a function of time; a dict of functions and numbers becomes a function that returns a dict."""
+    for function in filter(callable, data.values() if isinstance(data, Mapping) else [data]):
+        _check_takes_time(function)
     if isinstance(data, Mapping):
         return lambda time: {name: one(time) if callable(one) else one for name, one in data.items()}
     return data

@@ -47,10 +47,13 @@ def why_not(name, description):
 
 
 def nearest(word, words):
-    """Return the most similar word; None if there is none, or if several begin with `word`."""
+    """Return the most similar word; None if there is none, or if several begin with `word` and differ after that of the shortest."""
     by_lower = {str(one).lower(): str(one) for one in words}
     word = str(word).lower()
     begins = [one for one in by_lower if one.startswith(word)]
+    shortest = min(begins, key=len, default=None)
+    if shortest and all(one.startswith(shortest) for one in begins):
+        begins = [shortest]
     if word in by_lower or len(begins) > 1 or len(word) < 3:
         return by_lower.get(word)
     found = begins or difflib.get_close_matches(word, by_lower, 1, LIKE)
@@ -67,7 +70,8 @@ def instead(word, words, what="these are"):
 def near_file(path):
     """Return the end of a message about a missing file: a file of a similar name in its folder, or ""."""
     path = Path(path)
-    beside = {other.stem: other.name for other in path.parent.iterdir()} if path.parent.is_dir() else {}
+    others = sorted(path.parent.iterdir(), key=lambda other: (other.suffix == path.suffix, other.name)) if path.parent.is_dir() else []
+    beside = {other.stem: other.name for other in others}  # of one stem that with the same suffix
     near = nearest(path.stem, beside)
     return f"; did you mean '{path.with_name(beside[near])}'?" if near else ""
 
@@ -96,6 +100,17 @@ def numbers_by_name(given, what="start_values"):
         if not isinstance(value, str) and not _is_finite(value):
             raise Problem(f"{what} has {value!r} for '{name}'; expected a finite number, or a text such as '30deg'")
     return dict(given or {})
+
+
+def pairs_by_name(given):
+    """Return bounds as a dict of pairs; raise Problem for others."""
+    bounds = given or {}
+    if not isinstance(bounds, Mapping):
+        raise Problem(f"bounds is {bounds!r}; expected a dict of pairs by name, such as {{'l': (0.5, 2)}}")
+    for name, pair in bounds.items():
+        if isinstance(pair, str) or not isinstance(pair, Iterable) or len(list(pair)) != 2:
+            raise Problem(f"bounds has {pair!r} for '{name}'; expected a pair (LOW, HIGH)")
+    return dict(bounds)
 
 
 def names_of(given, what):

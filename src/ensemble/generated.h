@@ -25,6 +25,8 @@
 #define softplus(x) lanes_softplus(LANES_OF(x))
 #define sech(x) lanes_sech(LANES_OF(x))
 #define log_cosh(x) lanes_log_cosh(LANES_OF(x))
+#define capped_exp(x) lanes_capped_exp(LANES_OF(x))
+#define capped_exp_slope(x) lanes_capped_exp_slope(LANES_OF(x))
 #define fabs(x) lanes_absolute(LANES_OF(x))
 #define pow(x, y) lanes_pow(LANES_OF(x), LANES_OF(y))
 #define atan2(y, x) lanes_atan2(LANES_OF(y), LANES_OF(x))

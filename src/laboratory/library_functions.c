@@ -10,11 +10,28 @@
 static const struct {
   const char *name;
   FunctionOfOne *function;
-} functions_of_one[] = {{"sin", sin},           {"cos", cos},           {"tan", tan},   {"asin", asin},
-                        {"acos", acos},         {"atan", atan},         {"sinh", sinh}, {"cosh", cosh},
-                        {"tanh", tanh},         {"asinh", asinh},       {"exp", exp},   {"acosh", acosh},
-                        {"atanh", atanh},       {"fabs", fabs},         {"log", log},   {"floor", floor},
-                        {"logistic", logistic}, {"softplus", softplus}, {"sech", sech}, {"log_cosh", log_cosh}};
+} functions_of_one[] = {{"sin", sin},
+                        {"cos", cos},
+                        {"tan", tan},
+                        {"asin", asin},
+                        {"acos", acos},
+                        {"atan", atan},
+                        {"sinh", sinh},
+                        {"cosh", cosh},
+                        {"tanh", tanh},
+                        {"asinh", asinh},
+                        {"exp", exp},
+                        {"acosh", acosh},
+                        {"atanh", atanh},
+                        {"fabs", fabs},
+                        {"log", log},
+                        {"floor", floor},
+                        {"logistic", logistic},
+                        {"softplus", softplus},
+                        {"sech", sech},
+                        {"log_cosh", log_cosh},
+                        {"capped_exp", capped_exp},
+                        {"capped_exp_slope", capped_exp_slope}};
 
 static const struct {
   const char *name;

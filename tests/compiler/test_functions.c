@@ -91,6 +91,8 @@ static const struct Reference {
     {"log(1 + exp)", "softplus", softplus_of, NULL, "bounded", NULL},
     {"1/cosh", "sech", sech_of, NULL, "bounded", NULL},
     {"log(cosh)", "log_cosh", log_cosh_of, NULL, "bounded", NULL},
+    {"exp(min)", "capped_exp", expl, NULL, "bounded", NULL},
+    {"exp(min)'", "capped_exp_slope", expl, NULL, "bounded", NULL},
     {"abs", "fabs", fabsl, NULL, NULL, "sign"},
     {"sign", NULL, sign_of, NULL, NULL, "sign"},
     {"floor", NULL, floorl, NULL, NULL, NULL},

@@ -70,7 +70,13 @@ def table(**columns):
     (table(time=[0, 1], x=[0, np.inf]), {}, "'x' of the data has an infinite value"),
     (table(time=[0, 1], x=[np.nan, np.nan]), {}, "or none at all"),
     (table(time=[0, 1], x=[0, 1], F=[0, np.nan]), {}, "the input 'F' of the data has rows without a value"),
-    (np.zeros((3, 2)), {}, "neither a CSV nor a structured array"),
+    (np.zeros((3, 2)), {}, "the data have no time with measurements; expected a CSV, a dict of arrays, a DataFrame or a structured array"),
+    ({"time": [0, 1]}, {}, "the data have no time with measurements"),
+    ({"x": [0, 1]}, {}, "the data have no time with measurements"),
+    ({"time": [0, 1], "x": [0, 1, 2]}, {}, "'x' of the data has 3 values and 'time' 2; expected one for each time"),
+    ({"time": [0, 1], "x": [0, "one"]}, {}, "'x' of the data has values that are not numbers"),
+    (table(time=[0, 1], x=[0, 1]), {"bounds": {"k": 5}}, "bounds has 5 for 'k'; expected a pair"),
+    (table(time=[0, 1], x=[0, 1]), {"bounds": [1, 2]}, "expected a dict of pairs by name"),
     (table(time=[0, 1], x=[0, 1]), {"noise": {"x": 0.0}}, "the noise is x=0; expected positive"),
     (table(time=[0, 1], x=[0, 1]), {"noise": {"y": 1.0}}, "the noise of 'y' is given, which was not measured"),
     (table(time=[0, 1], x=[0, 1]), {"bounds": {"m": (1, 2)}}, "'m' has bounds and does not vary"),
@@ -79,6 +85,19 @@ def table(**columns):
 def test_unusable_data(lagrange_fmu, data, words, why):  # noqa: F811
     with pytest.raises(lagrange_fmu.Problem, match=why):
         lagrange_fmu.fit(archive_of(BUILD / "measured", "Oscillator"), data, **({"vary": ["k"]} | words))
+
+
+def test_dicts_and_data_frames(lagrange_fmu):  # noqa: F811
+    """A dict of arrays in any order, and what has columns as a DataFrame, are the same data as a structured array."""
+    data = measured(np.random.default_rng(6), TRUTH)[::4]
+
+    class Frame(dict):
+        columns = property(lambda self: list(self))
+        reset_index = None
+
+    columns = {name: data[name] for name in reversed(data.dtype.names)}
+    expected, *found = (lagrange_fmu.fit(archive_of(BUILD / "measured", "Oscillator"), one, vary=["k"]).values for one in (data, columns, Frame(columns)))
+    assert found == [expected, expected]
 
 
 def test_missing_values(lagrange_fmu):  # noqa: F811

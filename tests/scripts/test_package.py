@@ -316,6 +316,9 @@ def test_reference(command, tmp_path):
     (["sweep", fmi3.archive("SimplePendulum"), "--vary", "l=1,2"], "SimplePendulum.fmu is of FMI 3.0; expected one of FMI 2.0"),
     (["rnu", "x.fmu"], "invalid choice: 'rnu'; did you mean 'run'?"),
     (["run", "Near.fmu", "--stpo-time", "1"], "unrecognized arguments: --stpo-time 1; did you mean '--stop-time'?"),
+    (["live", "Near.fmu", "--folder", "x"], "unrecognized arguments: --folder x; expected one of these: "),
+    (["run", "Twni.fmu"], "there is no file Twni.fmu; did you mean 'Twin.fmu'?"),
+    (["run", "Twni.xml"], "there is no file Twni.xml; did you mean 'Twin.xml'?"),
     (["run", "near.fum"], "there is no file near.fum; did you mean 'Near.fmu'?"),
     (["run", fmu.archive("SimplePendulum"), "thetta=1"], "'thetta' is not a variable of SimplePendulum; did you mean 'theta'?"),
     (["run", fmu.archive("SimplePendulum"), "--output", "totalenergy"], "'totalenergy' is not a variable of SimplePendulum; did you mean 'totalEnergy'?"),
@@ -325,7 +328,7 @@ def test_reference(command, tmp_path):
     (["words", "qqq"], "the reference says nothing about 'qqq'"),
 ])  # fmt: skip
 def test_mistakes(words, message, command, tmp_path):
-    for name, text in (("text.fmu", "no archive"), ("Near.fmu", "no archive"), ("q.csv", "time,q\n0,1\n"), ("bad.csv", "time,F\n0,1\n1,a\n"), ("back.csv", "time,F\n1,1\n0,1\n")):
+    for name, text in (("text.fmu", "no archive"), ("Near.fmu", "no archive"), ("Twin.fmu", "no archive"), ("Twin.xml", "no system"), ("q.csv", "time,q\n0,1\n"), ("bad.csv", "time,F\n0,1\n1,a\n"), ("back.csv", "time,F\n1,1\n0,1\n")):
         (tmp_path / name).write_text(text)
     result = command(*words, cwd=tmp_path)
     assert result.returncode in (1, 2) and message in result.stderr and "Traceback" not in result.stderr, result.stderr
@@ -416,6 +419,14 @@ calls = [
     lambda: lagrange_fmu.live("pendulum.xml", edit=True, start_values={"l": 1}),
     lambda: lagrange_fmu.live(FMU, start_values={"L": 1}),
     lambda: lagrange_fmu.words("restitutoin"),
+    lambda: lagrange_fmu.words("restitutio"),
+    lambda: lagrange_fmu.words(3),
+    lambda: lagrange_fmu.simulate(None),
+    lambda: lagrange_fmu.check(None),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, randm=3),
+    lambda: lagrange_fmu.sweep(FMU),
+    lambda: lagrange_fmu.build("pendulum.xml", plattforms=["linux64"]),
+    lambda: lagrange_fmu.simulate(FMU, input=lambda: 3),
 ]
 for call in calls:
     try:
@@ -452,6 +463,14 @@ SENTENCES = [
     "the page that changes pendulum.xml begins with the values in it; expected edit=True without l",
     "'L' is not a variable of SimplePendulum; did you mean 'l'?",
     "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
+    "the reference says nothing about 'restitutio'; did you mean 'restitution'?",
+    "the word is 3; expected a text",
+    "the system is None; expected the path of a system or of an FMU",
+    "the system is None; expected the path of a system or of an FMU",
+    "'randm' is not an argument of sweep; did you mean 'random'?",
+    "sweep: missing a required argument: 'vary'; expected sweep(system, vary, *, random=None, ",
+    "'plattforms' is not an argument of build; did you mean 'platforms'?",
+    "the function of the input cannot be called with the time alone; expected one such as lambda t: 2*t, ",
     "('time', 'totalEnergy')",
 ]
 

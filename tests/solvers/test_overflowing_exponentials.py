@@ -19,6 +19,10 @@ def logistic(u):
     return np.exp(-np.logaddexp(0, -u))
 
 
+def gompertz(u):
+    return np.exp(-np.exp(np.minimum(-u, 600)))
+
+
 def sech(u):
     return 2 * np.exp(-np.logaddexp(u, -u))
 
@@ -41,6 +45,20 @@ FORCES = {
     "(1 + 2*exp(u))/(1 + exp(u))": lambda u: 1 + logistic(u),
     "-1/sqrt(1 + exp(-u))": lambda u: -np.sqrt(logistic(u)),
     "exp(u)*exp(-2*u)*exp(u)": np.ones_like,
+    "exp(-exp(-u))": gompertz,
+    "-exp(-3*exp(u))": lambda u: -np.exp(-3 * np.exp(np.minimum(u, 600))),
+    "exp(-u - exp(-u))/d": lambda u: np.exp(-u - np.exp(np.minimum(-u, 600))) / D,
+    "tanh(exp(u))": lambda u: np.tanh(np.exp(np.minimum(u, 600))),
+    "-atan(2*exp(-u))": lambda u: -np.arctan(2 * np.exp(np.minimum(-u, 600))),
+    "exp(-(1 + exp(u))^2)": lambda u: np.exp(-((1 + np.exp(np.minimum(u, 300))) ** 2)),
+    "1/(1 + exp(exp(u)))": lambda u: logistic(-np.exp(np.minimum(u, 600))),
+    "exp(u)/(1 + exp(2*u))": lambda u: sech(u) / 2,
+    "-1/(1 + (1 + exp(u))^2)": lambda u: -1 / (1 + (1 + np.exp(np.minimum(u, 300))) ** 2),
+    "1/((1 + exp(u))*(1 + exp(2*u)))": lambda u: logistic(-u) * logistic(-2 * u),
+    "(1 + exp(u))^2/(1 + exp(2*u))": lambda u: 1 + sech(u),
+    "-1/(1 + (exp(u) + exp(-u))^2)/d": lambda u: -(sech(u) ** 2) / (sech(u) ** 2 + 4) / D,
+    "(exp(u) - 1)^2/(exp(u) + 1)^2": lambda u: np.tanh(u / 2) ** 2,
+    "exp(-c*exp(-u))*k": lambda u: 5 * np.exp(-3 * np.exp(np.minimum(-u, 600))),
 }  # fmt: skip
 BODY = '<coordinate name="x{0}" velocity="v{0}" start="{1}" velocityStart="{2}"/><kinetic>v{0}^2/2</kinetic><force coordinate="x{0}">{3}</force>'
 LEAVES = [(i, formula, side) for i, formula in enumerate(FORCES) for side in (-1, 1)]

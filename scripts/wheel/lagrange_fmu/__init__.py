@@ -16,8 +16,9 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .calls import checked
 from .problem import Problem
-from .variables import instead, names_of, numbers_by_name
+from .variables import instead, names_of, numbers_by_name, pairs_by_name
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,7 +46,7 @@ def __getattr__(name: str) -> Any:
     if name in ("build", "check", "new"):
         from . import building
 
-        return getattr(building, name)
+        return checked(getattr(building, name))
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
 
 
@@ -53,6 +54,7 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__, "__version__"})
 
 
+@checked
 def simulate(
     system: str | PathLike[str],
     start_values: Mapping[str, float] | None = None,
@@ -127,6 +129,7 @@ def simulate(
     return Result.of(motion_of(system, start_values, None, stop_time=stop_time, record_events=record_events, **words, **options))
 
 
+@checked
 def start(
     system: str | PathLike[str],
     start_values: Mapping[str, float | str] | None = None,
@@ -172,6 +175,7 @@ def start(
     return Simulation(system, numbers_by_name(start_values) | numbers_by_name(values), fmi, solver, tolerance)
 
 
+@checked
 def equilibrium(
     system: str | PathLike[str],
     guess: Mapping[str, float | str] | None = None,
@@ -214,6 +218,7 @@ def equilibrium(
     return equilibrium(system, numbers_by_name(guess, "guess"), numbers_by_name(hold, "hold"), names_of(vary, "vary"))
 
 
+@checked
 def linearize(
     system: str | PathLike[str], at: Mapping[str, float] | None = None, parameters: Mapping[str, float] | None = None
 ) -> Linearization:
@@ -255,6 +260,7 @@ def linearize(
     return linearize(system, numbers_by_name(at, "at") | numbers_by_name(parameters, "parameters"))
 
 
+@checked
 def sensitivities(
     system: str | PathLike[str],
     of: Sequence[str],
@@ -304,6 +310,7 @@ def sensitivities(
     return sensitivities(system, names_of(of, "of"), names_of(by, "by"), times, numbers_by_name(start_values), tolerance)
 
 
+@checked
 def gradient(
     system: str | PathLike[str],
     of: str | None = None,
@@ -364,6 +371,7 @@ def gradient(
     return gradient(system, of, names_of(by, "by"), stop_time, data, integral, numbers_by_name(noise, "noise"), numbers_by_name(start_values), tolerance)
 
 
+@checked
 def fit(
     system: str | PathLike[str],
     data: str | PathLike[str] | np.ndarray | Sequence[Any],
@@ -386,7 +394,7 @@ def fit(
         An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
     data : path, structured array, or a list of these
         Measurements, one item for each experiment. The columns are "time", measured outputs or states, and measured inputs; the first line of
-        a CSV names them, optionally with units. NaN and empty cells are missing measurements.
+        a CSV names them, optionally with units; a dict of arrays or a DataFrame also serves. NaN and empty cells are missing measurements.
     vary : sequence of str
         Names of the parameters and start values to fit, common to all experiments.
     start_values : dict of float, optional
@@ -418,9 +426,10 @@ def fit(
     """
     from .fitting import fit
 
-    return fit(system, data, names_of(vary, "vary"), numbers_by_name(start_values), dict(bounds or {}), numbers_by_name(noise, "noise"), names_of(each, "each"), loss)
+    return fit(system, data, names_of(vary, "vary"), numbers_by_name(start_values), pairs_by_name(bounds), numbers_by_name(noise, "noise"), names_of(each, "each"), loss)
 
 
+@checked
 def run(
     system: str | PathLike[str], start_values: Mapping[str, float] | None = None, folder: str | PathLike[str] = ".", **words: Any
 ) -> dict[str, Path | str]:
@@ -457,6 +466,7 @@ def run(
     return run(system, start_values, folder, **words)
 
 
+@checked
 def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False, start_values: Mapping[str, float | str] | None = None) -> Path:
     """
     Write a page in which the FMU of a system runs, in any browser and without a network.
@@ -491,6 +501,7 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
     return live(system, start_values, output, edit)
 
 
+@checked
 def sweep(
     system: str | PathLike[str],
     vary: Mapping[str, tuple[float, ...] | Sequence[float] | np.ndarray],
@@ -550,6 +561,7 @@ def sweep(
     return sweep(system, vary, random=random, seed=seed, stop_time=stop_time, step=step, tolerance=tolerance, record=record, scheduler=scheduler, output=output)
 
 
+@checked
 def words(word: str | None = None) -> str:
     """
     Return the paragraphs of the language reference that mention a word.
@@ -578,6 +590,7 @@ def words(word: str | None = None) -> str:
     return words(word)
 
 
+@checked
 def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, float], **options: Any) -> Path:
     """
     Write the system of a LagrangesMethod of sympy.physics.mechanics as XML.

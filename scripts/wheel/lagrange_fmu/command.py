@@ -11,7 +11,7 @@ import shtab
 from . import __version__, caching
 from .commands import COMMANDS
 from .problem import Problem
-from .variables import instead, near_file, nearest
+from .variables import instead, near_file
 
 
 FILES = ("system", "input")  # arguments that are completed as file names
@@ -28,19 +28,20 @@ class Words(argparse.ArgumentParser):
             message = f"{choice[1]}; {instead(choice[2], choices, 'choose from')}"
         super().error(message)
 
-    def options(self):
-        """Yield the options of all commands."""
+    def options(self, name):
+        """Yield the options of the command of this name; those of all commands if it is None."""
         for action in self._actions:
             yield from action.option_strings
             if isinstance(action, argparse._SubParsersAction):
-                for command in action.choices.values():
-                    yield from command.options()
+                for command in [action.choices[name]] if name else action.choices.values():
+                    yield from command.options(None)
 
     def parse_args(self, words=None):
         arguments, unknown = self.parse_known_args(words)
         if unknown:
-            near = nearest(unknown[0].partition("=")[0], self.options()) if unknown[0].startswith("-") else None
-            self.error(f"unrecognized arguments: {' '.join(unknown)}" + (f"; did you mean '{near}'?" if near else ""))
+            own = list(dict.fromkeys(self.options(getattr(arguments, "command", None))))
+            remedy = f"; {instead(unknown[0].partition('=')[0], own, 'expected one of these')}" if unknown[0].startswith("-") else ""
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{remedy}")
         return arguments
 
 
@@ -58,7 +59,7 @@ def parser():
     for name, module in MODULES.items():
         text = module.__doc__.strip()
         command = commands.add_parser(name, help=text, description=text)
-        command.set_defaults(run=module.run)
+        command.set_defaults(run=module.run, command=name)
         module.arguments(command)
         for action in command._actions:
             if action.dest in FILES:

@@ -1,19 +1,36 @@
 """Read and check the measurements of an experiment."""
 
 import os
+from collections.abc import Mapping
 
 import numpy as np
 
 from .input_file import read_table
 from .problem import Problem
+from .signals import columns_of
+
+
+def _rows_of(columns):
+    """Return columns by name as a structured array that begins with the time; raise Problem for others than numbers of one length."""
+    names = sorted(columns, key=lambda name: name != "time")
+    for name in names:
+        if len(columns[name]) != len(columns[names[0]]):
+            raise Problem(f"'{name}' of the data has {len(columns[name])} values and '{names[0]}' {len(columns[names[0]])}; expected one for each time")
+        try:
+            columns[name] = np.asarray(columns[name], dtype=float)
+        except (TypeError, ValueError):
+            raise Problem(f"'{name}' of the data has values that are not numbers; expected numbers, and NaN where one is missing") from None
+    return np.rec.fromarrays([columns[name] for name in names], names=names).view(np.ndarray)
 
 
 def _table_of(data, point):
     if isinstance(data, (str, os.PathLike)):
         return read_table(data, point.units)
+    if isinstance(data, Mapping) or hasattr(data, "reset_index"):
+        data = _rows_of(columns_of(data))
     names = getattr(getattr(data, "dtype", None), "names", None) or ()
     if names[:1] != ("time",) or len(names) < 2:
-        raise Problem("the data are neither a CSV nor a structured array whose first name is time; expected one, such as frame.to_records(index=False) of pandas")
+        raise Problem("the data have no time with measurements; expected a CSV, a dict of arrays, a DataFrame or a structured array, with time first")
     return data
 
 
@@ -24,7 +41,7 @@ def _check_times(times):
         raise Problem("the data have a row without a finite time; expected a time in each")
     back = np.flatnonzero(np.diff(times) <= 0)
     if len(back):
-        raise Problem(f"the time {times[back[0] + 1]:.15g} s of the data follows {times[back[0]]:.15g} s; expected sorted rows, each time once, and further experiments in files of their own")
+        raise Problem(f"the time {times[back[0] + 1]:.15g} s of the data follows {times[back[0]]:.15g} s; expected sorted rows, each time once (of a simulation: record_events=False), and further experiments in files of their own")
 
 
 class Experiment:

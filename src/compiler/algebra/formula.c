@@ -216,9 +216,15 @@ static bool print_bounded(struct Printer *printer, const struct Vertex *vertex) 
     fputs(vertex->operation == SECH ? "1/cosh(" : "log(cosh(", printer->file);
     print(printer, vertex->left, IN_SUM);
     break;
+  case CAPPED_EXPONENTIAL:
+  case CAPPED_SLOPE:
+    fputs("exp(", printer->file);
+    print(printer, vertex->left, IN_SUM);
+    break;
   default: return false;
   }
-  fputs(vertex->operation == SECH ? ")" : "))", printer->file);
+  bool is_nested = vertex->operation == LOGISTIC || vertex->operation == SOFTPLUS || vertex->operation == LOG_COSH;
+  fputs(is_nested ? "))" : ")", printer->file);
   return true;
 }
 

@@ -85,6 +85,10 @@ static Node logistic_of_operand(struct Graph *graph, Node node) {
   return function(graph, LOGISTIC, operand(graph, node), ZERO);
 }
 
+static Node slope_of_capped(struct Graph *graph, Node node) {
+  return function(graph, CAPPED_SLOPE, operand(graph, node), ZERO);
+}
+
 static Node times_tanh_of_operand(struct Graph *graph, Node node) {
   return multiply(graph, node, tanh_of_operand(graph, node));
 }
@@ -385,6 +389,22 @@ const struct Function functions[OPERATION_COUNT] = {
                   .recurrence = INTEGRAL,
                   .auxiliary = tanh_of_operand,
                   .operand_limit = "bounded"},
+    [CAPPED_EXPONENTIAL] = {.name = "exp(min)",
+                            .is_internal = true,
+                            .c_name = "capped_exp",
+                            .of_one = capped_exp,
+                            .is_never_negative = true,
+                            .recurrence = INTEGRAL,
+                            .auxiliary = slope_of_capped,
+                            .operand_limit = "bounded"},
+    [CAPPED_SLOPE] = {.name = "exp(min)'",
+                      .is_internal = true,
+                      .c_name = "capped_exp_slope",
+                      .of_one = capped_exp_slope,
+                      .is_never_negative = true,
+                      .recurrence = INTEGRAL,
+                      .auxiliary = itself,
+                      .operand_limit = "bounded"},
     [ABSOLUTE] = {.name = "abs",
                   .c_name = "fabs",
                   .of_one = fabs,

@@ -41,10 +41,12 @@ enum Operation {
   ARTANH,
   EXPONENTIAL,
   LOGARITHM,
-  LOGISTIC, /* include/bounded_functions.h has this one and the next three; growth.h makes them */
+  LOGISTIC, /* include/bounded_functions.h has this one and the next five; growth.h makes them */
   SOFTPLUS,
   SECH,
   LOG_COSH,
+  CAPPED_EXPONENTIAL,
+  CAPPED_SLOPE,
   ABSOLUTE,
   SIGN,
   FLOOR,

@@ -137,6 +137,37 @@ static Node distribute(struct Graph *graph, Node sum, Node node) {
   return result;
 }
 
+/* Multiplies out powers of sums in a term, if the sums grow. */
+static Node expand_term(struct Graph *graph, Node term) {
+  enum { HIGHEST_POWER = 4 };
+  Node base, result;
+  struct Factor factors[FACTOR_LIMIT];
+  double coefficient = coefficient_of(graph, term, &base);
+  int count = factors_of(graph, base, factors);
+  result = graph_constant(graph, coefficient);
+  for (int i = 0; i < count; i++) {
+    bool is_whole = is_whole_from_1(factors[i].exponent) && factors[i].exponent <= HIGHEST_POWER;
+    bool grows_as_sum =
+        vertex_of(graph, factors[i].base)->operation == ADD && is_whole && !is_bounded(graph, factors[i].base);
+    if (!grows_as_sum) result = distribute(graph, result, power_number(graph, factors[i].base, factors[i].exponent));
+    for (int n = 0; grows_as_sum && n < (int)factors[i].exponent; n++) {
+      Node terms[TERM_LIMIT], sum = ZERO;
+      int terms_now = terms_of(graph, result, terms, TERM_LIMIT);
+      for (int k = 0; k < terms_now; k++) sum = add(graph, sum, distribute(graph, factors[i].base, terms[k]));
+      result = sum;
+    }
+  }
+  return count < 0 ? term : result;
+}
+
+/* Does the same in all terms of a sum. */
+static Node expand(struct Graph *graph, Node sum) {
+  Node terms[TERM_LIMIT], result = ZERO;
+  int count = terms_of(graph, sum, terms, TERM_LIMIT);
+  for (int i = 0; i < count; i++) result = add(graph, result, expand_term(graph, terms[i]));
+  return result;
+}
+
 /*
  * Splits base = inner / (s1^p1 s2^p2 ...), where inner is bounded: for each factor that grows, a decay; for exp(u)
  * it is exp(-u). Returns the number of decays; 0 if nothing grows, or if a growing factor has no decay.
@@ -153,6 +184,7 @@ static int split(struct Graph *graph, Node base, struct Decay decays[FACTOR_LIMI
     Node scaled = ONE;
     bool is_exponential = grows(graph, factors[i], &growth) && growth.operation == EXPONENTIAL;
     bool is_sum = vertex_of(graph, factors[i].base)->operation == ADD;
+    if (is_sum) factors[i].base = expand(graph, factors[i].base);
     if (is_exponential && vertex_of(graph, factors[i].base)->operation == EXPONENTIAL)
       decay = (struct Decay){function(graph, EXPONENTIAL, scale(graph, -growth.coefficient, growth.base), ZERO), 1.0};
     else if ((is_sum || growth.operation == COSH) && factors[i].exponent > 0.0 &&
@@ -202,6 +234,51 @@ bool bounded_logarithm(struct Graph *graph, Node node, Node *result) {
   return true;
 }
 
+/* Replaces the growing exponentials of a factor by capped ones. Returns their number; 2 if they cannot be replaced. */
+static int cap_factor(struct Graph *graph, struct Factor factor, Node *result) {
+  struct Growth growth;
+  Node inner;
+  *result = power_number(graph, factor.base, factor.exponent);
+  if (vertex_of(graph, factor.base)->operation == ADD && factor.exponent > 0.0) {
+    if (!bounded_argument(graph, factor.base, &inner)) return 0;
+    *result = power_number(graph, inner, factor.exponent);
+    return 1;
+  }
+  if (!grows(graph, factor, &growth)) return 0;
+  if (growth.operation != EXPONENTIAL) return 2;
+  *result = function(graph, CAPPED_EXPONENTIAL, scale(graph, growth.coefficient, growth.base), ZERO);
+  return 1;
+}
+
+/* Does the same for a term. */
+static int cap_term(struct Graph *graph, Node term, Node *result) {
+  Node base;
+  struct Factor factors[FACTOR_LIMIT];
+  double coefficient = coefficient_of(graph, term, &base);
+  int count = factors_of(graph, base, factors), found = 0;
+  *result = graph_constant(graph, coefficient);
+  for (int i = 0; i < count; i++) {
+    Node factor;
+    found += cap_factor(graph, factors[i], &factor);
+    *result = multiply(graph, *result, factor);
+  }
+  return found;
+}
+
+/* Two that grow may cancel each other, so that their arguments are not large. */
+bool bounded_argument(struct Graph *graph, Node argument, Node *result) {
+  Node terms[TERM_LIMIT];
+  int count = terms_of(graph, argument, terms, TERM_LIMIT), found = 0;
+  *result = ZERO;
+  for (int i = 0; i < count; i++) {
+    Node term;
+    int grown = vertex_of(graph, terms[i])->operation == ADD ? 2 : cap_term(graph, terms[i], &term);
+    found += grown;
+    *result = add(graph, *result, grown == 1 ? term : terms[i]);
+  }
+  return found == 1;
+}
+
 /* The bounded product of powers of a growing and of a decaying factor. */
 struct Joined {
   Node product;
@@ -215,6 +292,12 @@ static bool join_exponential(struct Graph *graph, const struct Growth *growth, s
   const struct Vertex vertex = *vertex_of(graph, right.base);
   double coefficient = coefficient_of(graph, vertex.left, &base), rate = fabs(coefficient);
   bool is_opposite = vertex.operation == SECH || growth->coefficient * coefficient < 0.0;
+  if (base == growth->base && is_opposite && vertex.operation == LOGISTIC &&
+      2.0 * fabs(growth->coefficient) == rate) { /* exp(u) / (1 + exp(2 u)) = 1/(2 cosh(u)) */
+    Node quotient = function(graph, SECH, scale(graph, fabs(growth->coefficient), base), ZERO);
+    *joined = (struct Joined){scale(graph, 0.5, quotient), left.exponent, 1.0};
+    return true;
+  }
   double count = fmin(floor(fabs(growth->coefficient) / rate), floor(right.exponent));
   if (base != growth->base || !is_opposite || count < 1.0) return false;
   double upwards = growth->coefficient > 0.0 ? rate : -rate, rest = growth->coefficient - count * upwards;
@@ -251,10 +334,24 @@ static bool join_opposite(struct Graph *graph, const struct Growth *growth, stru
   return true;
 }
 
+/* Multiplies out a power of a sum, and each term by a decay along the same base, to the least power that bounds it. */
+static bool join_expanded(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
+  enum { HIGHEST_POWER = 4 };
+  Node base, sum = expand_term(graph, power_number(graph, left.base, left.exponent));
+  struct Rates rates;
+  coefficient_of(graph, vertex_of(graph, right.base)->left, &base);
+  if (!rates_of(graph, sum, &rates) || rates.base != base) return false;
+  for (int power = 1; power <= HIGHEST_POWER && power <= right.exponent; power++) {
+    *joined = (struct Joined){distribute(graph, sum, power_number(graph, right.base, power)), left.exponent, power};
+    if (is_bounded(graph, joined->product)) return true;
+  }
+  return false;
+}
+
 static bool join_sum(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
   struct Decay decay;
   if (left.exponent < 1.0 || !decay_of(graph, left.base, &decay)) return false;
-  if (decay.node != right.base || decay.power > right.exponent) return false;
+  if (decay.node != right.base || decay.power > right.exponent) return join_expanded(graph, left, right, joined);
   Node sum = distribute(graph, left.base, power_number(graph, decay.node, decay.power));
   *joined = (struct Joined){sum, 1.0, decay.power};
   return is_bounded(graph, sum);

@@ -18,6 +18,11 @@ bool bounded_power(struct Graph *graph, Node base, double n, Node *result);
 /* Rewrites the natural logarithm of a node. */
 bool bounded_logarithm(struct Graph *graph, Node node, Node *result);
 
+/*
+ * Caps the only growing exponential in the argument of a function that is constant to rounding for large arguments.
+ */
+bool bounded_argument(struct Graph *graph, Node argument, Node *result);
+
 /* Rewrites a product in which a growing factor cancels against a scale. */
 bool bounded_product(struct Graph *graph, const struct Factor *left, int left_count, const struct Factor *right,
                      int right_count, Node *result);

@@ -336,6 +336,12 @@ static Node guard(struct Graph *graph, Node guard_condition, Node node) {
   return graph_node(graph, GUARD, guard_condition, node);
 }
 
+/* True for functions that are constant to rounding for large arguments, or overflow. */
+static bool is_constant_far_out(enum Operation operation) {
+  return operation == EXPONENTIAL || operation == TANH || operation == ARCTANGENT || operation == LOGISTIC ||
+         operation == SECH;
+}
+
 Node function(struct Graph *graph, enum Operation operation, Node left, Node right) {
   if (operation_arity(operation) == 1) right = ZERO;
   if (graph_is_constant(graph, left) && graph_is_constant(graph, right))
@@ -345,6 +351,7 @@ Node function(struct Graph *graph, enum Operation operation, Node left, Node rig
   if (operation == GUARD) return guard(graph, left, right);
   Node base;
   if (operation == LOGARITHM && bounded_logarithm(graph, left, &base)) return base;
+  if (is_constant_far_out(operation) && bounded_argument(graph, left, &base)) left = base;
   if (coefficient_of(graph, left, &base) < 0) {
     enum Parity parity = functions[operation].parity;
     if (parity == ODD) return negate(graph, graph_node(graph, operation, negate(graph, left), right));

@@ -108,7 +108,7 @@ static void write_includes(FILE *file, const struct Program *program) {
   if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL)
     fputs("#include \"saddle.h\"\n\nextern const struct Projection projection;\n", file);
   if (has_nonsymmetric_block(program)) fputs("#include \"nonsymmetric.h\"\n", file);
-  if (has_operations(program, LOGISTIC, LOG_COSH)) fputs("#include \"bounded_functions.h\"\n", file);
+  if (has_operations(program, LOGISTIC, CAPPED_SLOPE)) fputs("#include \"bounded_functions.h\"\n", file);
   if (has_operations(program, UNIFORM, GAUSS)) fputs("#include \"random_numbers.h\"\n", file);
   fputs("\n", file);
 }

@@ -1,0 +1,34 @@
+"""Check the arguments of the package's functions, whose mistakes are sentences."""
+
+import functools
+import inspect
+import os
+
+from .problem import Problem
+from .variables import nearest
+
+
+def _what_is_wrong(function, signature, words, error):
+    unknown = [word for word in words if word not in signature.parameters]
+    if not unknown:
+        return f"{function.__name__}: {error}; expected {function.__name__}{signature.replace(return_annotation=inspect.Signature.empty)}"
+    near = nearest(unknown[0], signature.parameters)
+    return f"'{unknown[0]}' is not an argument of {function.__name__}; " + (f"did you mean '{near}'?" if near else f"expected one of these: {', '.join(signature.parameters)}")
+
+
+def checked(function):
+    """Return a function that raises Problem for arguments which do not fit the signature, and for a system that is not a path."""
+    signature = inspect.signature(function)
+    plain = signature.replace(parameters=[one.replace(annotation=inspect.Parameter.empty) for one in signature.parameters.values()])
+
+    @functools.wraps(function)
+    def call(*values, **words):
+        try:
+            given = signature.bind(*values, **words).arguments
+        except TypeError as error:
+            raise Problem(_what_is_wrong(function, plain, words, error)) from None
+        if "system" in given and not isinstance(given["system"], (str, os.PathLike)):
+            raise Problem(f"the system is {given['system']!r}; expected the path of a system or of an FMU")
+        return function(*values, **words)
+
+    return call
