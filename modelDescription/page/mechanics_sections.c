@@ -1,7 +1,12 @@
 #include "mechanics_sections.h"
 
+#include "mechanics/energies.h"
+
 /* Returns the balance of energy that totalEnergy obeys, see energies.h. */
 static const char *balance_of(const struct Model *model, bool autonomous) {
+  if (work_is_of_everything(model))
+    return "totalEnergy changes by nonConservativeWork alone, which includes the work of what moves states and "
+           "constraints: its derivative is P.";
   if (model->given.constraint != NULL)
     return "A constraint depends on time or inputs: its force does work, so that totalEnergy is not constant even "
            "without other forces.";
@@ -86,6 +91,7 @@ void write_mechanics(struct Page *page) {
   if (!page->model->forces.any) return;
   page_heading(page, "Power of the non-conservative forces");
   page_equation(page, "P", summary->power);
+  if (work_is_of_everything(page->model)) return;
   page_element(page, "p",
                "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . "
                "dr/dt over the Cartesian forces, where dr/dt is the whole velocity of the point they act on. The "

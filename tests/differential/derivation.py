@@ -36,6 +36,16 @@ def curve(table):
     return at
 
 
+def integral(s, low, high, integrand):
+    """Integrate a sum of products of powers and cosines of s, with factors without s, in closed form."""
+    total = sp.Integer(0)
+    for term in sp.Add.make_args(sp.expand(integrand)):
+        factor, rest = term.as_independent(s, as_Add=False)
+        primitive = sp.integrate(rest, s)
+        total += factor * (primitive.subs(s, high) - primitive.subs(s, low))
+    return total
+
+
 class Derivation:
     """
     Equations of a system. mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the FMU's
@@ -57,6 +67,8 @@ class Derivation:
         self.symbols |= {displacement: sp.Integer(0) for displacement in system.displacements}
         self.symbols |= {table.name: curve(table) for table in system.tables}
         self.symbols |= {mode: symbol(mode) for mode in system.switches.modes}
+        self.symbols |= {dummy: sp.Symbol(dummy, real=True) for dummy in system.dummies} | {"integral": integral}
+        self.symbols |= {label: self._function(one) for label, one in system.functions.items()}
         self._define(system)
         self.bodies = self._bodies(q, v) + sum(frame.kinetic(self.convert, q, v) for frame in system.frames)
         energy = sp.sympify(self.bodies + sum(map(self.convert, system.kinetic)))
@@ -72,6 +84,10 @@ class Derivation:
                 self.driven_power += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], time)
                 for i, qi in enumerate(q):
                     forces[i] += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], qi)
+        for i, c in enumerate(system.coordinates):
+            if c.rate is not None:
+                energy += v[i] ** 2 / 2
+                forces[i] += self.convert(c.rate)
         constraints = [sp.sympify(self.convert(c)) for c in [*system.constraints, *system.driven_velocities]]
         self.mechanics = Mechanics(
             q, v, energy, sp.sympify(potential), forces, inputs=inputs, parameters=parameters, constraints=constraints
@@ -79,6 +95,10 @@ class Derivation:
         for label, expression in system.outputs.items():
             self.results[label] = sp.sympify(self.convert(expression))
         self._add_energies(potential, v)
+
+    def _function(self, one):
+        """Return what computes a <function> from SymPy's arguments, which hide variables of the same name."""
+        return lambda *values: in_sympy(one.expression, self.symbols | dict(zip(one.arguments, values)), self.rate)
 
     def convert(self, tree):
         return in_sympy(tree, self.symbols, self.rate)

@@ -165,8 +165,9 @@ class Node:
         return f"({operand})" if own < level else str(operand)
 
     def nodes(self):
+        """This node and all below it, but none in an integrand, which contains the variable of the integral."""
         yield self
-        for operand in self.operands:
+        for operand in self.operands[1:3] if self.operation == "integral" else self.operands:
             yield from operand.nodes()
 
 

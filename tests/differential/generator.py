@@ -2,6 +2,7 @@
 
 import math
 
+from .additions import ADDITIONS
 from .draw import Draw, cos, sin, smooth
 from .expressions import function, name, node
 from .families import FAMILIES, inputs
@@ -26,6 +27,7 @@ def generate(seed, number):
     system.work = bool(forces) and system.method != "exact" and draw.chance(0.15)  # the work is not linear in the state
     follow(Draw(f"{seed}/{number}/constraints", system))
     extend(Draw(f"{seed}/{number}/parts", system))
+    add(Draw(f"{seed}/{number}/additions", system))
     return system
 
 
@@ -95,6 +97,14 @@ def extend(draw):
         if draw.chance(0.2) and draw.system.method != "exact" and draw.system.coordinates:
             extension(draw)
             draw.system.families.add(extension.__name__)
+
+
+def add(draw):
+    """States of first order, functions and integrals."""
+    for addition in ADDITIONS:
+        if draw.chance(0.15) and draw.system.method != "exact":
+            addition(draw)
+            draw.system.families.add(addition.__name__)
 
 
 def drive(draw):

@@ -82,7 +82,7 @@ def guards_of_node(derivation, node):
     if node.operation in tables and derivation.system.switches:
         return [(operands[0] - x, SCALES["min"]) for x in tables[node.operation].x]
     match node.operation:
-        case "number" | "name" | "+" | "-" | "*" | "negative" | "der" | "if" | "and" | "or" | "not":
+        case "number" | "name" | "+" | "-" | "*" | "negative" | "der" | "if" | "and" | "or" | "not" | "integral":
             return []
         case "/":
             return [(operands[1], SCALES["/"])]
@@ -151,7 +151,7 @@ def right_side_in_c(derivation):
         *declarations(derivation),
     ]
     power = (
-        [derivation.driven_power + sum(force * v for force, v in zip(mechanics.Q, mechanics.v))] if system.work else []
+        [derivation.driven_power + sum(force * v for force, v, c in zip(mechanics.Q, mechanics.v, system.coordinates) if c.rate is None)] if system.work else []
     )
     flat = [
         *mechanics.mass,

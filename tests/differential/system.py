@@ -13,6 +13,8 @@ class Coordinate:
     start: float
     velocity_start: float
     acceleration: object = None  # of a driven coordinate
+    # Of a state: `velocity` is the state, and `name` a state that is its integral. The reference is a coordinate with T = velocity^2/2 and Q = rate.
+    rate: object = None
 
     @property
     def part(self):
@@ -39,6 +41,14 @@ class Table:
     x: list
     y: list
     interpolation: str
+
+
+@dataclass
+class Function:
+    """A <function>; the arguments are names in its expression."""
+
+    arguments: list
+    expression: object
 
 
 @dataclass
@@ -87,6 +97,8 @@ class System:
     driven_velocities: list = field(default_factory=list)  # each minus the integral of its acceleration: 0 at all times
     displacements: list = field(default_factory=list)
     tables: list = field(default_factory=list)
+    functions: dict = field(default_factory=dict)  # Function by name
+    dummies: list = field(default_factory=list)  # names of variables of integrals
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
     switches: Switches = field(default_factory=Switches)
@@ -130,6 +142,7 @@ class System:
                 yield body.angle
         yield from [*self.kinetic, *self.potentials, *self.dissipations]
         yield from (force for _, force in self.forces)
+        yield from (c.rate for c in self.coordinates if c.rate is not None)
         for _, force in self.cartesian_forces:
             yield from force.values()
         yield from self.constraints
@@ -171,6 +184,8 @@ class System:
             add("table", points, name=table.name, interpolation=table.interpolation)
         for displacement in self.displacements:
             add("displacement", name=displacement)
+        for label, one in self.functions.items():
+            add("function", one.expression, name=label, arguments=" ".join(one.arguments))
 
         for name, value in self.parameters.items():
             add("parameter", name=name, start=repr(value))
@@ -179,6 +194,10 @@ class System:
         for c in self.coordinates:
             if c.part:
                 add("include", file=f"{c.part}.xml", **{"as": c.part})
+                continue
+            if c.rate is not None:
+                add("state", name=c.name, start=repr(c.start), rate=c.velocity)
+                add("state", name=c.velocity, start=repr(c.velocity_start), rate=c.rate)
                 continue
             drive = {"acceleration": c.acceleration} if c.acceleration is not None else {}
             add(

@@ -58,6 +58,19 @@ def geared(t, state):
     return [v, w, rate, 8 * (x - y), rate]
 
 
+def hauled(t, state):
+    """A pendulum whose length is 1 + 0.2 sin t."""
+    x, y, vx, vy = state
+    length, rate, second = 1 + 0.2 * np.sin(t), 0.2 * np.cos(t), -0.2 * np.sin(t)
+    pull = -(rate**2 + length * second - vx**2 - vy**2 + 9.81 * y) / (x**2 + y**2)
+    return [vx, vy, -pull * x, -9.81 - pull * y]
+
+
+def held(t, state):
+    q, v, z = state
+    return [v, (5 * (z - q) - 0.3 * v) / 2, np.cos(t) - z]
+
+
 def derive_turned():
     t, a, *symbols = sympy.symbols("t a TH W Z Y")
     th, z, y = (sympy.Function(name)(t) for name in ("th", "z", "y"))
@@ -82,7 +95,12 @@ def system(name, method):
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("moving-states", {f"{name}_{method}": system(name, method) for name in SYSTEMS for method in METHODS})
+    texts = {f"{name}_{method}": system(name, method) for name in SYSTEMS for method in METHODS}
+    for name in WORKED:
+        for method in ("taylor", "radau"):
+            worked = f"{name}_{method}_worked"
+            texts[worked] = f'<system name="{worked}">{SYSTEMS_WITH_WORK[name]}<work/><solver method="{method}" tolerance="1e-11"/></system>'
+    build_systems("moving-states", texts)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
@@ -101,6 +119,42 @@ def test_motion(name, open_fmu):
         assert instance.get("o") == pytest.approx(1.5 * np.cos(th) * w - th * z + 0.3, rel=1e-8)
 
 
+# Systems with <work/>, and the power of all that acts, by hand: what carries a spring's end or a pivot, draws in a rope, or takes mass away.
+WORKED = {
+    "Carried": (carried, "q v z", lambda t, s: -3 * s[0] * (-s[2] + np.sin(t))),
+    "Pivot": (pivot, "th w z", lambda t, s: 2 * (1.5 * (np.cos(s[0]) * pivot(t, s)[1] - np.sin(s[0]) * s[1] ** 2) - s[1] * s[2] - s[0] * pivot(t, s)[2]) * pivot(t, s)[2]),
+    "Drawn": (drawn, "x y vx vy z", lambda t, s: 2 * drawn(t, s)[2] / s[0] * s[4] * drawn(t, s)[4]),
+    "Burning": (burning, "x v m", lambda t, s: 2 * s[1] - burning(t, s)[2] * s[1] ** 2 / 2),
+    "Geared": (geared, "x y v w z", lambda t, s: (geared(t, s)[2] + 8 * (s[0] - s[1])) * s[2]),
+    "Hauled": (hauled, "x y vx vy", lambda t, s: 2 * hauled(t, s)[2] / s[0] * (1 + 0.2 * np.sin(t)) * 0.2 * np.cos(t)),
+    "Held": (held, "q v z", lambda t, s: 5 * (s[2] - s[0]) * (np.cos(t) - s[2]) - 0.3 * s[1] ** 2),
+}  # fmt: skip
+SYSTEMS_WITH_WORK = {
+    **SYSTEMS,
+    # A rope of given length, and a spring whose end a state moves.
+    "Hauled": '<coordinate name="x" velocity="vx" start="0.6"/><coordinate name="y" velocity="vy" start="-0.8"/><particle name="b" mass="2" x="x" y="y"/><potential>2*9.81*y</potential>'
+    '<constraint name="rod">x^2 + y^2 - (1 + 0.2*sin(time))^2</constraint>',
+    "Held": '<coordinate name="q" velocity="v" start="0.3"/><state name="z" start="0.5" rate="cos(time) - z"/><particle mass="2" x="q"/><potential>5*(q - z)^2/2</potential>'
+    "<dissipation>0.3*v^2/2</dissipation>",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WORKED)
+def test_work_of_everything(name, open_fmu):
+    """The integral of the power by SciPy, and the change of the energy."""
+    rates, names, power = WORKED[name]
+    names = names.split()
+    for method in ("taylor", "radau"):
+        for steps in (1, 100):
+            instance = open_fmu(f"{name}_{method}_worked").initialize()
+            start, energy = instance.get(*names), instance.get("totalEnergy")
+            end = solve_ivp(lambda t, s: [*rates(t, s[:-1]), power(t, s[:-1])], (0, 2), [*start, 0], rtol=1e-12, atol=1e-13, method="DOP853").y[:, -1]
+            instance.run(2.0, 2.0 / steps, names[0])
+            np.testing.assert_allclose(instance.get(*names, "nonConservativeWork"), end, rtol=2e-9, atol=1e-9)
+            assert abs(end[-1]) > 0.1
+            assert instance.get("totalEnergy") - energy == pytest.approx(end[-1], abs=2e-9)
+
+
 @pytest.mark.parametrize("content, message", [
     ('<state name="z" rate="v"/><particle name="b" mass="1" x="q + z"/>',
      "the position of 'b' needs the second derivative of the state 'z', whose rate depends on 'v'; expected a rate of coordinates, states and time"),
@@ -112,7 +166,7 @@ def test_motion(name, open_fmu):
     ('<state name="z" rate="v"/><constraint name="c">q - z</constraint>', "the constraint 'c' needs the second derivative of the state 'z', whose rate depends on 'v'"),
     ('<state name="z" rate="der(v)"/><constraint name="c">v - z</constraint>', "the constraint 'c' needs the time derivative of the state 'z', whose rate depends on 'der(v)'"),
     ('<state name="z" rate="q"/><kinetic>z*v^2/2</kinetic>', "the kinetic energy needs the time derivative of the state 'z', whose rate depends on 'q'; expected a <particle> or <body>"),
-    ('<state name="z" rate="1"/><particle name="b" mass="1" x="q + z"/><work/><force coordinate="q">1</force>', "<work/> beside the state 'z', on which the position of 'b' depends, so that it does work of its own; expected no <work/>"),
+    ('<state name="z" rate="1"/><particle name="b" mass="1" x="q + z"/><work/>', None),
     ('<input name="u" derivatives="1"/><state name="z" rate="u - z"/><particle name="b" mass="1" x="q + z"/>', None),
     ('<state name="z" rate="v"/><particle name="b" mass="0" x="q + z"/><force on="b" x="1"/>', None),
     ('<state name="z" rate="y"/><state name="y" rate="v - y"/><particle name="b" mass="1" x="q + z"/>', None),

@@ -7,6 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "interface/symbol_names.h"
+#include "mechanics/energies.h"
 #include "mechanics/switching.h"
 
 static struct InterfaceVariable *append(struct Interface *interface, enum VariableKind kind, size_t index,
@@ -232,6 +233,7 @@ static const char *total_energy_description(const struct Model *model) {
                  graph_depends_on(graph, model->energies.potential.node, TIME) ||
                  graph_depends_on(graph, model->energies.potential.node, STATE) || steps_in_time(model);
   bool has_work = work_of(model) != NULL;
+  if (work_is_of_everything(model)) changes = switches->contact_count + switches->event_count > 0;
   if (changes || (model->forces.any && !has_work)) return "kinetic and potential energy";
   return has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                   : "kinetic and potential energy; constant";

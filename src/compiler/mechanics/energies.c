@@ -14,6 +14,14 @@ static bool is_velocity(const struct Model *model, Node node) {
   return symbol->kind == VELOCITY || (symbol->kind == INPUT && is_input_rate(model, (size_t)symbol->index));
 }
 
+bool work_is_of_everything(const struct Model *model) {
+  const struct GivenMotion *given = &model->given;
+  bool is_driven = given->inputs_move || given->prescribed_motion_count > 0;
+  return work_of(model) != NULL &&
+         (given->states_move || given->constraint != NULL || (is_driven && model->constraints.count > 0) ||
+          graph_depends_on(model->graph, model->energies.potential.node, STATE));
+}
+
 Node stored_energy(const struct Model *model, Node potential) {
   struct Graph *graph = model->graph;
   struct Gradient slopes = gradient_by_kinds(graph, potential, 1u << VELOCITY | 1u << INPUT);

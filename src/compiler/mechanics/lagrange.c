@@ -170,7 +170,8 @@ static Node with_accelerations(const struct Model *model, const struct Equations
   return node;
 }
 
-static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
+/* Returns the power of forces, dissipation, drives, and inputs that move positions. */
+static Node power_of_forces(const struct Model *model, const struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   Node power = ZERO;
   for (size_t i = 0; i < equations->count; i++) {
@@ -180,12 +181,19 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
   power = add(graph, power, moving_power(model));
-  equations->stated_power = add(graph, power, model->forces.driven_power.node);
-  equations->power = equations->stated_power;
-  if (work_of(model) != NULL) equations->power = with_accelerations(model, equations, equations->power);
+  return add(graph, power, model->forces.driven_power.node);
+}
+
+static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {
+  struct Graph *graph = model->graph;
   equations->kinetic = model->energies.kinetic_energy.node;
   equations->potential = stored_energy(model, model->energies.potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
+  equations->stated_power = power_of_forces(model, equations, force);
+  if (work_is_of_everything(model))
+    derivative_along(graph, &equations->total, 1, time_seeds(model, true), &equations->stated_power);
+  equations->power = equations->stated_power;
+  if (work_of(model) != NULL) equations->power = with_accelerations(model, equations, equations->power);
 }
 
 /* Derives the rates of the states of first order. */

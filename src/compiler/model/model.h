@@ -105,6 +105,7 @@ struct Origin {
 struct GivenMotion {
   Node *input_rates;                           /* [inputs]: the input that is its time derivative; ZERO for none */
   bool inputs_move;                            /* positions or energies depend on inputs */
+  bool states_move;                            /* positions or kinetic energies depend on states */
   struct PrescribedMotion *prescribed_motions; /* [coordinates] */
   size_t prescribed_motion_count;              /* number of prescribed coordinates */
   const struct Variable *constraint;           /* a rheonomic constraint, whose force does work; NULL for none */

@@ -4,15 +4,22 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "mechanics/energies.h"
 #include "read/event_checks.h"
 #include "read/expressions/named_functions.h"
 #include "read/robots/description/rigid_body.h"
 #include "read/state_checks.h"
 
+static void check_work(const struct Reader *reader) {
+  const struct Model *model = reader->model;
+  const struct Variable *work = work_of(model);
+  if (work != NULL && !model->forces.any && !work_is_of_everything(model))
+    report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
+}
+
 static void check_content(const struct Reader *reader) {
   const struct Model *model = reader->model;
   size_t coordinates = model->coordinates.count;
-  const struct Variable *work = work_of(model);
   if (is_motionless(model) && model->outputs.count == 0 && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0,
                  "the system has neither coordinates, nor states, nor outputs; expected a <coordinate>, a <state> or "
@@ -28,19 +35,6 @@ static void check_content(const struct Reader *reader) {
   if (is_motionless(model) && reader->has_solver)
     report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates and states has nothing to solve; expected no <solver>");
-  if (work != NULL && !model->forces.any)
-    report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
-  if (model->constraints.count > 0 && work != NULL &&
-      (model->given.inputs_move || model->given.prescribed_motion_count > 0))
-    report_error(reader->diagnostics, work->line, "<work/> beside the constraint '%s' and %s; expected no <work/>",
-                 model->constraints.items[0].name,
-                 model->given.prescribed_motion_count > 0 ? "a driven coordinate"
-                                                          : "an input that moves positions or energies");
-  if (work != NULL && model->given.constraint != NULL)
-    report_error(reader->diagnostics, work->line,
-                 "<work/> beside the constraint '%s', which depends on time and does work; expected no <work/>, or a "
-                 "driven coordinate in place of the constraint",
-                 model->given.constraint->name);
 }
 
 /* A variable without a unit agrees with all units, so that a forgotten unit hides errors. */
@@ -218,6 +212,7 @@ static void warn_of_functions(const struct Reader *reader) {
 void check_system(struct Reader *reader) {
   check_content(reader);
   check_moving_states(reader);
+  check_work(reader);
   if (reader->diagnostics->errors > 0) return;
   warn_of_functions(reader);
   warn_without_unit(reader);

@@ -60,16 +60,10 @@ static bool follows_second(const struct Need *need, const struct Variable *state
   return true;
 }
 
-/* A state that moves masses does work that <work/> does not include. */
-static void require_no_work(const struct Need *need, Node node) {
-  const struct Model *model = need->reader->model;
-  const struct Variable *work = work_of(model);
-  const struct Symbol *state = first_of(model, node, KIND(STATE));
-  if (work != NULL && state != NULL)
-    report_error(need->reader->diagnostics, work->line,
-                 "<work/> beside the state '%s', on which %s depends, so that it does work of its own; expected no "
-                 "<work/>",
-                 state->name, need->what);
+/* Notes that a state moves a mass, so that what moves the state does work. */
+static void note_moving_state(const struct Need *need, Node node) {
+  struct Model *model = need->reader->model;
+  model->given.states_move |= graph_depends_on(model->graph, node, STATE);
 }
 
 static void require_derivatives(const struct Need *need, Node node) {
@@ -104,14 +98,14 @@ static void check_bodies(const struct Reader *reader) {
       bool has_mass = (component < 3 ? body->mass.node : body->inertia.node) != ZERO;
       if (!has_mass || body->is_in_frame) continue;
       require_derivatives(&need, body->displaced[component]);
-      require_no_work(&need, body->displaced[component]);
+      note_moving_state(&need, body->displaced[component]);
     }
     for (int axis = 0; axis < 3 && body->is_in_frame; axis++) {
       require_derivatives(&need, body->offset.along[axis]);
       require_derivatives(&need, pose->origin.along[axis]);
-      require_no_work(&need, pose->origin.along[axis]);
+      note_moving_state(&need, pose->origin.along[axis]);
       for (int column = 0; column < 3; column++) require_derivatives(&need, pose->rotation.row[axis].along[column]);
-      require_no_work(&need, pose->rotation.row[axis].along[0]);
+      note_moving_state(&need, pose->rotation.row[axis].along[0]);
     }
   }
 }
@@ -123,7 +117,7 @@ void check_moving_states(const struct Reader *reader) {
   const struct Need of_energy = {reader, 0, "the kinetic energy", false};
   require_derivatives(&of_energy, model->energies.explicit_kinetic.node);
   require_free_rates(&of_energy, model->energies.explicit_kinetic.node);
-  require_no_work(&of_energy, model->energies.explicit_kinetic.node);
+  note_moving_state(&of_energy, model->energies.explicit_kinetic.node);
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     bool is_second = !graph_depends_on(model->graph, constraint->node, VELOCITY);

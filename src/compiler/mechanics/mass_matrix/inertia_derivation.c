@@ -175,9 +175,10 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   if (!is_right || constraint_block->count > 0)
     inertia = is_right ? create_bordered(model, &elements, constraint_block, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
-  /* The power of prescribed motions depends on accelerations, whose derivatives must be expressions. */
-  bool power_has_accelerations =
-      (model->given.prescribed_motion_count > 0 || model->given.inputs_move) && work_of(model) != NULL;
+  /* The power of prescribed motions depends on accelerations, which are expressions unless there are constraints. */
+  bool power_has_accelerations = constraint_block->count == 0 &&
+                                 (model->given.prescribed_motion_count > 0 || model->given.inputs_move) &&
+                                 work_of(model) != NULL;
   bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {
     struct InertiaBlock *block = &inertia->blocks[b];
