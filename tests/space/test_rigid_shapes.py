@@ -467,3 +467,12 @@ def test_ball_that_begins_to_roll_beside_a_stone(v, mu):
     with Running("BesideStone", {"mu": mu, "avx": 0.6 * v, "avy": 0.8 * v}) as instance:
         instance.step(2 * v / (7 * mu * G) + 0.01)
         assert instance.get("avx", "avy") == pytest.approx([5 / 7 * 0.6 * v, 5 / 7 * 0.8 * v], rel=1e-7)
+
+
+@pytest.mark.parametrize("side, count", [("", 4), ('sizeY="0"', 4), ('sizeY="0.0"', 4), ('sizeY="0.1"', 8)])
+def test_flat_boxes_touch_at_four_vertices(side, count, tmp_path):
+    """A side of 0 is the same whether it is written or left out."""
+    (tmp_path / "system.xml").write_text(BOX_IN_PLANE.replace('sizeX="A"', f'sizeX="A" {side}'))
+    result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert (tmp_path / "out" / "modelDescription.xml").read_text().count('.closed"') == count

@@ -130,6 +130,7 @@ struct ContactShape {
   Node angles[3];         /* rad, of that rotation: about the frame's x, y and z in turn */
   Node radius, length;    /* m; the length of a capsule excludes its round ends */
   struct Vector size;     /* m, of a box or ellipsoid along its axes */
+  bool is_flat[3];        /* the box has no size along the axis in the file: a side of 0, or none */
   struct Mesh *mesh;      /* NULL for other types */
   bool is_hidden;         /* has contacts, but is not drawn */
   char *color;            /* such as "#ff8000", or "#ff800080" at half opacity; NULL for the page's choice */

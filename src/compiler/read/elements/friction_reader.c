@@ -45,10 +45,13 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
                    "the %s of a friction depends on '%s'; expected the forces of contacts and constraints alone, as in "
                    "mu*ground.force",
                    what, symbol->name);
-    else if (graph_depends_on(graph, gradient.values[i], ACCELERATION))
+    else if (graph_depends_on(graph, gradient.values[i], ACCELERATION)) {
       report_error(reader->diagnostics, line,
-                   "the %s of a friction is not linear in '%s'; expected a force such as mu*%s", what, symbol->name,
-                   symbol->name);
+                   "the %s of a friction is not linear in '%s'; expected a force such as mu*%s, or mu*N with "
+                   "<state name=\"N\" rate=\"(... - N)/T\"/>, which follows another expression in a short time T",
+                   what, symbol->name, symbol->name);
+      return;
+    }
   }
 }
 
@@ -103,7 +106,7 @@ static bool read_friction_forces(struct Reader *reader, xmlNodePtr node, struct 
   read_forces_back(reader, node, unit, friction);
   if (reader->diagnostics->errors > 0) return false;
   check_linear(reader, line, "force", friction->sliding);
-  check_linear(reader, line, "stiction", friction->stiction);
+  if (has_attribute(node, "stiction")) check_linear(reader, line, "stiction", friction->stiction);
   if (has_attribute(node, "forceBack")) check_linear(reader, line, "forceBack", friction->sliding_back);
   if (has_attribute(node, "stictionBack")) check_linear(reader, line, "stictionBack", friction->stiction_back);
   return true;

@@ -1,6 +1,7 @@
 #include "read/shapes/shapes.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "algebra/simplify.h"
@@ -80,6 +81,12 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
 }
 
+/* True for the number 0, and without the attribute. Names of other expressions are not known yet. */
+static bool is_zero_or_missing(xmlNodePtr node, const char *name) {
+  char *text = attribute(node, name), *end;
+  return text == NULL || (strtod(text, &end) == 0 && end != text && *end == '\0');
+}
+
 void declare_shape(struct Reader *reader, xmlNodePtr node) {
   struct Mechanism *mechanism = &reader->model->mechanism;
   char *name = name_attribute(reader, node, "name");
@@ -92,7 +99,7 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   if (shape.type == SHAPE_MESH) shape.mesh = mesh_of_shape(reader, node);
   shape.color = attribute(node, "color");
   shape.is_hidden = attribute_is(node, "drawn", "false") || attribute_is(node, "drawn", "0");
-  for (int i = 0; i < 3; i++) shape.size.along[i] = has_attribute(node, measures[2 + i].name) ? ONE : ZERO;
+  for (int i = 0; i < 3; i++) shape.is_flat[i] = is_zero_or_missing(node, measures[2 + i].name);
   reader->present->number = mechanism->shape_count;
   mechanism->shapes = make_room(mechanism->shapes, mechanism->shape_count, sizeof *mechanism->shapes);
   mechanism->shapes[mechanism->shape_count++] = shape;

@@ -65,7 +65,7 @@ static void append_corners(struct Graph *graph, struct Points *points, const str
     for (int i = 0; i < 3; i++) {
       bool is_upper = (corner >> i & 1) != 0;
       point.along[i] = scale(graph, is_upper ? 0.5 : -0.5, shape->size.along[i]);
-      is_another &= !(is_upper && shape->size.along[i] == ZERO);
+      is_another &= !(is_upper && shape->is_flat[i]);
     }
     if (is_another) append_point(graph, points, shape, point);
   }
@@ -273,7 +273,7 @@ static size_t point_count(const struct ContactShape *shape) {
   size_t corners = 1;
   switch (shape->type) {
   case SHAPE_BOX:
-    for (int i = 0; i < 3; i++) corners *= shape->size.along[i] != ZERO ? 2 : 1;
+    for (int i = 0; i < 3; i++) corners *= shape->is_flat[i] ? 1 : 2;
     return corners;
   case SHAPE_CYLINDER: return RIMS_POINTS;
   case SHAPE_CAPSULE: return 2;
