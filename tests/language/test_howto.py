@@ -77,6 +77,14 @@ def freewheel(t):
     return {"wMotor": motor, "wWheel": 4 * t if t < 1 else 4.0 if t < 2 else 4 * (t - 1), "torque": 1.6 if t < 1 or t > 2 else 0.0}
 
 
+DRAINED = np.sqrt(2 / G) * 0.5 / 0.02  # s
+
+
+def draining(t):
+    level = max(0.0, 1 - t / DRAINED) ** 2
+    return {"h1": level, "h2": 1 - level, "flow": 0.02 * np.sqrt(2 * G * level)}
+
+
 def tyre(t):
     J, R, V, C, sigma, M = 1.2, 0.3, 20, 60000, 0.4, 300
     rates = np.array([[0, -R * C / J, -M / J], [R / sigma, -V / sigma, 0], [0, 0, 0]])
@@ -116,6 +124,7 @@ MOTIONS = {
     "Fall": (fall, 1e-3),
     "Freewheel": (freewheel, 1e-9),
     "TyreRig": (tyre, 1e-3),
+    "DrainingTank": (draining, 1e-7),
     "Tank": (lambda t: {"h": 0.0}, 0.0),
     "LevelControl": (lambda t: {"q": 4.0}, 0.0),
     "OneArm": (lambda t: {"shoulder": 0.0}, 0.0),
@@ -136,6 +145,7 @@ NUMBERS = {
     "rope": [TAUT, SWING],
     "one-way-clutch": [1.6, 4, 8],
     "tyre": [-1000],
+    "tanks": [DRAINED],
     "couple-by-ssp": [max(abs(filling(0.01) - 1 + np.exp(-0.02 * np.arange(501))))],
     "robot-from-urdf": [held_arm()],
 }
