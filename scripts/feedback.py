@@ -11,12 +11,20 @@ from .variables import known
 
 
 def is_feedback(data):
-    """Return True for a function of two arguments, the time and the simulation."""
+    """Return True for a function of two arguments, the time and the simulation, False for one of the time; raise Problem for other functions."""
     try:
-        parameters = inspect.signature(data).parameters.values() if callable(data) else ()
+        signature = inspect.signature(data) if callable(data) else None
     except ValueError:  # NumPy's functions have no signature
         return False
-    return sum(p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters) == 2
+    if signature is None:
+        return False
+    if sum(p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in signature.parameters.values()) == 2:
+        return True
+    try:
+        signature.bind(0.0)
+    except TypeError:
+        raise Problem(f"the input is a function with the arguments {signature}; expected one of (time), or of (time, sim)") from None
+    return False
 
 
 class Feedback:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .problem import Problem
-from .quantities import number_of
+from .quantities import number_of, truth_of
 from .signals import REAL
 from .variables import known
 
@@ -22,7 +22,7 @@ def numbers_for(variable, value):
     """Return the value as a list of numbers of the variable's type; raise Problem if it does not fit."""
     name, count = variable.name, _count(variable)
     try:
-        numbers = np.asarray(number_of(name, value, variable.unit or "1"), dtype=float).ravel()
+        numbers = np.asarray(number_of(name, truth_of(variable, value), variable.unit or "1"), dtype=float).ravel()
     except (TypeError, ValueError):
         raise Problem(f"'{name}' is set to {value!r}; expected a number") from None
     if len(numbers) != count or not np.isfinite(numbers).all():
@@ -58,6 +58,9 @@ class NamedValues:
             return np.array(get([variable.valueReference], _count(variable))).reshape(variable.shape)
         [value] = get([variable.valueReference])
         return bool(value) if variable.type == "Boolean" else value
+
+    def __setitem__(self, name, value):
+        raise Problem(f"'{name}' cannot be set here; expected the inputs as what the function returns")
 
     def set(self, variable, numbers):
         getattr(self.fmu, accessor("set", variable, self.description))([variable.valueReference], numbers)

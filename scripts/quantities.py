@@ -39,6 +39,12 @@ def number_of(name, value, unit, is_limit=False):
     return number
 
 
+def truth_of(variable, value):
+    """Return the number of the text "true" or "false" for a Boolean variable; any other value as it is."""
+    is_text = variable.type == "Boolean" and isinstance(value, str)
+    return {"true": 1.0, "false": 0.0}.get(value.strip(), value) if is_text else value
+
+
 def numbers_of(values, units):
     """Return the values of a dict as numbers; `units` has the units of variables by name, and "1" is the default."""
     return {name: number_of(name, value, units.get(name, "1")) for name, value in values.items()}

@@ -9,7 +9,7 @@ from numbers import Real
 from pathlib import Path
 
 from .problem import Problem
-from .quantities import numbers_of
+from .quantities import numbers_of, truth_of
 
 LIKE = 0.65  # smallest ratio of difflib at which a word is suggested
 
@@ -134,10 +134,11 @@ def known(names, among, description, what="is not a variable"):
 
 def checked_start(start, description, free=None):
     """Return the start values as numbers; raise Problem if one is for a variable that does not exist, or is not in `free`, by default settable()."""
-    names, free = [variable.name for variable in description.modelVariables], settable(description) if free is None else free
+    variables = {variable.name: variable for variable in description.modelVariables}
+    free = settable(description) if free is None else free
     for name in start:
-        if name in names and name not in free:
+        if name in variables and name not in free:
             raise Problem(f"'{name}' of {description.modelName} cannot be set{why_not(name, description)}; these can be: {', '.join(free)}")
         if name not in free:
             raise Problem(f"'{name}' is not a variable of {description.modelName}; {instead(name, free, 'these can be')}")
-    return numbers_of(start, units_of(description))
+    return numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))

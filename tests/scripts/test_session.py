@@ -122,6 +122,36 @@ def test_a_step_that_fails(archive, lagrange_fmu):  # noqa: F811
         assert sim["x"] == 0
 
 
+@BOTH
+def test_what_is_no_step_changes_nothing(archive, lagrange_fmu):  # noqa: F811
+    with lagrange_fmu.start(archive("EndsInSession")) as sim:
+        sim.step(0.5)
+        with pytest.raises(lagrange_fmu.Problem, match="the step of 1e-300 s is below the resolution of time at 0.5 s; expected a longer one"):
+            sim.step(1e-300)
+        sim.step(0.25)
+        assert sim["x"] == pytest.approx(0.75, rel=1e-12)
+
+
+@BOTH
+def test_variables_are_no_attributes(archive, lagrange_fmu):  # noqa: F811
+    with lagrange_fmu.start(archive("PushedInSession")) as sim:
+        with pytest.raises(lagrange_fmu.Problem, match=r"^'F' is a variable, not an attribute; expected sim\['F'\] = ...$"):
+            sim.F = 3
+        with pytest.raises(AttributeError, match=r"^a simulation has no attribute 'v'; expected sim\['v'\]$"):
+            sim.v  # noqa: B018
+        assert sim["F"] == 0 and not hasattr(sim, "nothing")
+
+
+@BOTH
+def test_switches_by_their_names(archive, lagrange_fmu):  # noqa: F811
+    with lagrange_fmu.start(archive("NoisyInSession"), on="false", strength=0) as sim:
+        assert sim["on"] is False
+        sim["on"] = "true"
+        assert sim["on"] is True
+        sim.reset()
+        assert sim["on"] is False
+
+
 WRONG = [
     ("sim['y']", "'y' is not a variable of NoisyInSession; these are: "),
     ("sim['noize'] = 1", "'noize' is not a variable of NoisyInSession; did you mean 'noise'?"),

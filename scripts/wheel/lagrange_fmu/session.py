@@ -59,6 +59,16 @@ class Simulation(NamedValues):
         except Problem:
             self.close()
             raise
+        self._is_ready = True
+
+    def __getattr__(self, name):
+        hint = f"; expected sim['{name}']" if name in self.__dict__.get("variables", ()) else ""
+        raise AttributeError(f"a simulation has no attribute '{name}'{hint}")
+
+    def __setattr__(self, name, value):
+        if self.__dict__.get("_is_ready") and name not in self.__dict__ and name in self.variables:
+            raise Problem(f"'{name}' is a variable, not an attribute; expected sim['{name}'] = ...")
+        super().__setattr__(name, value)
 
     def _checked(self, start_values):
         """Return start values by name as numbers of their variables' types, lists for arrays."""
@@ -111,6 +121,8 @@ class Simulation(NamedValues):
         if not (isinstance(length, Real) and 0 < length < math.inf):
             raise Problem(f"the step is {length!r}; expected a positive number of seconds")
         end = self.time + float(length)
+        if end == self.time:
+            raise Problem(f"the step of {length:g} s is below the resolution of time at {end:.9g} s; expected a longer one")
         with self._named(f"cannot step from {self.time:.9g} s to {end:.9g} s"):
             self._slave.step(self.time, end, None, None)
         self.time = end
