@@ -41,6 +41,12 @@ FREE = """<system name="Rolling"><coordinate name="x" velocity="v" unit="m"/><co
 FALLING = """<system name="Landed"><coordinate name="h" velocity="v" unit="m" start="0"/><coordinate name="x" velocity="w" unit="m"/><input name="F" unit="N" start="3"/>
   <particle mass="2" x="x" y="h"/><gravity y="-9.81"/><contact name="floor" gap="h" unit="m"/><potential>50*x^2/2</potential><dissipation>4*w^2/2</dissipation><force coordinate="x">F</force></system>"""
 STUCK = """<system name="Stuck"><coordinate name="x" velocity="v" unit="m" start="0.02"/><particle mass="1" x="x"/><potential>50*x^2/2</potential><friction name="rub" velocity="v" force="2"/></system>"""
+# A climber beside the hook of a rope, and a box that falls on an edge.
+CLIMBER = """<system name="Climber"><coordinate name="x" velocity="vx" unit="m" start="3"/><coordinate name="y" velocity="vy" unit="m"/><particle name="bob" mass="80" x="x" y="y"/>
+  <gravity y="-9.81"/><parameter name="d" start="1" unit="N.s/m"/><dissipation>d*(vx^2 + vy^2)</dissipation><contact name="rope" gap="5 - sqrt(x^2 + y^2)" unit="m"/></system>"""
+TILTED = """<system name="TiltedBox"><coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m" start="0.3"/><coordinate name="q" velocity="w" unit="rad" start="0.2"/>
+  <body name="box" mass="2" x="x" y="y" inertia="0.05" angle="q"/><gravity y="-9.81"/><shape name="b" in="box" type="box" sizeX="0.4" sizeY="0.2" sizeZ="0"/>
+  <shape name="g" type="plane" axis="y"/><contact name="c" between="b" and="g" friction="0.5"/></system>"""
 
 # Systems that never rest: a fall without a floor, and a force that only decreases; and a system without states.
 DOWN = FALLING.replace("Landed", "Falling").replace('<contact name="floor" gap="h" unit="m"/>', "")
@@ -50,7 +56,7 @@ GAIN = """<system name="Gain"><input name="u" unit="1" start="2"/><output name="
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Leaning": LEANING, "HangingChain": CHAIN, "Piston": CYLINDER, "Controlled": CART, "Rolling": FREE, "Landed": FALLING, "Stuck": STUCK, "Falling": DOWN, "Repelled": REPELLED, "Gain": GAIN}
+    texts = {"Leaning": LEANING, "HangingChain": CHAIN, "Piston": CYLINDER, "Controlled": CART, "Rolling": FREE, "Landed": FALLING, "Stuck": STUCK, "Falling": DOWN, "Climber": CLIMBER, "TiltedBox": TILTED, "Repelled": REPELLED, "Gain": GAIN}
     build_systems("equilibria", texts)
 
 
@@ -128,6 +134,29 @@ def test_contacts_and_friction(lagrange_fmu):  # noqa: F811
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(np.roots([2, 4, 50])), rtol=1e-7)
     found = lagrange_fmu.equilibrium(fmu.archive("Stuck"), {})
     assert found.point["x"] == 0.02 and found.constraints == ["rub"] and found.stability == "undecided" and found.eigenvalues.tolist() == [0]  # neighbouring positions are equilibria, too
+
+
+def test_falls_into_a_rope(lagrange_fmu):  # noqa: F811
+    """The climber hangs 5 m below the hook, and swings as a pendulum of this length: m s^2 + 2 s + m g/5 = 0 along the arc."""
+    found = lagrange_fmu.equilibrium(fmu.archive("Climber"), {})
+    assert (found.point["x"], found.point["y"]) == pytest.approx((0, -5), abs=1e-9) and found.constraints == ["rope"] and found.stability == "stable"
+    np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(np.roots([80, 2, 80 * G / 5])), rtol=1e-7)
+
+
+def test_falls_on_a_side(lagrange_fmu):  # noqa: F811
+    found = lagrange_fmu.equilibrium(fmu.archive("TiltedBox"), {})
+    assert (found.point["y"], found.point["q"]) == pytest.approx((0.1, 0), abs=1e-9)
+    assert found.constraints == ["c[1]", "c[2]", "c[1].friction", "c[2].friction"]  # friction of vertices in the air holds nothing
+
+
+def test_rests_where_it_switches(lagrange_fmu):  # noqa: F811
+    """At the limit of the friction, 50 x = 2, and in a contact without force, on a floor that only just carries: there is no linearization."""
+    for system, guess, name, value in (("Stuck", {"x": 1}, "x", 0.04), ("Stuck", {"x": 0.04}, "x", 0.04)):
+        found = lagrange_fmu.equilibrium(fmu.archive(system), guess)
+        assert found.point[name] == pytest.approx(value, rel=1e-9) and found.linearization is None and found.stability == "undecided" and not len(found.eigenvalues)
+        assert "undecided: the system switches there" in repr(found)
+    with pytest.raises(lagrange_fmu.Problem, match="Stuck has no linearization at this point"):
+        lagrange_fmu.linearize(fmu.archive("Stuck"), {"x": 0.04})
 
 
 def test_without_states(lagrange_fmu):  # noqa: F811

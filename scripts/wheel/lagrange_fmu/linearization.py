@@ -19,6 +19,7 @@ from .problem import Problem
 
 STEP = 1e-3  # of the differences, relative: errors of truncation and rounding are both about 1e-12
 HALVINGS = 8  # of the step at most; rounding errors are then 3e-10
+INDEPENDENT = 0.02  # length of a row relative to the longest one, above which it is independent: coordinates come first, at the cost of two digits
 UNEVEN = 1e-6  # relative difference of P^2 and P above which a mode has switched
 
 
@@ -67,6 +68,10 @@ class Linearization(NamedTuple):
         return responses.step(self, of, by, times)
 
 
+class Switching(Problem):
+    """Raised at a point next to which modes switch in every direction, so that it has no linearization."""
+
+
 def _column(point, at, i, share):
     """Return the column i of the projection's derivative, by steps of `share` times the state, and None; or None and the reason of failure."""
     step = np.eye(len(at))[i] * share * max(1.0, abs(at[i]))
@@ -99,6 +104,16 @@ def _projection(point, at, share):
     return projection, None
 
 
+def _is_free(point, at):
+    """Return True if initialization leaves a random state near `at` unchanged, so that there are no constraints."""
+    nearby = at + STEP / 2**HALVINGS * np.maximum(1.0, np.abs(at)) * np.random.default_rng(len(at)).uniform(0.5, 1.0, len(at))
+    try:
+        return bool((point.start(nearby) == nearby).all())
+    except FMICallException:
+        point.messages.clear()
+        return False
+
+
 def tangents(point, at):
     """
     Return an orthonormal basis of the tangent space of the constraints, among them closed contacts and sticking friction, as columns.
@@ -106,12 +121,14 @@ def tangents(point, at):
     The singular values of a projection are 0, or 1 and more. The step is the largest of STEP / 2^k at which no mode switches. Raise Problem if
     there is none.
     """
+    if not point.indicator_count and _is_free(point, at):
+        return np.eye(len(at))
     for halving in range(HALVINGS + 1):
         projection, problem = _projection(point, at, STEP / 2**halving)
         if projection is not None:
             left, singular, _ = np.linalg.svd(projection)
             return left[:, : np.count_nonzero(singular > 0.5)]
-    raise Problem(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
+    raise Switching(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
 def independent(directions):
@@ -119,7 +136,7 @@ def independent(directions):
     rows, chosen = directions.copy(), []
     for _ in range(directions.shape[1]):
         lengths = np.linalg.norm(rows, axis=1)
-        chosen.append(int(np.argmax(lengths >= 0.3 * lengths.max())))
+        chosen.append(int(np.argmax(lengths >= INDEPENDENT * lengths.max())))
         direction = rows[chosen[-1]] / lengths[chosen[-1]]
         rows -= np.outer(rows @ direction, direction)
     return sorted(chosen)

@@ -117,7 +117,8 @@ class Point:
     def constraining(self):
         """Return the names of the closed contacts and of the sticking friction."""
         modes = dict(zip([*self.numbers, *self.switches], self.modes()))
-        return [name.removesuffix(end) for name, mode in modes.items() for end, rest in RESTS.items() if name.endswith(end) and mode == rest]
+        at_rest = [name.removesuffix(end) for name, mode in modes.items() for end, rest in RESTS.items() if name.endswith(end) and mode == rest]
+        return [name for name in at_rest if modes.get(name.removesuffix(".friction") + ".closed") != 0]  # friction of an open contact holds nothing
 
     def modes(self):
         """Return the values of all mode variables, in the order of `numbers` and `switches`."""

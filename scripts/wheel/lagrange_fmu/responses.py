@@ -31,6 +31,8 @@ class Responses:
 
     def __getitem__(self, names):
         output, *rest = names if isinstance(names, tuple) else (names,)
+        if len(rest) > 1:
+            raise Problem(f"[{', '.join(map(repr, names))}] has {len(names)} names; expected an output and an input")
         if not rest and len(self.inputs) > 1:
             raise Problem(f"there are several inputs; expected [{output!r}, {self.inputs[0]!r}] or another of {', '.join(self.inputs)}")
         return self.values[:, _index(output, self.outputs, "an output"), _index(rest[0] if rest else self.inputs[0], self.inputs, "an input")]
@@ -155,7 +157,10 @@ def _transfer(linear, columns, s):
 
 
 def _increasing(values, what, least):
-    values = np.asarray(values, dtype=float).ravel()
+    try:
+        values = np.asarray(values, dtype=float).ravel()
+    except (TypeError, ValueError):
+        raise Problem(f"the {what} are {values!r}; expected numbers, such as numpy.geomspace(0.1, 100, 200)") from None
     if not len(values) or not np.isfinite(values).all() or values[0] < least or (np.diff(values) <= 0).any():
         raise Problem(f"the {what} are not finite, increasing numbers from {least:g} on; expected some, such as numpy.geomspace(0.1, 100, 200)")
     return values

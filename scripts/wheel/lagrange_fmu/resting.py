@@ -5,7 +5,7 @@ The search is a damped Newton method on the manifold of the constraints. With an
 J (T z, dp) = -(f, h - h0) by least squares of least norm, so that coordinates on which nothing depends stay at the guess. A step is limited to a share
 of each value, and halved until the residual decreases; the FMU's initialization projects its end onto the constraints. Residuals and values are
 relative to nominal values. If a full step exceeds the limit, or no part of it decreases the residual, as at a horizontal pendulum, coordinates first
-move a little along their accelerations, which leads towards a stable equilibrium. The search ends when a step is negligible or after STEPS steps.
+move along their accelerations, which leads towards a stable equilibrium. These moves grow, keep contacts closed, and are halved at obstacles. The search ends when a step is negligible or after STEPS steps.
 Each step costs a Jacobian and, with constraints, a basis of the tangent space, see linearization.py.
 """
 
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from .linearization import Linearization, linearization_at, tangents
+from .linearization import Linearization, Switching, linearization_at, tangents
 from .model_exchange import opened
 from .problem import Problem
 from .quantities import numbers_of
@@ -27,7 +27,9 @@ PRECEDENCE = 1e3  # weight of held values relative to rates, in the error that s
 BALANCED = 1e-9  # a rate below this share of the terms of its linearization counts as 0
 CONVERGED = 1e-13  # relative step that is negligible
 FURTHEST = 1e9  # values beyond this multiple of nominal values and the guess mean that forces only vanish at infinity
-DOWNHILL, NUDGE = 20, 0.1  # number of moves along accelerations at most, and their length relative to nominal values
+DOWNHILL, NUDGE = 40, 0.1  # number of moves along accelerations at most, and the length of the first, relative to nominal values
+GROWTH, STRAIGHT, LONGEST = 2.0, 0.9, 10.0  # growth of moves up to LONGEST, where the cosine of the angle between two of them is above STRAIGHT
+TOUCH = 3e-9  # relative move into a contact; initialization removes the penetration so exactly that the contact closes
 PERTURBED, DOUBLE = 1e-9, 1e-5  # errors relative to the norm of the matrix: of an eigenvalue of condition number 1, and of any eigenvalue at most
 WORK = "nonConservativeWork"  # state on which nothing depends
 SHOWN, NOTABLE = 3, 1e-3  # rates in a message: their number at most, and the smallest relative to the largest
@@ -43,17 +45,16 @@ class Equilibrium:
 
     point: dict  # states, inputs and varied values by name
     outputs: dict  # outputs by name
-    linearization: Linearization  # at the point
-    eigenvalues: np.ndarray  # of its A
+    linearization: Linearization | None  # at the point; None where the system switches there, as for friction at its limit
+    eigenvalues: np.ndarray  # of its A; empty without a linearization
     stability: str  # "stable" if all real parts are negative, "unstable" if one is positive, else "undecided", as without damping
-
-    @property
-    def constraints(self):
-        return self.linearization.constraints
+    constraints: list[str]
 
     def __repr__(self):
         lines = [f"{name} = {value:.9g}" for name, value in (self.point | self.outputs).items()]
         lines += [f"contacts that stay closed and frictions that stay stuck: {', '.join(self.constraints)}"] if self.constraints else []
+        if self.linearization is None:
+            return "\n".join([*lines, f"{self.stability}: the system switches there, such as a contact that touches without force or friction at its limit"])
         return "\n".join([*lines, f"{self.stability}; eigenvalues: {', '.join(f'{value:.6g}' for value in self.eigenvalues) or 'none'}"])
 
 
@@ -85,7 +86,7 @@ class _Search:
         self.size = np.array([point.nominals[name] for name in [*point.states, *vary]])
         held = [point.nominals[point.states[i]] for i in self.places] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
         self.weight = np.array([*(1 / self.size[: len(point.states)]), *(PRECEDENCE / np.array(held))])
-        self.jacobian = None
+        self.jacobian, self.reach, self.course = None, NUDGE, np.zeros(len(self.size))
 
     def go_to(self, values):
         """Initialize the FMU; return the values after projection onto the constraints, and the residuals there."""
@@ -95,10 +96,21 @@ class _Search:
         found = [*self.point.read(self.point.derivatives), *(np.array([*at[self.places], *self.point.read(self.outputs)]) - self.wanted)]
         return np.concatenate([at, values[count:]]), np.array(found)
 
+    def go_on(self, values, move):
+        """Return the values and the residuals after a move that keeps contacts closed and frictions sticking, where they can."""
+        count, target = len(self.point.states), values + move
+        if self.point.indicator_count:
+            held = self.point.held(values[:count], target[:count])
+            target[:count] = target[:count] if held is None else held
+        return self.go_to(target)
+
     def linearize(self, values):
         """Store the Jacobian of the residuals by all values; return the Jacobian by the admissible directions, and these as columns."""
         point, count = self.point, len(self.point.states)
-        basis = tangents(point, values[:count]) if count else np.empty((0, 0))
+        try:
+            basis = tangents(point, values[:count]) if count else np.empty((0, 0))
+        except Switching:
+            basis = np.eye(count)
         self.go_to(values)
         names = [*point.states, *self.vary]
         held = np.eye(len(names))[self.places]
@@ -135,7 +147,7 @@ class _Search:
         return coordinates[velocities < count], velocities[velocities < count]
 
     def downhill(self, residual):
-        """Return a small move of coordinates along their accelerations, and of other states along their rates; None if there is none."""
+        """Return the direction of coordinates along their accelerations, and of other states along their rates, of length 1 relative to nominal values; None if there is none."""
         count = len(self.point.states)
         coordinates, velocities = self.moving()
         move = np.zeros(len(self.size))
@@ -143,7 +155,7 @@ class _Search:
         move[coordinates], move[velocities] = residual[velocities], 0.0
         move[self.places] = 0.0
         largest = np.max(np.abs(move) / self.size, initial=0.0)
-        return move * (NUDGE / largest) if largest else None
+        return move / largest if largest else None
 
     def error(self, residual):
         return np.linalg.norm(self.weight * residual)
@@ -152,7 +164,7 @@ class _Search:
         """Return the values after the longest part of the step that decreases the error, and the residual there; None if no part does."""
         for halving in range(HALVINGS):
             try:
-                reached, found = self.go_to(values + step / 2**halving)
+                reached, found = self.go_on(values, step / 2**halving)
             except FMICallException:  # there is no such position
                 self.point.messages.clear()
                 continue
@@ -190,13 +202,26 @@ class _Search:
         return values
 
     def moved(self, values, residual):
-        """Return the values and the residual after a move downhill, or the same ones if there is no such position."""
-        move = self.downhill(residual)
-        try:
-            return self.go_to(values if move is None else values + move)
-        except FMICallException:
-            self.point.messages.clear()
+        """Return the values and the residual after a move downhill: longer than the last one if it continues straight on, and halved until there is such a position."""
+        course = self.downhill(residual)
+        if course is None:
             return self.go_to(values)
+        last, own = self.course / self.size, course / self.size
+        is_straight = last @ own > STRAIGHT * np.linalg.norm(last) * np.linalg.norm(own)
+        reach = min(self.reach * GROWTH, LONGEST) if is_straight else NUDGE
+        for halving in range(HALVINGS):
+            self.reach, self.course = reach / 2**halving, course if halving == 0 else np.zeros(len(course))
+            try:
+                return self.touched(values, self.reach * course)
+            except FMICallException:
+                self.point.messages.clear()
+        return self.go_to(values)
+
+    def touched(self, values, move):
+        """Return the values and the residual after a move. If initialization has removed a penetration, a tiny second move closes the contact."""
+        found = self.go_on(values, move)
+        corrected = np.max(np.abs(found[0] - values - move) / self.size)
+        return self.go_on(found[0], TOUCH / self.reach * move) if corrected > self.reach / 2 else found
 
     def why(self, values, off):
         """Return the message about accelerations and rates that are not 0."""
@@ -225,9 +250,14 @@ def equilibrium(system, guess, hold, vary):
         values = search.run()
         count = len(point.states)
         point.values |= dict(zip(point.states, values[:count])) | dict(zip(vary, values[count:]))
-        linear = linearization_at(point)
-        eigenvalues, stability = stability_of(_scaled(linear, point.nominals))
-        varied = dict(zip(vary, values[count:].tolist()))
-        found = linear.point | varied | {name: value for name, value in point.values.items() if name not in point.states}
-        outputs = dict(zip(point.outputs, point.read(point.outputs).tolist()))
-        return Equilibrium({name: float(value) + 0.0 for name, value in found.items()}, outputs, linear, eigenvalues, stability)
+        linear, eigenvalues, stability = None, np.empty(0), "undecided"
+        try:
+            linear = linearization_at(point)
+            eigenvalues, stability = stability_of(_scaled(linear, point.nominals))
+        except Switching:
+            search.go_to(values)
+        own = dict(zip(point.states, values[:count])) | dict(zip(point.inputs, point.read(point.inputs))) | dict(zip(vary, values[count:]))
+        found = own | {name: value for name, value in point.values.items() if name not in point.states}
+        outputs = dict(zip(point.outputs, point.read(point.outputs)))
+        plain = [{name: float(value) + 0.0 for name, value in one.items()} for one in (found, outputs)]  # 0 has no sign
+        return Equilibrium(*plain, linear, eigenvalues, stability, point.constraining())
