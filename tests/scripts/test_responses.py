@@ -21,10 +21,15 @@ LAG = """<system name="Lag"><input name="u" unit="1"/><state name="z" rate="(u -
 LYING = """<system name="Lying"><input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m"/><coordinate name="h" velocity="u" unit="m"/><particle mass="2" x="x" y="h"/>
   <gravity y="-9.81"/><potential>18*x^2/2</potential><dissipation>4*v^2/2</dissipation><contact name="floor" gap="h" unit="m"/><force coordinate="x">F</force></system>"""
 
+# A blade that runs at 8 m/s.
+SKATE = """<system name="FastSkate"><input name="M" unit="N.m"/><coordinate name="x" velocity="vx" unit="m" velocityStart="8"/><coordinate name="y" velocity="vy" unit="m"/>
+  <coordinate name="phi" velocity="w" unit="rad"/><body name="b" mass="5" x="x" y="y" inertia="2" angle="phi"/><force coordinate="phi">M</force>
+  <constraint name="blade" unit="m/s">vx*sin(phi) - vy*cos(phi)</constraint></system>"""
+
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("responses", {"Oscillator": OSCILLATOR, "Row": ROW, "Lag": LAG, "Lying": LYING})
+    build_systems("responses", {"FastSkate": SKATE, "Oscillator": OSCILLATOR, "Row": ROW, "Lag": LAG, "Lying": LYING})
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +40,19 @@ def oscillator(lagrange_fmu):  # noqa: F811
 def test_poles(oscillator):
     """m s^2 + d s + k = 0 with m = 2, d = 1, k = 50."""
     np.testing.assert_allclose(oscillator.poles(), [-0.25 - 1j * math.sqrt(25 - 1 / 16), -0.25 + 1j * math.sqrt(25 - 1 / 16)], rtol=1e-13)
+
+
+def test_coordinates_are_states_first(lagrange_fmu):  # noqa: F811
+    """At every speed v the velocity across the blade is v phi, and the angle is a state."""
+    for v in (1, 8, 30):
+        with pytest.warns(UserWarning, match=r"not an equilibrium: der\(x\)"):
+            found = lagrange_fmu.linearize(fmu.archive("FastSkate"), {"vx": v})
+        assert found.states == ["x", "y", "phi", "vx", "w"]
+        expected = np.zeros((5, 5))
+        expected[0, 3] = expected[2, 4] = 1
+        expected[1, 2] = v
+        np.testing.assert_allclose(found.A, expected, atol=1e-8 * v)
+        np.testing.assert_allclose(found.B, [[0], [0], [0], [0], [0.5]], atol=1e-10)
 
 
 def test_frequency_response(oscillator):
