@@ -117,6 +117,23 @@ static void write_shapes(xmlTextWriterPtr writer, const struct Model *model) {
   }
 }
 
+static void write_line(xmlTextWriterPtr writer, const struct DrawnLine *line) {
+  static const char *const names[2] = {"from", "to"};
+  xmlTextWriterStartElement(writer, BAD_CAST "line");
+  write_attribute(writer, "kind", line_kind_names[line->kind]);
+  for (int end = 0; end < (has_two_ends(line) ? 2 : 1); end++) {
+    if (line->ends[end].name != NULL) write_attribute(writer, names[end], line->ends[end].name);
+    for (int i = 0; i < 3 && line->ends[end].name == NULL; i++)
+      if (line->ends[end].position[i] != ZERO)
+        write_attribute(writer, format_text("%s%d", axes[i], end + 1), line->ends[end].formula[i]);
+  }
+  if (line->radius_formula != NULL) write_attribute(writer, "radius", line->radius_formula);
+  if (line->axis != 2) write_attribute(writer, "axis", axes[line->axis]);
+  if (line->color != NULL) write_attribute(writer, "color", line->color);
+  if (line->has_trail) write_attribute(writer, "trail", "true");
+  xmlTextWriterEndElement(writer);
+}
+
 static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   const Node *gravity = model->mechanism.gravity.along;
   if (gravity[0] == ZERO && gravity[1] == ZERO && gravity[2] == ZERO) return;
@@ -192,7 +209,9 @@ static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model)
 }
 
 bool has_scene(const struct Model *model) {
-  return model->mechanism.body_count > 0 || model->mechanism.frame_count > BASE_FRAME + 1;
+  const struct Mechanism *mechanism = &model->mechanism;
+  return mechanism->body_count + mechanism->shape_count + model->drawing.count > 0 ||
+         mechanism->frame_count > BASE_FRAME + 1;
 }
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
@@ -201,6 +220,7 @@ void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   write_frames(writer, model);
   for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
   write_shapes(writer, model);
+  for (size_t i = 0; i < model->drawing.count; i++) write_line(writer, &model->drawing.lines[i]);
   write_what_holds(writer, model);
   xmlTextWriterEndElement(writer);
 }

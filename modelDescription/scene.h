@@ -8,6 +8,8 @@
  *   <body name="rod" mass="rho*a" in="arm" Izz=""/>       also with moments of inertia along the frame's axes
  *   <body name="crank" mass="rho*a" inertia=""/>          planar, rotated by crank.angle; may be a frame of others
  *   <point name="tip" in="arm"/>
+ *   <line kind="rod" from="" to="bob" radius="r"/>        drawn, without mechanics; from, to: "" is the origin; instead
+ *                                                         x1, y1, z1 and x2, y2, z2, formulas of variables of the FMU
  *   <rod from="" to="bob" force="rod.force" factor="1"/>  of constant length; from="" is the origin; factor times force
  *                                                         is its compressive force, in N
  *   <joint of="crank" x="" y="" with="coupler" withX="" withY=""/>  a point that a planar body shares with another
@@ -26,7 +28,7 @@
 
 #include "model/model.h"
 
-/* True if the system has bodies or frames. */
+/* True if the system has bodies, frames, shapes or lines. */
 bool has_scene(const struct Model *model);
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model);

@@ -7,12 +7,13 @@
 #include "base/memory.h"
 
 const struct LookStyle looks[LOOK_COUNT] = {
-    [GROUND] = {"ground", 1.0, 0.12, {120, 120, 110}},  [AXIS] = {"axis", 0.8, 0.0, {190, 196, 208}},
-    [SOLID] = {"solid", 0.0, 0.35, {26, 95, 180}},      [EDGE] = {"solid", 0.8, 0.0, {26, 95, 180}},
-    [LINK] = {"link", 1.8, 0.0, {104, 112, 133}},       [BAR] = {"body", 4.5, 0.0, {26, 95, 180}},
-    [BASE] = {"base", 5.0, 0.0, {29, 36, 51}},          [HOLE] = {"hole", 2.8, 0.0, {255, 255, 255}},
-    [PARTICLE] = {"particle", 9.0, 0.0, {26, 95, 180}}, [JOINT] = {"base", 3.4, 0.0, {29, 36, 51}},
-    [BOX] = {"body", 2.0, 0.15, {26, 95, 180}},         [SIGNAL] = {"base", 2.0, 0.0, {29, 36, 51}},
+    [GROUND] = {"ground", 1.0, 0.12, {120, 120, 110}}, [AXIS] = {"axis", 0.8, 0.0, {190, 196, 208}},
+    [SOLID] = {"solid", 0.0, 0.35, {26, 95, 180}},     [EDGE] = {"solid", 0.8, 0.0, {26, 95, 180}},
+    [LINK] = {"link", 1.8, 0.0, {104, 112, 133}},      [ROPE] = {"link", 1.0, 0.0, {104, 112, 133}},
+    [BAR] = {"body", 4.5, 0.0, {26, 95, 180}},         [BASE] = {"base", 5.0, 0.0, {29, 36, 51}},
+    [HOLE] = {"hole", 2.8, 0.0, {255, 255, 255}},      [PARTICLE] = {"particle", 9.0, 0.0, {26, 95, 180}},
+    [JOINT] = {"base", 3.4, 0.0, {29, 36, 51}},        [BOX] = {"body", 2.0, 0.15, {26, 95, 180}},
+    [SIGNAL] = {"base", 2.0, 0.0, {29, 36, 51}},
 };
 
 void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count) {

@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 /* The looks of shapes, by what they show; each has a row in the table of struct LookStyle. */
-enum Look { GROUND, AXIS, SOLID, EDGE, LINK, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
+enum Look { GROUND, AXIS, SOLID, EDGE, LINK, ROPE, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
 
 /*
  * How shapes of one look are drawn, in a picture of PICTURE_SIZE pixels; name is a class of page.css and of the icon's

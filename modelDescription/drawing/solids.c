@@ -4,11 +4,6 @@
 
 enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both end circles of a cylinder */
 
-/* A body's centre, the directions of its axes, and half of its size along each, in m. */
-struct Solid {
-  double middle[3], axis[3][3], half[3];
-};
-
 struct Spot seen(const struct View *view, const double position[3]) {
   struct Spot spot = {0.0, 0.0};
   for (int i = 0; i < 3; i++) {
@@ -59,7 +54,7 @@ static void append_filled(struct Drawing *drawing, struct Spot *points, size_t c
   append_shape(drawing, EDGE, false, hull, size + 1);
 }
 
-static void append_cylinder(struct Drawing *drawing, const struct View *view, const struct Solid *solid, int axis) {
+void append_cylinder(struct Drawing *drawing, const struct View *view, const struct Solid *solid, int axis) {
   struct Spot rings[RINGS];
   for (int i = 0; i < RINGS; i++) {
     double angle = 2.0 * acos(-1.0) * (i % ROUND) / (ROUND - 1), along[3];
@@ -72,7 +67,7 @@ static void append_cylinder(struct Drawing *drawing, const struct View *view, co
   append_filled(drawing, rings, RINGS);
 }
 
-static void append_box(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
+void append_box(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
   struct Spot corners[8];
   for (int i = 0; i < 8; i++)
     corners[i] = corner(view, solid, (double[]){i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
@@ -80,6 +75,24 @@ static void append_box(struct Drawing *drawing, const struct View *view, const s
     for (int bit = 1; bit < 8; bit *= 2)
       if (!(i & bit)) append_line(drawing, EDGE, corners[i], corners[i | bit]);
   append_filled(drawing, corners, 8);
+}
+
+/* The outline consists of the points whose tangent planes contain the direction of view. */
+void append_ellipsoid(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
+  struct Spot spots[ROUND], middle = seen(view, solid->middle);
+  for (int i = 0; i < ROUND; i++) {
+    double angle = 2.0 * acos(-1.0) * i / ROUND, support = 0.0;
+    spots[i] = (struct Spot){0.0, 0.0};
+    for (int axis = 0; axis < 3; axis++) {
+      struct Spot direction = seen(view, solid->axis[axis]);
+      double along = solid->half[axis] * (direction.right * cos(angle) + direction.up * sin(angle));
+      support += along * along;
+      spots[i].right += along * solid->half[axis] * direction.right;
+      spots[i].up += along * solid->half[axis] * direction.up;
+    }
+    spots[i] = (struct Spot){middle.right + spots[i].right / sqrt(support), middle.up + spots[i].up / sqrt(support)};
+  }
+  append_filled(drawing, spots, ROUND);
 }
 
 bool is_solid(const struct Body *body) {

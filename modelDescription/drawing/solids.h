@@ -20,4 +20,14 @@ bool is_solid(const struct Body *body);
 void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
                   const double *values);
 
+/* A form that is drawn: its centre, the directions of its axes, and half of its size along each, in m. */
+struct Solid {
+  double middle[3], axis[3][3], half[3];
+};
+
+/* Append a box, an ellipsoid, or a cylinder about one of its axes. */
+void append_box(struct Drawing *drawing, const struct View *view, const struct Solid *solid);
+void append_ellipsoid(struct Drawing *drawing, const struct View *view, const struct Solid *solid);
+void append_cylinder(struct Drawing *drawing, const struct View *view, const struct Solid *solid, int axis);
+
 #endif

@@ -3,9 +3,11 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "line_drawing.h"
 #include "scene/configurations.h"
 #include "scene/connections.h"
 #include "scene/surfaces.h"
+#include "shape_drawing.h"
 #include "solids.h"
 
 /* Objects up to which unconnected ones get a line from the origin, and up to which particles are large dots. */
@@ -16,19 +18,24 @@ struct Sight {
   struct Samples samples;
   struct Connections connections;
   struct Surfaces surfaces;
-  double *values; /* of all nodes, in SI units */
+  double *values;      /* of all nodes, in SI units */
+  double *line_values; /* of the nodes of the lines' graph; NULL without lines, when rods and joints are guessed */
   struct View view;
   bool is_in_space;
 };
 
-/* Returns the view: planar systems with x to the right and y up; others oblique from above, with gravity downwards. */
-static struct View view_of(const struct Model *model, bool is_in_space) {
+/* Axes of the picture: of the plane of x and y, of that of x and z, or none in space. */
+enum Plane { IN_XY, IN_XZ, IN_SPACE };
+
+/* Returns the view: planar systems with x to the right and y or z up; others oblique from above, with gravity downwards. */
+static struct View view_of(const struct Model *model, enum Plane plane) {
   const double azimuth = -1.1, elevation = 0.35;
   struct View view = {{1, 0, 0}, {0, 1, 0}};
   int up = 2;
   for (int axis = 0; axis < 3; axis++)
     if (model->mechanism.gravity.along[axis] != ZERO) up = axis;
-  if (!is_in_space) return view;
+  if (plane == IN_XZ) return (struct View){{1, 0, 0}, {0, 0, 1}};
+  if (plane == IN_XY) return view;
   int first = (up + 1) % 3, second = (up + 2) % 3;
   view.right[up] = 0.0;
   view.right[first] = -sin(azimuth);
@@ -147,9 +154,13 @@ static void append_axes(struct Drawing *drawing, const struct Sight *sight, doub
 static void append_bodies(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
   const struct Connections *connections = &sight->connections;
+  for (size_t i = 0; i < model->mechanism.shape_count; i++)
+    append_drawn_shape(drawing, &sight->view, model, &model->mechanism.shapes[i], sight->values);
   for (size_t i = 0; i < samples->thing_count; i++)
-    if (samples->things[i].body != NULL && is_solid(samples->things[i].body))
+    if (samples->things[i].body != NULL && is_solid(samples->things[i].body) &&
+        !has_drawn_shape(model, samples->things[i].body))
       append_solid(drawing, &sight->view, model, samples->things[i].body, sight->values);
+  if (sight->line_values != NULL) return;
   for (size_t i = 0; i < connections->rod_count; i++)
     append_line(drawing, LINK, spot_of(sight, connections->rods[i].from), spot_of(sight, connections->rods[i].to));
   for (size_t i = 0; i < connections->joint_count; i++)
@@ -165,15 +176,18 @@ static void append_pivot(struct Drawing *drawing, struct Spot spot) {
   append_shape(drawing, HOLE, true, &spot, 1);
 }
 
-/* Appends dots and joints; the origin last, on top. */
-static void append_points(struct Drawing *drawing, const struct Sight *sight) {
+/* Appends dots and joints; the origin last, on top. With lines, only dots of particles that have no shape. */
+static void append_points(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
+  bool is_guessed = sight->line_values == NULL;
   for (size_t i = samples->thing_count; i-- > 1;) {
     const struct Thing *thing = &samples->things[i];
     struct Spot spot = spot_of(sight, i);
     bool is_ball = is_particle(thing) && thing->body->mass.node != ZERO && samples->thing_count <= MOST_DOTS;
-    if (!thing->is_planar) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
+    bool is_shown = is_guessed || (is_ball && !has_drawn_shape(model, thing->body));
+    if (!thing->is_planar && is_shown) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
   }
+  if (!is_guessed) return;
   for (size_t i = 0; i < sight->connections.joint_count; i++) {
     const struct SceneJoint *joint = &sight->connections.joints[i];
     append_pivot(drawing, spot_on(sight, joint->of, joint->coordinates[0], joint->coordinates[1]));
@@ -197,8 +211,7 @@ static bool is_first(const struct Surfaces *surfaces, size_t surface) {
 }
 
 /* Returns the surface with its point nearest to the object's start position. */
-static struct SceneSurface met_surface(const struct Sight *sight, size_t surface) {
-  struct SceneSurface met = sight->surfaces.items[surface];
+static struct SceneSurface met_surface(const struct Sight *sight, struct SceneSurface met) {
   const Node *position = sight->samples.things[met.thing].position;
   double height = 0.0;
   if (met.is_stop) return met;
@@ -209,7 +222,7 @@ static struct SceneSurface met_surface(const struct Sight *sight, size_t surface
 
 static void append_surfaces(struct Drawing *drawing, const struct Sight *sight, double size) {
   for (size_t i = 0; i < sight->surfaces.count; i++) {
-    struct SceneSurface surface = met_surface(sight, i);
+    struct SceneSurface surface = met_surface(sight, sight->surfaces.items[i]);
     if (!is_first(&sight->surfaces, i)) continue;
     if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
     else append_surface(drawing, &surface, size);
@@ -227,33 +240,98 @@ static bool is_finite(const struct Rectangle *all) {
   return isfinite(all->least.right) && isfinite(all->least.up) && isfinite(all->most.right) && isfinite(all->most.up);
 }
 
+/* Drawings of lines may lie in the plane of x and z; surfaces and joints that are guessed need space for z. */
+static enum Plane plane_of(const struct Sight *sight, const struct Model *model) {
+  bool has_y = false, has_z = false;
+  for (size_t i = 0; i < sight->samples.thing_count; i++) {
+    has_y |= sight->samples.things[i].position[1] != ZERO;
+    has_z |= sight->samples.things[i].position[2] != ZERO;
+  }
+  for (size_t i = 0; i < 2 * model->drawing.count; i++) {
+    has_y |= model->drawing.lines[i / 2].ends[i % 2].position[1] != ZERO;
+    has_z |= model->drawing.lines[i / 2].ends[i % 2].position[2] != ZERO;
+  }
+  if (!has_z) return IN_XY;
+  return has_y || sight->line_values == NULL ? IN_SPACE : IN_XZ;
+}
+
 static struct Sight sight_of(const struct Model *model) {
   struct Configurations everything = configurations_of(model, NULL);
   struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
   sight.connections = find_connections(&sight.samples);
   sight.surfaces = find_surfaces(&sight.samples);
   if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));
-  for (size_t i = 0; i < sight.samples.thing_count; i++)
-    sight.is_in_space |= sight.samples.things[i].position[2] != ZERO;
-  sight.view = view_of(model, sight.is_in_space);
+  sight.line_values = values_of_lines(model, sight.values);
+  enum Plane plane = plane_of(&sight, model);
+  sight.is_in_space = plane != IN_XY;
+  sight.view = view_of(model, plane);
   return sight;
+}
+
+/* Appends the ends of lines as dots, which gives the drawing its size. */
+static void append_ends(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+  for (size_t i = 0; i < 2 * model->drawing.count; i++) {
+    const struct DrawnLine *line = &model->drawing.lines[i / 2];
+    double position[3];
+    if (i % 2 == 1 && !has_two_ends(line)) continue;
+    position_of_end(&line->ends[i % 2], sight->line_values, position);
+    struct Spot spot = seen(&sight->view, position);
+    if (isfinite(spot.right) && isfinite(spot.up)) append_shape(drawing, JOINT, true, &spot, 1);
+  }
+}
+
+static double size_of(const struct Rectangle *all) {
+  return fmax(all->most.right - all->least.right, all->most.up - all->least.up);
+}
+
+/* Appends the planes among the shapes, below the last object. */
+static void append_planes(struct Drawing *drawing, const struct Sight *sight, const struct Model *model, double size) {
+  for (size_t i = 0; i < model->mechanism.shape_count; i++) {
+    struct SceneSurface surface = {.thing = sight->samples.thing_count - 1};
+    if (!find_drawn_plane(model, &model->mechanism.shapes[i], sight->values, surface.point, surface.normal)) continue;
+    surface = met_surface(sight, surface);
+    if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
+    else append_surface(drawing, &surface, size);
+  }
+}
+
+/* Draws what the author describes: lines, and shapes on them. Returns false if there is nothing to see. */
+static bool draw_lines(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+  struct Drawing bodies = {.count = 0};
+  append_bodies(&bodies, sight, model);
+  append_points(&bodies, sight, model);
+  struct Drawing extent = {.count = 0};
+  append_drawing(&extent, &bodies);
+  append_ends(&extent, sight, model);
+  struct Rectangle all = rectangle_of(&extent);
+  if (!is_finite(&all)) return false;
+  append_planes(drawing, sight, model, size_of(&all));
+  for (size_t i = 0; i < model->drawing.count; i++)
+    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size_of(&all));
+  append_drawing(drawing, &bodies);
+  return true;
+}
+
+/* Draws rods, joints and surfaces that are found by samples. Returns false if there is nothing to see. */
+static bool draw_guesses(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+  struct Drawing seen_things = {.count = 0};
+  append_bodies(&seen_things, sight, model);
+  append_points(&seen_things, sight, model);
+  struct Rectangle all = rectangle_of(&seen_things);
+  if (sight->samples.thing_count <= 1 || !is_finite(&all)) return false;
+  append_surfaces(&seen_things, sight, size_of(&all));
+  append_axes(drawing, sight, size_of(&all));
+  append_drawing(drawing, &seen_things);
+  return true;
 }
 
 static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
   struct Sight sight = sight_of(model);
-  struct Drawing seen_things = {.count = 0};
-  append_bodies(&seen_things, &sight, model);
-  append_points(&seen_things, &sight);
-  struct Rectangle all = rectangle_of(&seen_things);
-  double size = fmax(all.most.right - all.least.right, all.most.up - all.least.up);
-  bool is_seen = sight.samples.thing_count > 1 && is_finite(&all);
-  if (is_seen) {
-    append_surfaces(&seen_things, &sight, size);
-    append_axes(drawing, &sight, size);
-    append_drawing(drawing, &seen_things);
-  }
+  bool has_drawn = sight.line_values != NULL && draw_lines(drawing, &sight, model);
+  bool is_seen = has_drawn || draw_guesses(drawing, &sight, model);
   release_samples(&sight.samples);
   release(sight.values);
+  release(sight.line_values);
   return is_seen && fit_drawing(drawing);
 }
 

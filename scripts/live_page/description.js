@@ -34,6 +34,7 @@ function variableOf(attributes) {
   if (role) Object.assign(known, { role, start: numberOf(attributes.start ?? "0") });
   known.isOutput = attributes.causality === "output";
   known.isMoving = attributes.variability === "continuous" && !["independent", "parameter"].includes(attributes.causality);
+  known.isDiscrete = attributes.variability === "discrete";
   known.isFixed = attributes.variability === "fixed";
   for (const name of ["min", "max"]) if (name in attributes) known[name] = Number(attributes[name]);
   for (const name of ["unit", "description"]) if (attributes[name]) known[name] = attributes[name];
@@ -76,16 +77,24 @@ function sceneOf(file) {
   return [...file.querySelectorAll(places.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
 }
 
+// Returns the names in the formulas of a line's ends.
+function namesOfLine(line) {
+  const formulas = ["x1", "y1", "z1", "x2", "y2", "z2"].map((name) => line[name] || "");
+  return formulas.flatMap((formula) => formula.match(/[a-z_][\w.]*(\[[^\]]*\][\w.]*)*/gi) || []);
+}
+
 // Returns the names of the variables that may hold positions, orientations and constraint forces; an FMU has some of them.
 function variablesOfScene(scene) {
   const positions = scene.filter((thing) => "name" in thing).flatMap((thing) => POSITIONS.map((component) => `${thing.name}.${component}`));
-  return new Set([...positions, ...scene.flatMap((thing) => ["force", "force1", "force2"].filter((name) => name in thing).map((name) => thing[name]))]);
+  const ofLines = scene.filter((thing) => thing.tag === "line").flatMap(namesOfLine);
+  return new Set([...positions, ...ofLines, ...scene.flatMap((thing) => ["force", "force1", "force2"].filter((name) => name in thing).map((name) => thing[name]))]);
 }
 
 // Returns the indices of the variables that can be plotted or that the scene needs; only those with these names, if names are given.
 function shownPlaces(description, scene, names) {
-  const places = [...description.variables.keys()].filter((place) => description.variables[place].isMoving && description.variables[place].type === "Real");
   const ofScene = variablesOfScene(scene);
+  const isShown = ({ name, type, isMoving, isDiscrete }) => type === "Real" && (isMoving || (isDiscrete && ofScene.has(name)));
+  const places = [...description.variables.keys()].filter((place) => isShown(description.variables[place]));
   const tells = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
   const few = places.length > MANY ? places.filter((place) => tells(description.variables[place])) : places;
   return names ? few.filter((place) => names.includes(description.variables[place].name)) : few;

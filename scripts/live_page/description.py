@@ -1,8 +1,11 @@
 """Read the parts of modelDescription.xml that are needed to write a page; description.js reads the rest in the page."""
 
+import re
 import zipfile
 from xml.etree import ElementTree
 
+ENDS = ("x1", "y1", "z1", "x2", "y2", "z2")  # attributes of a <line> with formulas
+NAME = r"[A-Za-z_][\w.]*(?:\[[^\]]*\][\w.]*)*"
 POSITIONS = ("x", "y", "z", "angle", *(f"R{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)))
 
 
@@ -19,7 +22,8 @@ def scene_of(tree):
 
 
 def variables_of_scene(scene):
-    """Return the names of the variables that may hold positions, orientations and constraint forces; an FMU has some of them."""
+    """Return the names of the variables that may hold positions, orientations and constraint forces, and of functions; an FMU has some of them."""
     positions = (f"{thing['name']}.{component}" for thing in scene if "name" in thing for component in POSITIONS)
+    of_lines = (name for thing in scene if thing["tag"] == "line" for end in ENDS for name in re.findall(NAME, thing.get(end, "")))
     forces = (thing[name] for thing in scene for name in ("force", "force1", "force2") if name in thing)
-    return list(dict.fromkeys([*positions, *forces]))
+    return list(dict.fromkeys([*positions, *of_lines, *forces]))

@@ -37,20 +37,46 @@ function order(name, content = {}) {
   worker.postMessage({ name, ...content });
 }
 
+const formulas = new Map(); // functions of formulas that were compiled
+
+// Returns a formula in JavaScript. A variable is an element of the sample `s`, the time `t`, or the value `p(i)` that the user can set.
+function inJavaScript(formula) {
+  const text = formula.replace(/\d[\d.]*(e[+-]?\d+)?|[a-z_][\w.]*(\[[^\]]*\][\w.]*)*(?![\w.]*\()/gi, (name) => {
+    if (/^\d/.test(name)) return name;
+    if (name === "time") return "t";
+    if (columnOf.has(name)) return `s[${columnOf.get(name)}]`;
+    const place = description.variables.findIndex((variable) => variable.name === name);
+    return place >= 0 ? `p(${place})` : name === "pi" ? "Math.PI" : "NaN";
+  });
+  // JavaScript rejects a sign before a power, and `if` as the name of a function.
+  return text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**").replace(/\bif\(/g, "choose(");
+}
+
+// Returns the function of a sample and its time that evaluates a formula; its value is NaN if it cannot be evaluated.
+function compiled(formula) {
+  if (formulas.has(formula)) return formulas.get(formula);
+  let evaluate = () => NaN;
+  try {
+    const called = new Function("s", "t", "p", "choose", ...FUNCTIONS, `return ${inJavaScript(formula)}`);
+    const valueAt = (place) => controls.get(place)?.value ?? description.variables[place].start;
+    const choose = (condition, first, second) => (condition ? first : second), maths = FUNCTIONS.map((name) => Math[name]);
+    evaluate = (sample, time) => {
+      try {
+        return Number(called(sample, time, valueAt, choose, ...maths));
+      } catch {
+        return NaN;
+      }
+    };
+  } catch {
+    // a formula of functions that JavaScript lacks
+  }
+  formulas.set(formula, evaluate);
+  return evaluate;
+}
+
 // Returns the value of a formula of parameters; NaN if it contains other variables.
 function valueOf(formula) {
-  const text = formula.replace(/[A-Za-z_][\w.]*(\[[^\]]*\])*(?!\w*\()/g, (name) => {
-    const place = description.variables.findIndex((variable) => variable.name === name);
-    if (place < 0) return name === "pi" ? "Math.PI" : /^e\d*$/i.test(name) ? name : "NaN";
-    return `(${controls.get(place)?.value ?? description.variables[place].start})`;
-  });
-  // JavaScript rejects a sign before a power.
-  const inJavaScript = text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**");
-  try {
-    return Number(new Function(...FUNCTIONS, `return ${inJavaScript}`)(...FUNCTIONS.map((name) => Math[name])));
-  } catch {
-    return NaN;
-  }
+  return compiled(formula)([], NaN);
 }
 
 // Returns the ranges of the sliders by name.
@@ -65,8 +91,8 @@ const answers = {
   ready() {
     live.ready();
   },
-  preview({ rows }) {
-    buildScene(rows.length ? rows : history.samples.map((runs) => runs[0]));
+  preview({ rows, times }) {
+    buildScene(...(rows.length ? [rows, times] : [history.samples.map((runs) => runs[0]), history.times]));
   },
   samples({ times, rows, isFresh }) {
     if (isFresh) for (const one of [history, sections]) one.cut(times[0]);
@@ -101,9 +127,9 @@ const answers = {
 };
 
 // Builds the scene so that the view contains all these samples.
-function buildScene(samples) {
+function buildScene(samples, times) {
   if (!scene) return;
-  scene.build(samples);
+  scene.build(samples, times);
   $("turning").parentElement.hidden = !scene.plane;
   $("forcesChoice").hidden = scene.forces.length === 0;
 }
@@ -277,7 +303,7 @@ async function playRecording() {
   history.most = numbers.length / width;
   const columns = live.names.map((name) => 1 + recording.names.indexOf(name));
   for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [Float64Array.from(columns, (column) => numbers[i + column])]);
-  buildScene(history.samples.map((runs) => runs[0]));
+  buildScene(history.samples.map((runs) => runs[0]), history.times);
   $("past").max = history.length - 1;
   viewFrom(0);
   $("pastName").textContent = "Time";
@@ -337,7 +363,7 @@ async function begin() {
   addSystem();
   if (sceneParts.length > 0) {
     await load(data.renderer);
-    scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf);
+    scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf, compiled);
     addPulling();
     addEnergyBar();
     scene.wished = { trails: true, names: false, turning: false, forces: true };

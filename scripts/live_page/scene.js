@@ -28,9 +28,10 @@ function reachOf({ points }) {
 }
 
 class Scene {
-  // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters.
-  constructor(container, things, column, value) {
-    Object.assign(this, { container, column, value, labels: [], wished: {} });
+  // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters;
+  // compiled(formula): a function of a sample and its time.
+  constructor(container, things, column, value, compiled) {
+    Object.assign(this, { container, column, value, compiled, labels: [], wished: {} });
     this.gravity = things.find((thing) => thing.tag === "gravity");
     this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
     const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
@@ -41,10 +42,12 @@ class Scene {
     this.shapes = things.filter((thing) => thing.tag === "shape");
     this.meshes = new Map(things.filter((thing) => thing.tag === "mesh").map((mesh) => [mesh.id, surfaceOf(mesh)]));
     this.surfaces = things.filter((thing) => thing.tag === "surface");
+    this.lineElements = things.filter((thing) => thing.tag === "line");
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
     this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
     this.turns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
+    this.lines = this.lineElements.map((line) => new DrawnLine(this, line, compiled));
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     container.append(this.renderer.domElement);
     this.world = new THREE.Scene();
@@ -99,9 +102,16 @@ class Scene {
     return this.plane ? (this.plane.includes(1) ? [0, 1, 0] : [0, 0, 1]) : [0, 0, 1];
   }
 
+  // Returns the index of the axis that is normal to a round line.
+  normalAxis(line) {
+    return line.axis ? AXES.indexOf(line.axis) : this.plane ? [0, 1, 2].find((axis) => !this.plane.includes(axis)) : 2;
+  }
+
   // Returns the two axes of the plane in which all things move in these samples; null if there is no such plane.
-  findPlane(samples) {
+  findPlane(samples, times) {
+    const ends = samples.flatMap((sample, k) => this.lines.flatMap((line) => line.at(sample, times[k])));
     const still = [2, 1, 0].find((axis) => {
+      if (ends.some((end) => Math.abs(end.getComponent(axis)) > 1e-9)) return false;
       const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
       const turnsAbout = (sample, turns) => turns[0] < 0 || Math.abs(sample[turns[4 * axis]] - 1) < 1e-9;
       return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`])) &&
@@ -110,24 +120,28 @@ class Scene {
     return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
   }
 
-  // Builds all objects, with a size of the view for all these samples.
-  build(samples) {
+  // Builds all objects, with a size of the view for all these samples and their times.
+  build(samples, times) {
     this.evaluate();
-    this.plane = this.findPlane(samples);
+    this.plane = this.findPlane(samples, times);
     this.up = this.upwards();
     this.box = new THREE.Box3();
+    this.reaches = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, reach: this.reachOfShape(shape) }));
     const point = new THREE.Vector3();
-    for (const sample of samples) {
+    for (const [k, sample] of samples.entries()) {
       this.things.forEach((_, i) => this.box.expandByPoint(this.position(sample, i, point)));
+      for (const line of this.lines) line.expand(this.box, sample, times[k]);
+      this.expandByShapes(this.box, sample);
       for (const holder of this.holders) if (holder.tag === "joint") this.box.expandByPoint(this.jointPosition(sample, holder, point));
     }
     const size = this.box.getSize(point).length();
     const isHeldByBase = this.holders.some((holder) => holder.tag === "rod" && !holder.from);
-    if (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size) this.box.expandByPoint(point.set(0, 0, 0));
+    const isNear = this.lines.length === 0 && (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
+    if (isNear) this.box.expandByPoint(point.set(0, 0, 0));
     this.span = this.box.getSize(point).length() || 1;
     this.solids = this.things.map((thing) => this.solidOf(thing));
     for (const surface of this.surfaces) if (surface.stop) this.box.expandByPoint(point.set(...AXES.map((axis) => Number(surface[axis]))));
-    const largest = Math.max(this.sizeOfShapes(), ...this.solids.filter(Boolean).map(sizeOf));
+    const largest = Math.max(0, ...this.solids.filter(Boolean).map(sizeOf));
     this.radius = 0.5 * this.box.getSize(point).length() + largest || 1;
     const margin = Math.max(largest, 0.09 * this.radius);
     this.frameBox = this.box.clone().expandByScalar(margin);
@@ -135,9 +149,11 @@ class Scene {
     this.makeColors();
     this.addGround();
     this.objects = this.things.map((thing, i) => this.addThing(thing, i));
-    this.rods = this.holders.map((holder) => this.addRod(holder)).filter(Boolean);
+    const isGuessed = this.lines.length === 0;
+    this.rods = isGuessed ? this.holders.map((holder) => this.addRod(holder)) : [];
     this.addStillShapes();
-    this.addSurfaces();
+    if (isGuessed) this.addSurfaces();
+    this.addLines(samples[0], times[0]);
     this.addForces();
     this.addTrails();
     this.makeCamera();
@@ -161,7 +177,7 @@ class Scene {
 
   solidOf(thing) {
     if (this.hasShape(thing)) return null;
-    if (thing.tag !== "body" || (isPlanarBody(thing) && this.isLink(thing))) return null;
+    if (thing.tag !== "body" || (isPlanarBody(thing) && (this.lines.length > 0 || this.isLink(thing)))) return null;
     const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
     if (thing.inertia !== undefined) {
       const moment = entry("inertia");
@@ -186,8 +202,8 @@ class Scene {
 
   // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for things that are drawn otherwise.
   ballRadius(i) {
-    const thing = this.things[i];
-    if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || (thing.tag === "body" && !this.isJointed(thing.name)))) return 0;
+    const thing = this.things[i], isLoose = thing.tag === "body" && !this.isJointed(thing.name) && !(this.lines.length > 0 && isPlanarBody(thing));
+    if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || isLoose)) return 0;
     const massOf = (one) => this.value(one.mass || "0"), mass = massOf(thing);
     const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
     const share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
@@ -210,7 +226,7 @@ class Scene {
     else if (this.ballRadius(i) > 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
     } else if (thing.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
-    else if (thing.tag === "frame") {
+    else if (thing.tag === "frame" && this.lines.length + this.shapes.length === 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
       if (!this.plane) group.add(new THREE.AxesHelper(0.12 * this.radius));
     }
@@ -263,8 +279,10 @@ class Scene {
     else if (shape.type === "sphere") {
       add(new THREE.SphereBufferGeometry(radius, 32, 24));
       add(new THREE.TorusBufferGeometry(radius, 0.03 * radius, 8, 48)).material = this.material(this.isDark ? 0x14171c : 0xffffff); // makes rotation visible
-    } else if (shape.type === "plane") add(new THREE.BoxBufferGeometry(2.4 * this.radius, 0.03 * this.radius, 2.4 * this.radius)).position.y = -0.015 * this.radius;
-    else {
+    } else if (shape.type === "plane") {
+      add(new THREE.BoxBufferGeometry(2.4 * this.radius, 0.02 * this.radius, 2.4 * this.radius)).position.y = -0.01 * this.radius;
+      if (!shape.color) material.color.set(this.isDark ? 0x39424f : 0xdfe4ea);
+    } else {
       add(new THREE.CylinderBufferGeometry(radius, radius, length, 48));
       if (shape.type === "capsule") for (const end of [-1, 1]) add(new THREE.SphereBufferGeometry(radius, 32, 16)).position.y = (end * length) / 2;
     }
@@ -277,19 +295,33 @@ class Scene {
   }
 
   // Returns the largest extent of shapes from the origins of their frames.
-  sizeOfShapes() {
-    const measure = (shape, name) => this.value(shape[name] || "0");
-    const sizes = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => {
-      if (shape.type === "mesh") return Math.hypot(...AXES.map((axis) => measure(shape, axis))) + reachOf(this.meshes.get(shape.mesh));
-      const half = Math.hypot(...["sizeX", "sizeY", "sizeZ"].map((name) => measure(shape, name))) / 2;
-      return Math.hypot(...AXES.map((axis) => measure(shape, axis))) + Math.max(half, measure(shape, "radius") + measure(shape, "length") / 2);
-    });
-    return Math.max(0, ...sizes);
+  // Returns the radius about the origin of its object within which a shape lies.
+  reachOfShape(shape) {
+    const measure = (name) => this.value(shape[name] || "0"), away = Math.hypot(...AXES.map(measure));
+    if (shape.type === "mesh") return away + reachOf(this.meshes.get(shape.mesh));
+    return away + Math.max(Math.hypot(...["sizeX", "sizeY", "sizeZ"].map(measure)) / 2, measure("radius") + measure("length") / 2);
+  }
+
+  // Expands a box by the shapes; a shape is within a ball about its object.
+  expandByShapes(box, sample) {
+    const point = new THREE.Vector3(), ball = new THREE.Box3();
+    for (const { shape, reach } of this.reaches) {
+      const size = new THREE.Vector3(2 * reach, 2 * reach, 2 * reach);
+      if (this.plane) size.setComponent([0, 1, 2].find((axis) => !this.plane.includes(axis)), 0);
+      box.union(ball.setFromCenterAndSize(this.position(sample, this.byName.get(shape.in), point), size));
+    }
   }
 
   // Adds the shapes that are fixed to the base.
   addStillShapes() {
     for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
+  }
+
+  addLines(sample, time) {
+    for (const line of this.lines) {
+      const [from, to] = line.at(sample, time);
+      this.world.add(line.build(from.distanceTo(to), 1));
+    }
   }
 
   // Adds a rod between two things, or from the centre of a planar body to its joint.
@@ -383,27 +415,31 @@ class Scene {
     }
   }
 
+  // Adds the paths of things, and of the last ends of lines that have a trail.
   addTrails() {
     const moving = this.things.map((thing, i) => i).filter((i) => !["frame"].includes(this.things[i].tag) && !this.isJointed(this.things[i].name) && this.columns[i].some((c) => c >= 0));
     const chosen = moving.length <= TRAILS ? moving : moving.slice(-1);
-    this.trails = chosen.map((i) => {
+    const paths = chosen.map((i) => ({ color: this.colorOf(i), where: (sample, time, target) => this.position(sample, i, target) }));
+    this.lines.filter(({ line }) => line.trail).forEach((line, k) => paths.push({ color: this.colorOf(this.things.length + k), where: line.ends[line.isPoint ? 0 : 1] }));
+    this.trails = paths.map((path) => {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * TRAIL), 3));
-      const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: this.colorOf(i), transparent: true, opacity: 0.7 }));
+      const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: path.color, transparent: true, opacity: 0.7 }));
       line.frustumCulled = false;
       this.world.add(line);
-      return { i, line };
+      return { ...path, line };
     });
   }
 
   placeTrails(history, at) {
     const point = new THREE.Vector3(), count = Math.min(TRAIL, at + 1);
-    for (const { i, line } of this.trails) {
+    for (const { where, line } of this.trails) {
       line.visible = Boolean(this.wished.trails);
       if (!line.visible) continue;
       const attribute = line.geometry.attributes.position;
       for (let k = 0; k < count; k++) {
-        this.position(history.samples[at - count + 1 + k][0], i, point);
+        const sample = at - count + 1 + k;
+        where(history.samples[sample][0], history.time(sample), point);
         attribute.setXYZ(k, point.x, point.y, point.z);
       }
       attribute.needsUpdate = true;
@@ -530,19 +566,21 @@ class Scene {
   }
 
   // Enlarges the view of a plane, if a thing has left it.
-  widen(sample) {
+  widen(sample, time) {
     const point = new THREE.Vector3(), before = this.frameBox.clone();
+    for (const line of this.lines) line.expand(this.frameBox, sample, time);
     this.things.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
     if (!before.equals(this.frameBox)) this.resize();
   }
 
   // Draws the sample of a history with the index `at`.
   draw(history, at) {
-    const runs = history.samples[at];
-    if (this.plane) this.widen(runs[0]);
+    const runs = history.samples[at], time = history.time(at);
+    if (this.plane) this.widen(runs[0], time);
     this.placeThings(this.objects, runs[0]);
     this.placeGhost(runs[1]);
     this.placeRods(runs[0]);
+    for (const line of this.lines) line.place(runs[0], time);
     this.placeForces(runs[0]);
     this.placeTrails(history, at);
     this.controls.update();

@@ -98,16 +98,17 @@ function tick() {
 
 // Simulates from the start for PREVIEW, to determine the size of the view.
 function preview() {
-  const end = performance.now() + PREVIEW, rows = [], steps = Math.min(1000, Math.ceil(description.duration / description.stepSize));
+  const end = performance.now() + PREVIEW, rows = [], times = [], steps = Math.min(1000, Math.ceil(description.duration / description.stepSize));
   try {
     for (let i = 0; i < steps && performance.now() < end; i++) {
       advance(description.stepSize);
       rows.push(sample()[0]);
+      times.push(time);
     }
   } catch (problem) {
     if (!(problem instanceof Refusal)) throw problem;
   }
-  tell("preview", { rows });
+  tell("preview", { rows, times });
 }
 
 function startAnew() {

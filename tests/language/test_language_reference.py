@@ -235,6 +235,7 @@ MOTIONS = {
     "TiltedOrbit": (lambda t: {"x": 0.5 * np.cos(3 * t), "z": 0.5 * np.sin(3 * t) * np.sin(0.6), "swept": 0.375, "leaning": 0.6}, 1e-6),
     "Mount": (lambda t: {"x": 0.1 * np.cos(5 * t), "phi": float(pendulum_angle(1.0, 4.0, t))}, 1e-6),
     "Sling": (lambda t: {"x": np.cos(10**0.5 * t), "y": np.sin(10**0.5 * t), "sling.force": 20, "sling.length": 1}, 1e-7),
+    "BlockOnRoller": (lambda t: {"x": 0.1 * (1 - np.cos(3 * t))}, 1e-7),
     "BallOnSlope": (ball_on_slope, 1e-3),
     "Turntable": (lambda t: {"theta": t**2, "omega": 2 * t, "inwards": 0.5 * (2 * t) ** 2, "disk.alphaZ": 2}, 1e-8),
     "FreeTop": (lambda t: {"theta": 0.5, "phi": 2 * t, "psi": 4 * np.cos(0.5) * t}, 1e-7),

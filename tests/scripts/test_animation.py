@@ -86,8 +86,9 @@ def test_a_pendulum(browser, tmp_path):
             theta = pendulum_angle(2.0, math.sqrt(9.81 / 0.5), time)
             bob = position_of(page, "bob")
             assert bob == pytest.approx([0.5 * math.sin(theta), -0.5 * math.cos(theta), 0.0], abs=1e-6), time
-            assert page.evaluate("live.scene.rods[0].mesh.scale.y") == pytest.approx(0.5, rel=1e-6)
-            assert page.evaluate("live.scene.rods[0].mesh.position.toArray()") == pytest.approx(list(bob / 2), abs=1e-6)
+            rod = np.array(page.evaluate("live.scene.lines[1].group.matrix.elements")).reshape(4, 4)
+            assert rod[3, :3] == pytest.approx(np.zeros(3)) and rod[1, :3] == pytest.approx(bob / 0.5, abs=1e-6)
+            assert page.evaluate("live.scene.lines[1].stretched[0].scale.y") == pytest.approx(0.5, rel=1e-6)
         page.click("#back")
         assert page.input_value("#past") == "999"
         page.click("#reset")
@@ -140,6 +141,33 @@ def test_formulas(browser, arm, tmp_path):
         assert value("q + 1") is None or math.isnan(value("nothing + 1"))
 
 
+def test_drawn_lines(browser, tmp_path):
+    """
+    Ends of lines follow coordinates, parameters, inputs and time, as recorded: the pivot on its circle, the hinge of the rocker, the cart's
+    wheel, and the arrow of the force on the cart.
+    """
+    ends = "k => live.scene.lines.map((line) => line.at(live.history.samples[k][0], live.history.time(k)).map((end) => end.toArray()))"
+    for name, start in (("RotatingPivotPendulum", {"r": 0.3, "w": 5.0}), ("FourBar", {"c": 0.7}), ("InvertedPendulumCart", {"F": 2.0})):
+        motion = simulate(fmu.archive(name), start, stop_time=0.4)
+        file = tmp_path / f"{name}.html"
+        file.write_text(page_of_motion(motion.tree, motion.values, motion.start))
+        with opened(browser, file) as page:
+            for k in (0, 17, 40):
+                lines, row = np.array(page.evaluate(ends, k)), motion.values[k]
+                if name == "RotatingPivotPendulum":
+                    pivot = 0.3 * np.array([math.cos(5 * row["time"]), -math.sin(5 * row["time"]), 0])
+                    bob = pivot + [math.cos(row["theta"]), math.sin(row["theta"]), 0]
+                    assert lines[1] == pytest.approx(np.array([np.zeros(3), pivot])) and lines[2] == pytest.approx(np.array([pivot, bob]))
+                elif name == "FourBar":
+                    joint = np.array([0.9 + 0.7 * math.cos(row["psi"]), 0.7 * math.sin(row["psi"]), 0])
+                    assert lines[1][1] == pytest.approx(joint) and np.hypot(*(lines[1][1] - lines[1][0])[:2]) == pytest.approx(0.8)
+                else:
+                    hub, rim = lines[1]
+                    assert hub == pytest.approx([row["x"] + 0.1, -0.06, 0])
+                    assert rim - hub == pytest.approx([0.03 * math.cos(row["x"] / 0.03), -0.03 * math.sin(row["x"] / 0.03), 0])
+                    assert lines[4] == pytest.approx(np.array([[row["x"], 0, 0], [row["x"] + 0.1, 0, 0]]))
+
+
 def test_size(tmp_path):
     """Long simulations of many variables are thinned out; animations of any simulation take the same time."""
     times = np.linspace(0, 300, 60_001)
@@ -153,6 +181,6 @@ def test_size(tmp_path):
 
 
 def test_nothing_to_draw(tmp_path):
-    words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("Motor")]
+    words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("PidController")]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout
     assert not list(tmp_path.rglob("*.html")) and "animation  none, since the system has no particles" in printed

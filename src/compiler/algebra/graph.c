@@ -30,6 +30,26 @@ struct Graph *graph_create(void) {
   return graph;
 }
 
+/* Returns a copy of a list, with the capacity that make_room() expects. */
+static void *copy_of_list(const void *items, size_t count, size_t size) {
+  size_t capacity = 1;
+  while (capacity < count) capacity *= 2;
+  return memcpy(allocate(capacity, size), items, count * size);
+}
+
+struct Graph *graph_copy(const struct Graph *graph) {
+  struct Graph *copy = allocate(1, sizeof *copy);
+  *copy = *graph;
+  copy->vertices = copy_of_list(graph->vertices, graph->count, sizeof *graph->vertices);
+  copy->buckets = copy_of_list(graph->buckets, graph->bucket_count, sizeof *graph->buckets);
+  copy->symbols = copy_of_list(graph->symbols, graph->symbol_count, sizeof *graph->symbols);
+  copy->cone = cone_create();
+  copy->cone->work = graph->cone->work;
+  copy->is_large = NULL;
+  copy->large_count = 0;
+  return copy;
+}
+
 /* Constants are compared by their bits, so that NaN equals itself. */
 static uint64_t bits_of(double value) {
   uint64_t bits;

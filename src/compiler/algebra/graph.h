@@ -118,6 +118,9 @@ enum { NODE_LIMIT = 4000000, WORK_LIMIT = 100000000, ZERO = 0, ONE = 1 };
 /* Returns a graph with the constants ZERO and ONE. */
 struct Graph *graph_create(void);
 
+/* Returns a copy, which shares no nodes added later. Nodes and symbols of the graph have the same numbers in it. */
+struct Graph *graph_copy(const struct Graph *graph);
+
 /* Counts steps of work, each about as long as a visit to a node. The sweeps of algebra/ and the reader call it. */
 void graph_work(const struct Graph *graph, size_t steps);
 

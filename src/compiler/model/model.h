@@ -3,6 +3,7 @@
 
 #include "algebra/units/quantity.h"
 #include "base/diagnostics.h"
+#include "model/drawn_line.h"
 #include "model/kinematics.h"
 #include "model/mesh.h"
 #include "model/methods.h"
@@ -230,6 +231,7 @@ struct Model {
   struct Switches switches;
   struct GivenMotion given;
   struct Mechanism mechanism;
+  struct LineDrawing drawing;
   struct Energies energies;
   struct Forces forces;
   struct Unknowns unknowns;

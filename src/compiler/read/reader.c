@@ -1,14 +1,15 @@
 /*
- * A system is read in four passes over its elements, see enum Pass:
+ * A system is read in five passes over its elements, see enum Pass:
  *
  *   DECLARATIONS  defines constants, and symbols for parameters, inputs, coordinates, states, constraints, contacts
  *                 and frictions, while expansion.c makes the list of elements;
  *   DEFINITIONS   collects the named expressions, which resolution.c then parses in topological order;
  *   POSITIONS     reads bodies, frames, shapes and start values;
- *   EXPRESSIONS   reads energies, forces, constraints, events and outputs, which may use all names.
+ *   EXPRESSIONS   reads energies, forces, constraints, events and outputs, which may use all names;
+ *   DRAWING       reads lines that are drawn, in a graph of their own.
  *
  * Symbols whose indices depend on counts follow the first pass: modes, accelerations, constraint forces and reactions.
- * Modes that expressions add come later. After the last pass switching functions and frictions are completed and the
+ * Modes that expressions add come later. After EXPRESSIONS switching functions and frictions are completed and the
  * whole system is checked.
  */
 #include "read/reader.h"
@@ -32,6 +33,7 @@
 #include "read/names/words.h"
 #include "read/pointer_interaction.h"
 #include "read/robots/robot_system.h"
+#include "read/shapes/drawn_lines.h"
 #include "read/space/frames.h"
 #include "read/tables/table.h"
 #include "read/xml/xml.h"
@@ -119,6 +121,13 @@ static struct Scope *language_of(struct Model *model, struct Diagnostics *diagno
   return scope;
 }
 
+static void read_drawing(struct Reader *reader) {
+  if (reader->diagnostics->errors > 0 || !has_lines(reader)) return;
+  struct Scope *scope = begin_drawing(reader);
+  read_expanded(reader, DRAWING);
+  end_drawing(reader, scope);
+}
+
 static void read_system(struct Reader *reader, xmlNodePtr root) {
   reader->model->name = attribute(root, "name");
   reader->model->description = attribute(root, "description");
@@ -149,6 +158,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
                  graph_limit(reader->model->graph));
+  read_drawing(reader);
 }
 
 /* Reads a system, or a linearization with its system. depth: 1 for the system of a linearization. */

@@ -8,7 +8,7 @@
 #include "read/xml/nodes.h"
 
 /* The passes over the list of elements, in this order. Each uses names that earlier passes defined. */
-enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS };
+enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS, DRAWING };
 
 /* The expression of a <dissipation>, with its line for messages. */
 struct Dissipation {

@@ -18,6 +18,7 @@
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
 #include "read/names/definitions.h"
+#include "read/shapes/drawn_lines.h"
 #include "read/shapes/shapes.h"
 #include "read/space/bodies.h"
 #include "read/space/bushing.h"
@@ -337,46 +338,47 @@ typedef void Action(struct Reader *reader, xmlNodePtr node);
 /* The functions that read an element, one per pass; NULL for none. The table is sorted by name. */
 struct Element {
   const char *name;
-  Action *declare, *collect, *place, *read;
+  Action *declare, *collect, *place, *read, *draw;
   bool is_of_system; /* read in the main file only, ignored in included ones */
 };
 
 static const struct Element elements[] = {
-    {"body", number_body, collect_components, read_body, NULL, false},
-    {"bushing", NULL, NULL, NULL, read_bushing, false},
-    {"constant", read_constant, NULL, NULL, NULL, false},
-    {"constraint", declare_constraint, NULL, NULL, read_constraint, false},
-    {"contact", declare_contact, NULL, NULL, read_contact, false},
-    {"coordinate", read_coordinate, NULL, read_start_expressions, read_prescribed_motion, false},
-    {"define", NULL, collect_value, NULL, NULL, false},
-    {"displacement", read_displacement, NULL, NULL, NULL, false},
-    {"dissipation", NULL, NULL, NULL, read_dissipation, false},
-    {"event", NULL, NULL, NULL, read_event, false},
-    {"experiment", read_experiment, NULL, NULL, NULL, true},
-    {"force", NULL, NULL, NULL, read_force, false},
-    {"frame", declare_frame, collect_components, read_body, add_regularization_of_norm, false},
-    {"friction", declare_friction, NULL, NULL, read_friction, false},
-    {"function", declare_function, NULL, NULL, NULL, false},
-    {"gravity", NULL, NULL, NULL, read_gravity, false},
-    {"input", read_input, collect_value, NULL, NULL, false},
-    {"joint", declare_joint, collect_joint, NULL, read_joint, false},
-    {"kinetic", NULL, NULL, NULL, read_kinetic, false},
-    {"mode", declare_mode, NULL, NULL, NULL, false},
-    {"output", NULL, NULL, NULL, read_output, false},
-    {"parameter", read_parameter, collect_value, NULL, NULL, false},
-    {"particle", number_body, collect_components, read_body, NULL, false},
-    {"point", NULL, collect_components, read_body, NULL, false},
-    {"potential", NULL, NULL, NULL, read_potential, false},
-    {"preset", NULL, NULL, NULL, read_preset, true},
-    {"sample", NULL, NULL, NULL, read_sample, false},
-    {"shape", declare_shape, NULL, place_shape, NULL, false},
-    {"solver", read_solver, NULL, NULL, NULL, true},
-    {"spring", NULL, collect_spring, NULL, read_spring, false},
-    {"state", read_state, collect_rate, read_start_of_state, NULL, false},
-    {"stop", declare_stop, NULL, NULL, read_stop, false},
-    {"table", read_table, NULL, NULL, NULL, false},
-    {"torque", NULL, NULL, NULL, read_torque, false},
-    {"work", read_work, NULL, NULL, NULL, true},
+    {"body", number_body, collect_components, read_body, NULL, NULL, false},
+    {"bushing", NULL, NULL, NULL, read_bushing, NULL, false},
+    {"constant", read_constant, NULL, NULL, NULL, NULL, false},
+    {"constraint", declare_constraint, NULL, NULL, read_constraint, NULL, false},
+    {"contact", declare_contact, NULL, NULL, read_contact, NULL, false},
+    {"coordinate", read_coordinate, NULL, read_start_expressions, read_prescribed_motion, NULL, false},
+    {"define", NULL, collect_value, NULL, NULL, NULL, false},
+    {"displacement", read_displacement, NULL, NULL, NULL, NULL, false},
+    {"dissipation", NULL, NULL, NULL, read_dissipation, NULL, false},
+    {"event", NULL, NULL, NULL, read_event, NULL, false},
+    {"experiment", read_experiment, NULL, NULL, NULL, NULL, true},
+    {"force", NULL, NULL, NULL, read_force, NULL, false},
+    {"frame", declare_frame, collect_components, read_body, add_regularization_of_norm, NULL, false},
+    {"friction", declare_friction, NULL, NULL, read_friction, NULL, false},
+    {"function", declare_function, NULL, NULL, NULL, NULL, false},
+    {"gravity", NULL, NULL, NULL, read_gravity, NULL, false},
+    {"input", read_input, collect_value, NULL, NULL, NULL, false},
+    {"joint", declare_joint, collect_joint, NULL, read_joint, NULL, false},
+    {"kinetic", NULL, NULL, NULL, read_kinetic, NULL, false},
+    {"line", NULL, NULL, NULL, NULL, read_line, false},
+    {"mode", declare_mode, NULL, NULL, NULL, NULL, false},
+    {"output", NULL, NULL, NULL, read_output, NULL, false},
+    {"parameter", read_parameter, collect_value, NULL, NULL, NULL, false},
+    {"particle", number_body, collect_components, read_body, NULL, NULL, false},
+    {"point", NULL, collect_components, read_body, NULL, NULL, false},
+    {"potential", NULL, NULL, NULL, read_potential, NULL, false},
+    {"preset", NULL, NULL, NULL, read_preset, NULL, true},
+    {"sample", NULL, NULL, NULL, read_sample, NULL, false},
+    {"shape", declare_shape, NULL, place_shape, NULL, NULL, false},
+    {"solver", read_solver, NULL, NULL, NULL, NULL, true},
+    {"spring", NULL, collect_spring, NULL, read_spring, NULL, false},
+    {"state", read_state, collect_rate, read_start_of_state, NULL, NULL, false},
+    {"stop", declare_stop, NULL, NULL, read_stop, NULL, false},
+    {"table", read_table, NULL, NULL, NULL, NULL, false},
+    {"torque", NULL, NULL, NULL, read_torque, NULL, false},
+    {"work", read_work, NULL, NULL, NULL, NULL, true},
 };
 
 static int compare(const void *name, const void *element) {
@@ -390,6 +392,7 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   Action *const actions[] = {[DECLARATIONS] = element->declare,
                              [DEFINITIONS] = element->collect,
                              [POSITIONS] = element->place,
-                             [EXPRESSIONS] = element->read};
+                             [EXPRESSIONS] = element->read,
+                             [DRAWING] = element->draw};
   if (actions[pass] != NULL) actions[pass](reader, node);
 }
