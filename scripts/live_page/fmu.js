@@ -85,6 +85,16 @@ class Fmu {
     return new Float64Array(this.wasm.memory.buffer, at + offset, count).slice();
   }
 
+  // Returns the number of events so far; 0 if the system has none.
+  events() {
+    this.counter ??= this.description.variables.find(({ name, type }) => name === "events" && type === "Integer") ?? 0;
+    if (!this.counter) return 0;
+    const at = this.memory.place(16);
+    new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = this.counter.reference;
+    this.check(this.wasm.fmi2GetInteger(this.instance, at, 1, at + 8));
+    return new Int32Array(this.wasm.memory.buffer, at + 8, 1)[0];
+  }
+
   step(time, length) {
     this.check(this.wasm.fmi2DoStep(this.instance, time, length, 0));
   }

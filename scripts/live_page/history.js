@@ -13,16 +13,19 @@ class History {
   clear() {
     this.times = [];
     this.samples = []; // each has an array of values for each run
+    this.events = []; // numbers of events so far
     this.runs = 1;
   }
 
-  add(time, runs) {
+  add(time, runs, events = 0) {
     this.runs = runs.length;
     this.times.push(time);
     this.samples.push(runs);
+    this.events.push(events);
     if (this.times.length > 1.2 * this.most) {
       this.times.splice(0, this.times.length - this.most);
       this.samples.splice(0, this.samples.length - this.most);
+      this.events.splice(0, this.events.length - this.most);
     }
   }
 
@@ -30,7 +33,7 @@ class History {
   cut(time) {
     let length = this.times.length;
     while (length > 0 && this.times[length - 1] >= time - 1e-12 * Math.abs(time)) length--;
-    this.times.length = this.samples.length = length;
+    this.times.length = this.samples.length = this.events.length = length;
   }
 
   get length() {

@@ -20,7 +20,7 @@ const history = new History(shownVariables.length);
 const sections = new History(shownVariables.length); // a sample at the end of each period: a Poincaré section
 const controls = new Map(); // by the index of the variable
 const plots = [];
-const live = (window.live = { history, sections, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
+const live = (window.live = { history, sections, plots, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
 let worker, scene = null, energyBar = null, playing = false, viewed = null, pace = [0, 0];
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
@@ -39,12 +39,13 @@ function order(name, content = {}) {
 
 const formulas = new Map(); // functions of formulas that were compiled
 
-// Returns a formula in JavaScript. A variable is an element of the sample `s`, the time `t`, or the value `p(i)` that the user can set.
-function inJavaScript(formula) {
+// Returns a formula in JavaScript. A variable is an element of the sample `s`, the time `t`, or the value `p(i)` that the user can set; without
+// samples always the latter.
+function inJavaScript(formula, hasSamples) {
   const text = formula.replace(/\d[\d.]*(e[+-]?\d+)?|[a-z_][\w.]*(\[[^\]]*\][\w.]*)*(?![\w.]*\()/gi, (name) => {
     if (/^\d/.test(name)) return name;
     if (name === "time") return "t";
-    if (columnOf.has(name)) return `s[${columnOf.get(name)}]`;
+    if (hasSamples && columnOf.has(name)) return `s[${columnOf.get(name)}]`;
     const place = description.variables.findIndex((variable) => variable.name === name);
     return place >= 0 ? `p(${place})` : name === "pi" ? "Math.PI" : "NaN";
   });
@@ -53,11 +54,12 @@ function inJavaScript(formula) {
 }
 
 // Returns the function of a sample and its time that evaluates a formula; its value is NaN if it cannot be evaluated.
-function compiled(formula) {
-  if (formulas.has(formula)) return formulas.get(formula);
+function compiled(formula, hasSamples = true) {
+  const key = `${hasSamples} ${formula}`;
+  if (formulas.has(key)) return formulas.get(key);
   let evaluate = () => NaN;
   try {
-    const called = new Function("s", "t", "p", "choose", ...FUNCTIONS, `return ${inJavaScript(formula)}`);
+    const called = new Function("s", "t", "p", "choose", ...FUNCTIONS, `return ${inJavaScript(formula, hasSamples)}`);
     const valueAt = (place) => controls.get(place)?.value ?? description.variables[place].start;
     const choose = (condition, first, second) => (condition ? first : second), maths = FUNCTIONS.map((name) => Math[name]);
     evaluate = (sample, time) => {
@@ -70,13 +72,13 @@ function compiled(formula) {
   } catch {
     // a formula of functions that JavaScript lacks
   }
-  formulas.set(formula, evaluate);
+  formulas.set(key, evaluate);
   return evaluate;
 }
 
-// Returns the value of a formula of parameters; NaN if it contains other variables.
+// Returns the value of a formula of parameters and inputs, as the user has set them; NaN if it contains unknown names.
 function valueOf(formula) {
-  return compiled(formula)([], NaN);
+  return compiled(formula, false)([], NaN);
 }
 
 // Returns the ranges of the sliders by name.
@@ -94,11 +96,11 @@ const answers = {
   preview({ rows, times }) {
     buildScene(...(rows.length ? [rows, times] : [history.samples.map((runs) => runs[0]), history.times]));
   },
-  samples({ times, rows, isFresh }) {
+  samples({ times, rows, events, isFresh }) {
     if (isFresh) for (const one of [history, sections]) one.cut(times[0]);
     if (isFresh) sent = "";
     if (history.length > 0 && history.runs !== rows[0].length) history.clear();
-    times.forEach((time, i) => history.add(time, rows[i]));
+    times.forEach((time, i) => history.add(time, rows[i], events[i]));
     viewed = null;
     $("past").max = Math.max(0, history.length - 1);
     $("past").value = $("past").max;
@@ -131,7 +133,9 @@ function buildScene(samples, times) {
   if (!scene) return;
   scene.build(samples, times);
   $("turning").parentElement.hidden = !scene.plane;
-  $("forcesChoice").hidden = scene.forces.length === 0;
+  $("forcesChoice").hidden = scene.arrows.forces.length === 0;
+  $("velocitiesChoice").hidden = scene.arrows.velocities.length === 0;
+  $("followChoice").hidden = scene.followed.length === 0;
 }
 
 function setPlaying(isPlaying) {
@@ -261,7 +265,7 @@ function addActions() {
   $("past").addEventListener("input", () => viewFrom(Number($("past").value)));
   $("fit").addEventListener("click", () => scene && scene.fit());
   $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
-  for (const name of ["names", "trails", "forces"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
+  for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
   $("csv").addEventListener("click", () => save(`${description.name}.csv`, history.csv(live.names), "text/csv"));
   $("picture").addEventListener("click", () => scene && scene.renderer.domElement.toBlob((picture) => save(`${description.name}.png`, picture, "image/png")));
   $("link").addEventListener("click", () => {
@@ -302,7 +306,8 @@ async function playRecording() {
   const numbers = new Float64Array(await unpacked(recording.rows)), width = 1 + recording.names.length;
   history.most = numbers.length / width;
   const columns = live.names.map((name) => 1 + recording.names.indexOf(name));
-  for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [Float64Array.from(columns, (column) => numbers[i + column])]);
+  const counter = 1 + recording.names.indexOf("events"); // 0 without events
+  for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [Float64Array.from(columns, (column) => numbers[i + column])], counter && numbers[i + counter]);
   buildScene(history.samples.map((runs) => runs[0]), history.times);
   $("past").max = history.length - 1;
   viewFrom(0);
@@ -366,7 +371,7 @@ async function begin() {
     scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf, compiled);
     addPulling();
     addEnergyBar();
-    scene.wished = { trails: true, names: false, turning: false, forces: true };
+    scene.wished = { trails: true, names: false, turning: false, forces: true, velocities: false, follow: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", sceneParts.length === 0);
   document.body.classList.toggle("recorded", Boolean(recording));

@@ -1,6 +1,8 @@
 // A plot of variables against time, or against another variable, on a canvas.
 "use strict";
 
+const ROUNDING = 1e-13; // smaller values are shown as 0
+
 const COLORS = ["#2f7ed8", "#d9622b", "#2ca05a", "#8e5bd0", "#c23b6e", "#8a7a1f", "#17a2b8", "#7f7f7f"];
 
 // Returns about this many ticks in steps of 1, 2 or 5 times a power of ten.
@@ -10,6 +12,9 @@ function ticksOf(low, high, count) {
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) ticks.push(i * step);
   return ticks;
 }
+
+// Returns a value without what is rounding beside a magnitude, or in any unit.
+const significant = (value, magnitude) => (Math.abs(value) <= Math.max(1e-9 * magnitude, ROUNDING) ? 0 : value);
 
 function shown(value, digits = 4) {
   if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) return value.toExponential(Math.max(0, digits - 2)).replace("e+", "e");
@@ -70,8 +75,16 @@ class Plot {
       if (value > high) high = value;
     }
     if (!(high >= low)) return [0, 1];
-    const room = (high - low) * 0.06 || Math.abs(high) * 0.1 || 1;
+    const magnitude = Math.max(Math.abs(low), Math.abs(high));
+    if (magnitude <= ROUNDING) return [-1, 1];
+    const room = high - low > 1e-12 * magnitude ? (high - low) * 0.06 : 0.1 * magnitude;
     return [low - room, high + room];
+  }
+
+  // Returns the largest magnitude of all curves with the unit of one.
+  magnitudeOf(place, ranges) {
+    const alike = ranges.filter((_, i) => this.choices[this.places[i]].unit === this.choices[place].unit);
+    return Math.max(...alike.flat().map(Math.abs));
   }
 
   // Draws the samples from first to last with a mark at one of them, or all points of the section.
@@ -114,7 +127,7 @@ class Plot {
     pen.restore();
     const at = this.cursor && across < 0 ? history.placeOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
     if (at !== null && at < last) this.drawMarks(pen, at, x(horizontal(at)), y, bottom, ink);
-    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(history.value(at, this.places[i], 0), 5) : ""));
+    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(significant(history.value(at, this.places[i], 0), this.magnitudeOf(this.places[i], ranges)), 5) : ""));
   }
 
   drawGrid(pen, { ticks, labels, across, x, y, left, bottom, width, ink, grid }) {
@@ -131,10 +144,20 @@ class Plot {
     for (const tick of across) if (x(tick) > left + 8 && x(tick) < width - 12) pen.fillText(shown(tick), x(tick), bottom + 14);
   }
 
+  // True if a curve jumps between two samples: an event is between them, and the curve changes by much more than beside them.
+  isJump(before, after, first, last, every, y) {
+    if (this.history.events[before] === this.history.events[after]) return false;
+    const change = (i, j) => (i >= first && j < last ? Math.abs(y(j) - y(i)) : 0);
+    return change(before, after) > 2 + 3 * Math.max(change(before - every, before), change(after, after + every));
+  }
+
   drawLine(pen, first, last, x, y, color, run) {
     pen.beginPath();
     const every = Math.max(1, Math.floor((last - first) / 3000));
-    for (let i = first; i < last; i += every) pen.lineTo(x(i), y(i));
+    for (let i = first; i < last; i += every) {
+      if (i > first && this.isJump(i - every, i, first, last, every, y)) pen.moveTo(x(i), y(i));
+      else pen.lineTo(x(i), y(i));
+    }
     if (last > first) pen.lineTo(x(last - 1), y(last - 1));
     pen.strokeStyle = color;
     pen.globalAlpha = run === 0 ? 1 : 0.4;

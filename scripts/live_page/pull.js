@@ -17,12 +17,20 @@ const rayAt = (event) => {
   return ray;
 };
 
+// Returns the index of the thing nearest to the middle of a line: that of a bar, or of the bob on a rod.
+function nearestTo(line, sample, canBe) {
+  const [from, to] = line.at(sample, history.time(history.length - 1)), middle = from.add(to).multiplyScalar(0.5);
+  const able = [...scene.things.keys()].filter(canBe), distance = (i) => scene.position(sample, i).distanceTo(middle);
+  return able.reduce((best, i) => (best === undefined || distance(i) < distance(best) ? i : best), undefined);
+}
+
 // Returns [index of the thing, point in space] of a thing at the pointer that can be pulled.
 function hitAt(event, sample) {
   const canBe = (i) => i !== undefined && pulls.bodies[scene.things[i].name] !== undefined, found = [];
   const ray = rayAt(event), look = (object, i) => canBe(i) && ray.intersectObject(object, true).slice(0, 1).forEach(({ distance, point }) => found.push([distance, i, point]));
   scene.objects.forEach((object, i) => look(object, i));
   for (const { holder, mesh } of scene.rods) look(mesh, scene.byName.get(holder.of ?? holder.to));
+  for (const line of scene.lines) look(line.group, nearestTo(line, sample, canBe));
   if (found.length > 0) return found.sort((a, b) => a[0] - b[0])[0].slice(1);
   const box = scene.renderer.domElement.getBoundingClientRect();
   const near = scene.things.map((_, i) => {

@@ -3,6 +3,7 @@
 
 const AXES = ["x", "y", "z"];
 const TRAIL = 240; // samples of a trail
+const FAR = 5; // of its own size: a system that travels further is followed by the view
 const TRAILS = 8; // with more moving things only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.
@@ -125,15 +126,9 @@ class Scene {
     this.evaluate();
     this.plane = this.findPlane(samples, times);
     this.up = this.upwards();
-    this.box = new THREE.Box3();
     this.reaches = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, reach: this.reachOfShape(shape) }));
     const point = new THREE.Vector3();
-    for (const [k, sample] of samples.entries()) {
-      this.things.forEach((_, i) => this.box.expandByPoint(this.position(sample, i, point)));
-      for (const line of this.lines) line.expand(this.box, sample, times[k]);
-      this.expandByShapes(this.box, sample);
-      for (const holder of this.holders) if (holder.tag === "joint") this.box.expandByPoint(this.jointPosition(sample, holder, point));
-    }
+    this.box = this.viewOf(samples, times);
     const size = this.box.getSize(point).length();
     const isHeldByBase = this.holders.some((holder) => holder.tag === "rod" && !holder.from);
     const isNear = this.lines.length === 0 && (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
@@ -154,10 +149,50 @@ class Scene {
     this.addStillShapes();
     if (isGuessed) this.addSurfaces();
     this.addLines(samples[0], times[0]);
-    this.addForces();
+    this.arrows = new Arrows(this);
     this.addTrails();
     this.makeCamera();
     this.resize();
+  }
+
+  // Returns the box of all that is seen at a time.
+  boxAt(sample, time) {
+    const box = new THREE.Box3(), point = new THREE.Vector3();
+    this.things.forEach((_, i) => box.expandByPoint(this.position(sample, i, point)));
+    for (const line of this.lines) line.expand(box, sample, time);
+    this.expandByShapes(box, sample);
+    for (const holder of this.holders) if (holder.tag === "joint") box.expandByPoint(this.jointPosition(sample, holder, point));
+    return box;
+  }
+
+  // Returns the box that all samples fill. Along axes on which the system travels far beyond its own size, the view follows it.
+  viewOf(samples, times) {
+    const boxes = samples.map((sample, k) => this.boxAt(sample, times[k])), all = new THREE.Box3(), point = new THREE.Vector3();
+    for (const box of boxes) all.union(box);
+    const own = Math.max(...boxes.map((box) => box.getSize(point).length())), extent = all.getSize(new THREE.Vector3());
+    this.followed = [0, 1, 2].filter((axis) => own > 0 && extent.getComponent(axis) > FAR * own);
+    this.start = boxes[0].getCenter(new THREE.Vector3());
+    this.travelled = new THREE.Vector3();
+    if (this.followed.length === 0) return all;
+    const view = new THREE.Box3();
+    for (const box of boxes) view.union(box.translate(this.travelOf(box).negate()));
+    return view;
+  }
+
+  // Returns how far the centre of a box is from that at the start, along the axes that the view follows.
+  travelOf(box) {
+    const travel = new THREE.Vector3();
+    for (const axis of this.followed) travel.setComponent(axis, (box.min.getComponent(axis) + box.max.getComponent(axis)) / 2 - this.start.getComponent(axis));
+    return travel;
+  }
+
+  // Moves the camera with the system.
+  follow(sample, time) {
+    if (this.followed.length === 0 || !this.wished.follow) return;
+    const travel = this.travelOf(this.boxAt(sample, time)), step = travel.clone().sub(this.travelled);
+    for (const moved of [this.camera.position, this.controls.target, this.grid.position, this.centre]) moved.add(step);
+    this.frameBox.translate(step);
+    this.travelled = travel;
   }
 
   makeColors() {
@@ -215,7 +250,7 @@ class Scene {
     this.addParts(group, thing, i);
     group.matrixAutoUpdate = false;
     this.world.add(group);
-    this.addLabel(thing.name);
+    this.labels.push(this.newLabel(thing.name));
     return group;
   }
 
@@ -376,45 +411,6 @@ class Scene {
     }
   }
 
-  // Adds arrows for constraint forces, along rods and at joints.
-  addForces() {
-    this.forces = [];
-    const add = (names, parts) => {
-      const columns = names.map((name) => this.column(name));
-      if (columns.some((place) => place < 0)) return;
-      const arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1, 0xd9342b);
-      this.world.add(arrow);
-      this.forces.push({ columns, arrow, ...parts });
-    };
-    for (const holder of this.holders) {
-      if (holder.tag === "rod" && holder.force) add([holder.force], { rod: holder });
-      if (holder.tag === "joint" && holder.force1) add([holder.force1, holder.force2], { joint: holder });
-    }
-    this.largestForce = 0;
-  }
-
-  placeForces(sample) {
-    const from = new THREE.Vector3(), force = new THREE.Vector3();
-    for (const { columns, arrow, rod, joint } of this.forces) {
-      if (rod) {
-        this.position(sample, this.byName.get(rod.to), from);
-        force.copy(from).sub(this.position(sample, this.byName.get(rod.from))).normalize().multiplyScalar(sample[columns[0]] * Number(rod.factor));
-      } else {
-        this.jointPosition(sample, joint, from);
-        const [first, second] = columns.map((place) => sample[place]);
-        force.set(first * joint.x1 + second * joint.x2, first * joint.y1 + second * joint.y2, 0);
-      }
-      const size = force.length();
-      this.largestForce = Math.max(this.largestForce * 0.999, size);
-      arrow.visible = Boolean(this.wished.forces) && size > 1e-3 * this.largestForce;
-      if (!arrow.visible) continue;
-      const length = (0.7 * this.radius * size) / this.largestForce;
-      arrow.position.copy(from);
-      arrow.setDirection(force.normalize());
-      arrow.setLength(length, Math.min(0.35 * length, 0.08 * this.radius), Math.min(0.2 * length, 0.05 * this.radius));
-    }
-  }
-
   // Adds the paths of things, and of the last ends of lines that have a trail.
   addTrails() {
     const moving = this.things.map((thing, i) => i).filter((i) => !["frame"].includes(this.things[i].tag) && !this.isJointed(this.things[i].name) && this.columns[i].some((c) => c >= 0));
@@ -460,12 +456,13 @@ class Scene {
       const lowest = Math.min(up.dot(this.box.min), up.dot(this.box.max));
       grid.position.copy(centre).addScaledVector(up, lowest - up.dot(centre));
     }
+    this.grid = grid;
     this.world.add(grid);
   }
 
   makeCamera() {
     if (this.controls) this.controls.dispose();
-    const up = new THREE.Vector3(...this.up), centre = this.box.getCenter(new THREE.Vector3());
+    const up = new THREE.Vector3(...this.up), centre = this.box.getCenter(new THREE.Vector3()).add(this.travelled);
     let outwards;
     if (this.plane) outwards = new THREE.Vector3().crossVectors(new THREE.Vector3().setComponent(this.plane.find((axis) => !this.up[axis]), 1), up);
     else {
@@ -519,12 +516,18 @@ class Scene {
     this.resize();
   }
 
-  addLabel(text) {
+  newLabel(text) {
     const label = document.createElement("span");
     label.className = "label";
     label.textContent = text;
     this.container.append(label);
-    this.labels.push(label);
+    return label;
+  }
+
+  // Returns the place of a point on the screen, in pixels to the right and down.
+  pixels(point) {
+    const { x, y } = point.clone().project(this.camera);
+    return [((x + 1) * this.container.clientWidth) / 2, ((1 - y) * this.container.clientHeight) / 2];
   }
 
   placeLabels(sample) {
@@ -576,16 +579,18 @@ class Scene {
   // Draws the sample of a history with the index `at`.
   draw(history, at) {
     const runs = history.samples[at], time = history.time(at);
+    this.follow(runs[0], time);
     if (this.plane) this.widen(runs[0], time);
     this.placeThings(this.objects, runs[0]);
     this.placeGhost(runs[1]);
     this.placeRods(runs[0]);
     for (const line of this.lines) line.place(runs[0], time);
-    this.placeForces(runs[0]);
+    this.arrows.place(history, at);
     this.placeTrails(history, at);
     this.controls.update();
     this.renderer.render(this.world, this.camera);
     this.placeLabels(runs[0]);
+    this.arrows.label();
   }
 }
 

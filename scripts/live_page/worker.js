@@ -53,12 +53,16 @@ function advance(length) {
 
 const sample = () => side.fmus.map((fmu) => fmu.read(side.references));
 
+// Returns the time, the values, and the number of events so far.
+const row = () => [time, sample(), side.fmus[0].events()];
+
 function tellOf(rows, isFresh, name = "samples") {
-  tell(name, { times: rows.map((row) => row[0]), rows: rows.map((row) => row[1]), isFresh });
+  const [times, values, events] = [0, 1, 2].map((part) => rows.map((one) => one[part]));
+  tell(name, { times, rows: values, events, isFresh });
 }
 
 function tellNow(isFresh = false) {
-  tellOf([[time, sample()]], isFresh);
+  tellOf([row()], isFresh);
 }
 
 function pause() {
@@ -79,8 +83,8 @@ function tick() {
       advance(length);
       debt -= length;
       length = stepLength();
-      if (isAtPeriod()) section.push([time, sample()]);
-      if (steps % every === 0 || debt < length) rows.push([time, sample()]);
+      if (isAtPeriod()) section.push(row());
+      if (steps % every === 0 || debt < length) rows.push(row());
     }
   } catch (problem) {
     goBack();

@@ -168,6 +168,63 @@ def test_drawn_lines(browser, tmp_path):
                     assert lines[4] == pytest.approx(np.array([[row["x"], 0, 0], [row["x"] + 0.1, 0, 0]]))
 
 
+def page_of_run(folder, name, start=None, **options):
+    motion = simulate(fmu.archive(name), start or {}, **options)
+    file = folder / f"{name}.html"
+    file.write_text(page_of_motion(motion.tree, motion.values, motion.start))
+    return motion.values, file
+
+
+def test_the_view_follows(browser, tmp_path):
+    """
+    The plate slides across the plane by many times its own length, and stays at the height of the view's middle; with "Follow" off it leaves it. The four-bar
+    linkage stays where it is, and so does its view.
+    """
+    where = "() => { const { scene } = live, [x, y] = scene.pixels(scene.objects[0].position.setFromMatrixPosition(scene.objects[0].matrix)); return [x / scene.container.clientWidth, y / scene.container.clientHeight]; }"  # fmt: skip
+    _, file = page_of_run(tmp_path, "KnifeEdge")
+    with opened(browser, file) as page:
+        paused(page)
+        assert page.evaluate("live.scene.followed") == [1]
+        for sample in (0, 300, 1000):
+            at(page, sample)
+            assert page.evaluate(where)[1] == pytest.approx(0.5, abs=0.01)
+        page.click("#follow")
+        at(page, 0)
+        assert abs(page.evaluate(where)[1] - 0.5) > 0.4
+    _, file = page_of_run(tmp_path, "FourBar", stop_time=1.0)
+    with opened(browser, file) as page:
+        assert page.evaluate("live.scene.followed") == [] and page.locator("#followChoice").is_hidden()
+
+
+def test_values_of_arrows_and_legends(browser, tmp_path):
+    """A pendulum in x and y: velocity l*omega and tension at the bob have their values. The energy, which is 0 but for rounding, is 0."""
+    values, file = page_of_run(tmp_path, "PendulumCartesian", stop_time=2.0)
+    with opened(browser, file) as page:
+        paused(page)
+        page.click("#velocities")
+        at(page, 100)
+        tension, speed = (float(text.split()[0]) for text, _ in page.evaluate("live.scene.arrows.values"))
+        row = values[100]
+        assert tension == pytest.approx(abs(row["rod.force"]), rel=0.01)
+        # Without losses the speed follows from the height, which was 0; the arrow has the mean of the last 0.01 s.
+        assert speed == pytest.approx(math.sqrt(-2 * 9.81 * (values[99]["y"] + row["y"]) / 2), rel=0.01)
+        legend = page.locator(".plot", has_text="totalEnergy").locator(".legend span", has_text="totalEnergy").inner_text()
+        assert legend.split()[-1] == "0" and 0 < abs(row["totalEnergy"]) < 1e-9
+
+
+def test_curves_break_at_jumps(browser, tmp_path):
+    """The velocity of the ball jumps where it bounces: after t1 = sqrt(2 h/g), and 2 e t1, 2 e^2 t1 later. Its height has no jumps."""
+    _, file = page_of_run(tmp_path, "BouncingBall", stop_time=2.2)
+    first = math.sqrt(2 / 9.81)
+    bounces = [first, first * (1 + 2 * 0.8), first * (1 + 2 * 0.8 + 2 * 0.8**2)]
+    jumps = """name => {
+      const { history, plots, names } = live, column = names.indexOf(name), y = (k) => 30 * history.value(k, column, 0);
+      return [...Array(history.length).keys()].slice(1).filter((k) => plots[0].isJump(k - 1, k, 0, history.length, 1, y)).map((k) => history.time(k));
+    }"""
+    with opened(browser, file) as page:
+        assert page.evaluate(jumps, "v") == pytest.approx(bounces, abs=0.0101) and page.evaluate(jumps, "h") == []
+
+
 def test_size(tmp_path):
     """Long simulations of many variables are thinned out; animations of any simulation take the same time."""
     times = np.linspace(0, 300, 60_001)
