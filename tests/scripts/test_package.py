@@ -427,6 +427,8 @@ calls = [
     lambda: lagrange_fmu.sweep(FMU),
     lambda: lagrange_fmu.build("pendulum.xml", plattforms=["linux64"]),
     lambda: lagrange_fmu.simulate(FMU, input=lambda: 3),
+    lambda: lagrange_fmu.simulate(FMU, stop_time=0.1)["omgea"],
+    lambda: lagrange_fmu.linearize(FMU).bode(frequency=1),
 ]
 for call in calls:
     try:
@@ -471,6 +473,8 @@ SENTENCES = [
     "sweep: missing a required argument: 'vary'; expected sweep(system, vary, *, random=None, ",
     "'plattforms' is not an argument of build; did you mean 'platforms'?",
     "the function of the input cannot be called with the time alone; expected one such as lambda t: 2*t, ",
+    "'omgea' is not recorded; did you mean 'omega'?",
+    "'frequency' is not an argument of bode; did you mean 'frequencies'?",
     "('time', 'totalEnergy')",
 ]
 

@@ -58,7 +58,7 @@ def derive(system, folder, solver, words=()):
     if lagc.returncode != 0:
         raise Problem(lagc.stderr.strip())
     if lagc.stderr:
-        warnings.warn(lagc.stderr.strip(), stacklevel=3)
+        warnings.warn(lagc.stderr.strip(), stacklevel=4)
     return ElementTree.parse(folder / "modelDescription.xml").getroot()
 
 

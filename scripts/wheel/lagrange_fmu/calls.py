@@ -5,15 +5,15 @@ import inspect
 import os
 
 from .problem import Problem
-from .variables import nearest
+from .variables import instead
 
 
 def _what_is_wrong(function, signature, words, error):
     unknown = [word for word in words if word not in signature.parameters]
     if not unknown:
         return f"{function.__name__}: {error}; expected {function.__name__}{signature.replace(return_annotation=inspect.Signature.empty)}"
-    near = nearest(unknown[0], signature.parameters)
-    return f"'{unknown[0]}' is not an argument of {function.__name__}; " + (f"did you mean '{near}'?" if near else f"expected one of these: {', '.join(signature.parameters)}")
+    known = [word for word in signature.parameters if word != "self"]
+    return f"'{unknown[0]}' is not an argument of {function.__name__}; {instead(unknown[0], known, 'expected one of these')}"
 
 
 def checked(function):

@@ -197,7 +197,7 @@ def _result(search, limits, shared, system, name, noise_is_known, rho, why):
     rms = {measured: float(noise * np.sqrt(np.mean(np.concatenate(parts) ** 2))) for measured, (noise, parts) in columns.items()}
     misfits = _misfits(columns, rms) if noise_is_known else []
     if misfits:
-        warnings.warn("; ".join(misfits), stacklevel=4)
+        warnings.warn("; ".join(misfits), stacklevel=5)
     ended = [] if why is None else [why]
     return Fit(
         dict(zip(names, found.values.tolist())),

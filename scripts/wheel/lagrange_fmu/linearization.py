@@ -14,6 +14,7 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 
 from . import responses
+from .calls import checked
 from .model_exchange import opened
 from .problem import Problem
 
@@ -49,6 +50,7 @@ class Linearization(NamedTuple):
         """Return the eigenvalues of A in 1/s, those of the least absolute value first."""
         return responses.poles(self)
 
+    @checked
     def bode(self, of=None, by=None, frequencies=None):
         """
         Return the frequency response of the outputs `of` to the inputs `by`, by default of all to all.
@@ -58,6 +60,7 @@ class Linearization(NamedTuple):
         """
         return responses.bode(self, of, by, frequencies)
 
+    @checked
     def step(self, of=None, by=None, times=None):
         """
         Return the response of the outputs `of` to a unit step of each input `by`, by default of all to all, as changes from the operating point.
@@ -149,7 +152,7 @@ def linearize(system, at=None, method=None):
         rates = dict(zip(point.derivatives, point.read(point.derivatives)))
         moving = [f"{name} = {value:.6g}" for name, value in rates.items() if abs(value) > 1e-6]
         if moving:
-            warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=3)
+            warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=4)
         return found
 
 
