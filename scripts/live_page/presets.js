@@ -11,7 +11,7 @@ function presetsOf(file, description) {
   }));
 }
 
-// Gives all controls the values of a preset, or their own start values, and starts anew.
+// Sets all controls to the values of a preset, or to their own start values, and restarts.
 function applyPreset({ values }) {
   const wished = new Map(values);
   for (const [place, control] of controls) {

@@ -302,7 +302,7 @@ def test_presentation(browser, page_file):
 
 
 def test_presets(browser, page_file):
-    """A button sets its values and starts anew; the next one sets everything else back."""
+    """A button sets its values and restarts; the next one resets everything else."""
     with opened(browser, page_file("SimplePendulum")) as page:
         values = lambda: dict(zip(page.evaluate("live.names"), page.evaluate("Array.from(live.history.samples.at(-1)[0])")))
         page.evaluate("live.run(0.5)")
