@@ -38,11 +38,20 @@ struct Structure {
   enum Dependency *of_index; /* workspace, for each variable: the kind of dependency */
 };
 
-/* True if unknowns may depend on the variable. Initial unknowns also depend on parameters. */
-static bool is_known(const struct ScalarVariable *entry, bool initial) {
-  return entry->kind == VARIABLE_TIME || entry->kind == VARIABLE_INPUT ||
-         (entry->kind == VARIABLE_STATE && !(initial && has_following_start(entry))) ||
-         (initial && entry->kind == VARIABLE_PARAMETER);
+/*
+ * True if unknowns may depend on the variable. Initial unknowns depend on time, inputs, and variables with
+ * initial="exact": parameters, modes, and states that initialization does not compute (FMI 2.0.4, section 2.2.8; FMI
+ * 3.0.2, section 2.4.8).
+ */
+static bool is_known(const struct InterfaceVariable *variable, bool initial) {
+  switch (variable->entry.kind) {
+  case VARIABLE_TIME:
+  case VARIABLE_INPUT: return true;
+  case VARIABLE_STATE: return !(initial && starts_nearby(variable));
+  case VARIABLE_PARAMETER:
+  case VARIABLE_MODE: return initial;
+  default: return false;
+  }
 }
 
 /* Returns dependenciesKind; factors exist for Real variables only. */
@@ -64,7 +73,7 @@ static size_t add_indices(const struct Structure *structure, size_t count, Node 
   dependencies_find(structure->dependencies, node, initial);
   for (size_t i = 0; i < dependencies->count; i++) {
     size_t symbol = dependencies->symbols[i], index = structure->variable_of[symbol];
-    if (index == 0 || !is_known(&structure->interface->variables[index - 1].entry, initial)) continue;
+    if (index == 0 || !is_known(&structure->interface->variables[index - 1], initial)) continue;
     size_t whole = index_of_whole(structure, index - 1);
     enum Dependency *dependency = &structure->of_index[whole];
     if (*dependency == INDEPENDENT) structure->indices[count++] = whole;
@@ -80,7 +89,7 @@ static size_t find_all_indices(const struct Structure *structure) {
   for (size_t i = 0; i < variable_count; i++) {
     const struct Vertex *vertex = &structure->graph->vertices[interface->variables[i].node];
     bool is_known_here = vertex->operation == SYMBOL && structure->variable_of[vertex->left] == i + 1 &&
-                         is_known(&interface->variables[i].entry, true);
+                         is_known(&interface->variables[i], true);
     if (!is_known_here || index_of_whole(structure, i) != i) continue;
     structure->of_index[i] = DEPENDENT;
     structure->indices[count++] = i;
@@ -174,8 +183,8 @@ void model_structure_write(xmlTextWriterPtr writer, const struct Program *progra
   structure.of_index = allocate(interface->count, sizeof *structure.of_index);
   for (size_t i = 0; i < interface->count; i++) {
     const struct Vertex *vertex = &graph->vertices[interface->variables[i].node];
-    const struct ScalarVariable *entry = &interface->variables[i].entry;
-    if (vertex->operation == SYMBOL && (is_known(entry, false) || is_known(entry, true)))
+    const struct InterfaceVariable *variable = &interface->variables[i];
+    if (vertex->operation == SYMBOL && (is_known(variable, false) || is_known(variable, true)))
       structure.variable_of[vertex->left] = i + 1;
   }
   xmlTextWriterStartElement(writer, BAD_CAST "ModelStructure");

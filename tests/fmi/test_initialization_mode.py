@@ -18,6 +18,10 @@ KINDS = {2: (FMU2Slave, FMU2Model), 3: (FMU3Slave, FMU3Model)}
 WITHOUT_START_BESIDE = {"NewtonsCradle"}
 
 
+# Their first sample happens as initialization ends, or in the first event iteration.
+SAMPLED = {"DigitalServo", "HalfCar"}
+
+
 def instances(name):
     """Yield an instance of each version and kind, in initialization mode."""
     for version, kinds in KINDS.items():
@@ -117,6 +121,8 @@ def test_values_before_equal_those_after(name):
         again = read_all(version, kind, instance)
         instance.fmu.exitInitializationMode()
         assert repr(before) == repr(again), (version, kind)
+        if name in SAMPLED and kind in (FMU2Slave, FMU3Slave):
+            continue
         assert without_derivatives(again, name) == without_derivatives(read_all(version, kind, instance), name), (version, kind)
         assert warnings_of(instance) == [] or name in WITHOUT_START_BESIDE
 
@@ -132,6 +138,8 @@ def test_start_off_the_constraints(name):
             assert len(warnings_of(instance)) == 1
             continue
         instance.fmu.exitInitializationMode()
+        if name in SAMPLED and kind in (FMU2Slave, FMU3Slave):
+            continue
         assert without_derivatives(read, name) == without_derivatives(read_all(version, kind, instance), name), (version, kind)
         assert warnings_of(instance) == []
 

@@ -102,11 +102,23 @@ static const char *report_branch(struct Resolution *resolution, size_t branch) {
   return endless_switching;
 }
 
+/*
+ * True if the branch belongs to a sample that waits for the first event iteration. Modes have their start values in
+ * initialization mode, as initial="exact" requires, and change in event mode (FMI 2.0.4, section 2.2.7; FMI 3.0.2,
+ * section 2.4.7). Co-simulation without event mode samples as initialization ends.
+ */
+static bool waits_for_event_mode(const struct Resolution *resolution, size_t branch) {
+  const struct Instance *instance = resolution->instance;
+  bool has_event_mode = instance->kind == KIND_MODEL_EXCHANGE || instance->uses_event_mode;
+  return resolution->occasion == AT_START && (instance->is_reading || has_event_mode) &&
+         sample_of(resolution->switches, branch) != NULL;
+}
+
 const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
   *switched = false;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    if (switches->branches[i].is_last_sign != last_signs) continue;
+    if (switches->branches[i].is_last_sign != last_signs || waits_for_event_mode(resolution, i)) continue;
     double mode = branch_mode(resolution, i);
     if (mode == mode_of(resolution, switches->branches[i].mode)) continue;
     if (++resolution->flips[i] > FLIP_LIMIT) {
@@ -152,7 +164,8 @@ bool branches_begin(struct Resolution *resolution) {
   for (size_t round = 0; round <= switches->branch_count; round++) {
     if (!resolution_evaluate(resolution)) return false;
     for (size_t i = 0; i < switches->branch_count; i++)
-      resolution_set_mode(resolution, switches->branches[i].mode, sign_at_start(resolution, i));
+      resolution_set_mode(resolution, switches->branches[i].mode,
+                          waits_for_event_mode(resolution, i) ? 1.0 : sign_at_start(resolution, i));
   }
   return true;
 }

@@ -51,9 +51,13 @@ static enum Status add_seed(struct Instance *instance, struct Direction *directi
   case VARIABLE_STATE: direction->state[variable->index] += value; return STATUS_DONE;
   case VARIABLE_INPUT: direction->input[variable->index] += value; return STATUS_DONE;
   case VARIABLE_PARAMETER: direction->parameter[variable->index] += value; return STATUS_DONE;
-  default:
-    return reject_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
+  case VARIABLE_MODE: /* its start value is a known of initialization mode */
+    if (!is_before_start(instance)) break;
+    direction->parameter[variable->index] += value;
+    return STATUS_DONE;
+  default: break;
   }
+  return reject_call(instance, "'%s' is not a known; expected a state, an input or a parameter", variable->name);
 }
 
 static enum Status check_unknown(struct Instance *instance, const struct ScalarVariable *variable) {

@@ -59,10 +59,10 @@ void reading_begin(struct Instance *instance) {
   if (is_new) memcpy(instance->given, instance->fmu_state, fmu_state_size());
   if (is_new || !instance->shown_is_found) memcpy(instance->shown, instance->fmu_state, fmu_state_size());
   exchange_fmu_states(instance);
+  instance->is_reading = true;
   if (is_new) find_silently(instance);
   instance->modes_stay = instance->shown_is_found;
   instance->parameter_constants_are_stale = true;
-  instance->is_reading = true;
 }
 
 void reading_end(struct Instance *instance) {

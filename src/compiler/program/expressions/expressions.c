@@ -10,8 +10,19 @@
 #include "program/expressions/jacobian.h"
 #include "program/expressions/lu_pattern.h"
 
+/* Sets the seeds of modes, whose start values are knowns of initialization mode. Modes are stored with parameters. */
+static void create_mode_seeds(const struct Model *model, Node *seeds) {
+  struct Graph *graph = model->graph;
+  for (size_t i = 0; i < model->modes.count; i++) {
+    const struct Symbol *mode = graph_symbol_of(graph, model->modes.items[i].node);
+    size_t symbol = graph->vertices[model->modes.items[i].node].left;
+    seeds[symbol] = graph_symbol(graph, SEED_PARAMETER, mode->index, format_text("d %s", mode->name));
+  }
+}
+
 /* Returns a seed symbol for each of the graph's symbols, in their order; ZERO if results cannot depend on it. */
-static Node *create_seeds(struct Graph *graph) {
+static Node *create_seeds(const struct Model *model) {
+  struct Graph *graph = model->graph;
   static const enum SymbolKind seed_kinds[] = {
       [PARAMETER] = SEED_PARAMETER,       [TIME] = SEED_TIME,   [COORDINATE] = SEED_COORDINATE,
       [VELOCITY] = SEED_VELOCITY,         [STATE] = SEED_STATE, [INPUT] = SEED_INPUT,
@@ -26,6 +37,7 @@ static Node *create_seeds(struct Graph *graph) {
     seeds[i] =
         graph_symbol(graph, seed_kinds[kind], graph->symbols[i].index, format_text("d %s", graph->symbols[i].name));
   }
+  create_mode_seeds(model, seeds);
   return seeds;
 }
 
@@ -176,7 +188,7 @@ static void create_rates(struct Expressions *expressions, const Node *seeds) {
 
 static void create_directional(struct Expressions *expressions, struct Extras extras) {
   struct Graph *graph = expressions->model->graph;
-  Node *seeds = create_seeds(graph);
+  Node *seeds = create_seeds(expressions->model);
   create_results(expressions, seeds);
   create_initial(expressions, seeds);
   if (expressions->equations->constraints->count > 0) create_corrections(expressions, seeds);
