@@ -250,9 +250,9 @@ struct SwitchTable {
   void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
   const struct PlaneMetadata *planes; /* ascending; NULL if there are none */
   size_t plane_count;
-  /* Branches whose indicators are affine in time and otherwise depend only on parameters and modes; ascending. */
+  /* Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others. */
   const size_t *timed;
-  size_t timed_count;
+  size_t timed_count, affine_count;
   const struct TimeLaws *time_laws;     /* time_laws.h; NULL without such branches */
   const struct SampleMetadata *samples; /* NULL if there are none */
   size_t sample_count;

@@ -3,6 +3,7 @@ Switches that depend on time alone are time events (FMI 2.0.4, sections 3.1 and 
 fixed steps miss no pulse.
 """
 
+import math
 from ctypes import c_double
 
 import numpy as np
@@ -30,13 +31,34 @@ PULSE = """
   </event>
 </system>
 """
-# Conditions that are not affine in time, or depend on an input, remain event indicators.
+# Conditions that depend on an input or a state remain event indicators.
 UNKNOWN = """
 <system name="UnknownTimes">
   <input name="u"/>
   <coordinate name="x" velocity="v"/>
   <particle mass="1" x="x"/>
-  <force coordinate="x">if(sin(3*time) &gt; 0.5, 1, 0) + abs(time - u)</force>
+  <force coordinate="x">if(x + sin(3*time) &gt; 0.5, 1, 0) + abs(time - u)</force>
+</system>
+"""
+# Conditions of time with zeros in closed form, until 0.99 s.
+CURVES = {
+    "if(sin(3*time) &gt; 0.5, 1, 0)": [math.asin(0.5) / 3, (math.pi - math.asin(0.5)) / 3],
+    "if(time^2 &gt; t0, 1, 0)": [math.sqrt(0.3)],
+    "if(exp(-2*time) &lt; 0.5, 1, 0)": [math.log(2) / 2],
+    "if(mod(time, 0.25) &lt; 1e-4, 1, 0)": [1e-4, 0.25, 0.2501, 0.5, 0.5001, 0.75, 0.7501],
+    "floor(4*time)": [0.25, 0.5, 0.75],
+    "round(4*time)": [0.125, 0.375, 0.625, 0.875],
+    "max(0, cos(8*time))": [math.pi / 16, 3 * math.pi / 16, 5 * math.pi / 16],
+    "if((time - 0.4)*(time - 0.4001) &lt; 0, 1, 0)": [0.4, 0.4001],
+    "if(exp(-time) &gt; 2, 1, 0)": [],
+    "if(sin(9*time) &gt; 2, 1, 0)": [],
+}
+CURVED = """
+<system name="Curved{number}">
+  <parameter name="t0" start="0.3"/>
+  <coordinate name="x" velocity="v"/>
+  <particle mass="1" x="x"/>
+  <force coordinate="x">{force}</force>
 </system>
 """
 KNOTS = """
@@ -56,7 +78,8 @@ STEP = 0.01
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    fmu.build_systems("time-events", {"Pulse": PULSE, "UnknownTimes": UNKNOWN, "Knots": KNOTS}, versions=[2, 3])
+    curved = {f"Curved{i}": CURVED.format(number=i, force=force) for i, force in enumerate(CURVES)}
+    fmu.build_systems("time-events", {"Pulse": PULSE, "UnknownTimes": UNKNOWN, "Knots": KNOTS, **curved}, versions=[2, 3])
 
 
 def opened_for_exchange(version, name, values=(), **words):
@@ -125,6 +148,15 @@ def test_the_knots_of_a_table(version):
     """There is no event at 0 after initialization, and none after the last knot."""
     instance = opened_for_exchange(version, "Knots")
     assert integrate(instance, version, 1.0) == pytest.approx([0.3, 0.5, 0.7], rel=1e-15)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("force", CURVES)
+def test_curved_conditions_of_time(version, force):
+    """Conditions that are not affine in time: each zero is a time event, which an importer with fixed steps and no event location meets."""
+    instance = opened_for_exchange(version, f"Curved{list(CURVES).index(force)}")
+    events = integrate(instance, version, 0.99, sees_indicators=False)
+    assert events == pytest.approx(CURVES[force], rel=1e-13)
 
 
 @pytest.mark.parametrize("version", [2, 3])

@@ -341,18 +341,23 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
   switching->rests = any ? rests : NULL;
 }
 
-/* True if the node depends only on time, parameters and modes, with a nonzero rate that is constant between events. */
-static bool is_affine_in_time(const struct Model *model, Node node, Node rate) {
+/* True if the node depends on time, parameters and modes only, and varies between events. */
+static bool is_of_time(const struct Model *model, Node node, Node rate) {
   const unsigned may_use = 1u << TIME | 1u << PARAMETER | 1u << MODE;
-  const struct Vertex *vertices = model->graph->vertices;
-  return rate != ZERO && (vertices[node].kinds & ~may_use) == 0 && !graph_depends_on(model->graph, rate, TIME);
+  return rate != ZERO && (model->graph->vertices[node].kinds & ~may_use) == 0;
 }
 
+/* Finds the branches of time: those that are affine between events, and then the others. */
 static void find_timed(const struct Model *model, struct SwitchingExpressions *switching) {
+  const Node *rates = switching->values + switching->branch_count;
   switching->timed = allocate(switching->branch_count, sizeof *switching->timed);
-  for (size_t i = 0; i < switching->branch_count; i++)
-    if (is_affine_in_time(model, switching->values[i], switching->values[switching->branch_count + i]))
-      switching->timed[switching->timed_count++] = i;
+  for (int is_curved = 0; is_curved < 2; is_curved++) {
+    for (size_t i = 0; i < switching->branch_count; i++)
+      if (is_of_time(model, switching->values[i], rates[i]) &&
+          graph_depends_on(model->graph, rates[i], TIME) == (is_curved == 1))
+        switching->timed[switching->timed_count++] = i;
+    if (is_curved == 0) switching->affine_count = switching->timed_count;
+  }
 }
 
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {

@@ -26,8 +26,8 @@ struct SwitchingExpressions {
   bool feels_forces;    /* a branch depends on a constraint force */
   bool has_last_signs;  /* some branches are those of events' expressions */
   bool friction_varies; /* the sliding force of a friction is not constant */
-  size_t *timed;        /* branches that switch at known times: affine in time, and otherwise of parameters and modes */
-  size_t timed_count;
+  size_t *timed;        /* branches of time, parameters and modes: first those that are affine in time */
+  size_t timed_count, affine_count;
   size_t sample_count; /* number of sampling events */
   bool *rests; /* [friction * contacts + contact]: the friction depends on the contact force; NULL if none does */
 };

@@ -145,8 +145,9 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   if (metadata->event_count > 0)
     fputs("    .events = event_metadata,\n    .assignments = assignment_metadata,\n", file);
   if (metadata->timed_count > 0)
-    fprintf(file, "    .timed = timed,\n    .timed_count = %zu,\n    .time_laws = &time_laws,\n",
-            metadata->timed_count);
+    fprintf(file,
+            "    .timed = timed,\n    .timed_count = %zu,\n    .affine_count = %zu,\n    .time_laws = &time_laws,\n",
+            metadata->timed_count, metadata->affine_count);
   if (metadata->sample_count > 0)
     fprintf(file, "    .samples = sample_metadata,\n    .sample_count = %zu,\n", metadata->sample_count);
   fputs("};\n\n", file);

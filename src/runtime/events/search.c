@@ -4,7 +4,7 @@
  * Mathematics with Applications 39, 2000, describe the problem).
  *
  * f(t) = s_i g_i(t) - floor is sampled at the nine nodes of its Chebyshev polynomial of degree 8. The polynomial's
- * coefficients bound it over the whole interval, not only at samples (judge_signs()). It has no zero if c_0 exceeds
+ * coefficients bound it over the whole interval, not only at samples (search_judge()). It has no zero if c_0 exceeds
  * the sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
  * throughout, or if f is not negative at first and concave. The last two coefficients estimate the interpolation error,
  * which must be small and is allowed for. Otherwise the interval is halved, with new samples. So pairs of close zeros,
@@ -124,11 +124,7 @@ static void measure_error_bound(struct Search *search, double time) {
   }
 }
 
-/* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the interval must be halved. */
-enum Verdict { STAYS, FALLS, UNKNOWN };
-
-/* Judges f by its values at the nodes; it is positive while the mode stays. */
-static enum Verdict judge_signs(const double *f, double error_bound) {
+enum Verdict search_judge(const double *f, double error_bound) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
@@ -239,7 +235,7 @@ static double first_fall(struct Search *search, size_t indicator, double sign, d
 static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
                             double to, double end, int depth) {
   double error_bound = search->error_bound[indicator];
-  enum Verdict verdict = judge_signs(f, error_bound);
+  enum Verdict verdict = search_judge(f, error_bound);
   if (verdict == STAYS) return INFINITY;
   if (verdict == FALLS) return refine_fall(search, indicator, sign, f, from, to);
   double middle = 0.5 * (from + end);
@@ -399,7 +395,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     if (sample_of(lagrangian.switches, i) != NULL) continue;
     double f[CHEBYSHEV_NODES], sign = indicator_sign(instance, i);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i];
-    if (sign != 0.0 && judge_signs(f, 0.0) == STAYS) continue;
+    if (sign != 0.0 && search_judge(f, 0.0) == STAYS) continue;
     if (!knows_error_bound) measure_error_bound(&search, from);
     knows_error_bound = true;
     search.projects = may_be_constrained(&search, i);

@@ -7,6 +7,12 @@
 /* TO_ROUNDING: the time of the event, to rounding. BEFORE_IT: a time before the event, which costs less. */
 enum Exactness { TO_ROUNDING, BEFORE_IT };
 
+/* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the interval must be halved. */
+enum Verdict { STAYS, FALLS, UNKNOWN };
+
+/* Judges f by its values at the nodes of its Chebyshev polynomial (chebyshev.h); it is positive while the mode stays. */
+enum Verdict search_judge(const double *f, double error_bound);
+
 /* Returns the number of doubles of workspace of a search, including those of search_interval_shorten(). */
 size_t search_work_count(void);
 

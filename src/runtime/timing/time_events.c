@@ -1,17 +1,34 @@
 /*
- * Time events. The indicator of a timed branch is f(t) = a + b t, with a and b constant between events. Newton's method
- * t - f(t) / b gives its zero from any t in one step. Near the zero f(t) is an exact difference of close numbers, so a
- * second step gives the double next to -a / b.
+ * Time events: zeros of branches that depend on time, parameters and modes only.
+ *
+ * Between events an affine branch is f(t) = a + b t. Newton's method t - f(t) / b gives its zero from any t in one step.
+ * Near the zero f(t) is an exact difference of close numbers, so a second step gives the double next to -a / b.
+ *
+ * Of other branches, such as sin(3 t) - 1/2, the first zero is found window by window, as in search.c: the coefficients
+ * of the Chebyshev polynomial bound f over a window. Windows begin short, and grow twofold while f is resolved. A pulse
+ * that falls between the nodes of a window, as of exp(-1e6 (t - 5)^2), can be missed.
  */
 #include "timing/time_events.h"
 
+#include <float.h>
 #include <math.h>
 
+#include "events/chebyshev.h"
+#include "events/search.h"
 #include "instance/time_laws.h"
 #include "timing/samples.h"
 
 /* Newton steps: one to the zero, and two that remove its rounding error. */
 enum { ZERO_STEPS = 3 };
+
+/* Windows in a search for a zero, which then takes about a millisecond: each has 9 evaluations. */
+enum { WINDOW_LIMIT = 400 };
+
+/* Length of the first window, in s or relative to the time. */
+static const double first_window = 1e-3;
+
+/* Rounding error of a value, relative to its size and its change since time 0: a few operations. */
+static const double error_of_value = 16.0 * DBL_EPSILON;
 
 /* Evaluates with accelerations of 0. */
 void time_events_values(struct Resolution *resolution, double time) {
@@ -28,12 +45,12 @@ static double time_to_zero(const struct Resolution *resolution, size_t branch) {
   return mode * rate < 0.0 && isfinite(duration) ? duration : INFINITY;
 }
 
-/* Returns the branch that reaches 0 first; branch_count for none. */
-static size_t first_to_switch(const struct Resolution *resolution) {
+/* Returns the first of the timed branches up to count that reaches 0 by its tangent; branch_count for none. */
+static size_t first_to_switch(const struct Resolution *resolution, size_t count) {
   const struct SwitchTable *switches = resolution->switches;
   size_t first = switches->branch_count;
   double least = INFINITY;
-  for (size_t i = 0; i < switches->timed_count; i++) {
+  for (size_t i = 0; i < count; i++) {
     double duration = time_to_zero(resolution, switches->timed[i]);
     if (!(duration < least)) continue;
     least = duration;
@@ -42,19 +59,75 @@ static size_t first_to_switch(const struct Resolution *resolution) {
   return first;
 }
 
+/* Returns the first zero of the branches that are affine in time; INFINITY for none. */
+static double next_affine(struct Resolution *resolution, double present) {
+  time_events_values(resolution, present);
+  size_t branch = first_to_switch(resolution, resolution->switches->affine_count);
+  if (branch == resolution->switches->branch_count) return INFINITY;
+  const struct SampleMetadata *sample = sample_of(resolution->switches, branch);
+  if (sample != NULL) return sample_time(resolution->instance, sample);
+  double time = present;
+  for (int i = 0; i < ZERO_STEPS; i++) {
+    time += time_to_zero(resolution, branch);
+    time_events_values(resolution, time);
+  }
+  return time;
+}
+
+/* Returns the value of a branch at a time, with the sign that makes it positive while its mode stays. */
+static double value_at(struct Resolution *resolution, size_t branch, double time) {
+  time_events_values(resolution, time);
+  return mode_of(resolution, resolution->switches->branches[branch].mode) * resolution->value[branch];
+}
+
+/* Returns the first time after a fall below 0, by bisection to the resolution of time. */
+static double bisect(struct Resolution *resolution, size_t branch, double before, double after) {
+  for (;;) {
+    double middle = before + 0.5 * (after - before);
+    if (middle <= before || middle >= after) return after;
+    if (value_at(resolution, branch, middle) < 0.0) after = middle;
+    else before = middle;
+  }
+}
+
+/* Judges whether a branch falls below 0 in an interval. */
+static enum Verdict judge(struct Resolution *resolution, size_t branch, double from, double to) {
+  double f[CHEBYSHEV_NODES], largest = 0.0;
+  for (int node = 0; node < CHEBYSHEV_NODES; node++) {
+    f[node] = value_at(resolution, branch, chebyshev_time(from, to, node));
+    largest = fmax(largest, fabs(f[node]));
+  }
+  double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
+  return search_judge(f, error_of_value * (largest + fabs(rate * to)));
+}
+
+/*
+ * Returns the first fall of a curved branch below 0 in an interval; INFINITY for none. A search of WINDOW_LIMIT windows
+ * without a zero returns its end: the importer handles an event without effect there, and the search continues.
+ */
+static double next_fall(struct Resolution *resolution, size_t branch, double from, double end) {
+  double window = first_window * fmax(1.0, fabs(from));
+  if (mode_of(resolution, resolution->switches->branches[branch].mode) == 0.0) return INFINITY;
+  for (int i = 0; i < WINDOW_LIMIT && from < end; i++) {
+    double to = fmin(end, from + window);
+    enum Verdict verdict = judge(resolution, branch, from, to);
+    if (verdict == FALLS) return bisect(resolution, branch, from, to);
+    bool is_shortest = to - from <= 8.0 * rounding_of_time(to);
+    if (verdict == STAYS || is_shortest) from = to;
+    window *= verdict == STAYS ? 2.0 : is_shortest ? 1.0 : 0.5;
+  }
+  return from < end ? from : INFINITY;
+}
+
 static bool find_next_time(struct Instance *instance, double *time) {
   struct Resolution resolution = resolution_of(instance);
-  double present = instance->fmu_state->time;
-  time_events_values(&resolution, present);
-  size_t branch = first_to_switch(&resolution);
-  if (branch == resolution.switches->branch_count) return false;
-  const struct SampleMetadata *sample = sample_of(resolution.switches, branch);
-  *time = sample != NULL ? sample_time(instance, sample) : present;
-  for (int i = 0; i < ZERO_STEPS && sample == NULL; i++) {
-    *time += time_to_zero(&resolution, branch);
-    time_events_values(&resolution, *time);
-  }
-  *time = fmax(*time, present);
+  const struct SwitchTable *switches = resolution.switches;
+  const struct FmuState *fmu_state = instance->fmu_state;
+  double next = next_affine(&resolution, fmu_state->time);
+  double last = fmu_state->stop_time_defined ? fmu_state->stop_time : INFINITY;
+  for (size_t i = switches->affine_count; i < switches->timed_count; i++)
+    next = fmin(next, next_fall(&resolution, switches->timed[i], fmu_state->time, fmin(next, last)));
+  *time = fmax(next, fmu_state->time);
   return isfinite(*time);
 }
 
@@ -62,7 +135,7 @@ static bool is_due(struct Instance *instance) {
   struct Resolution resolution = resolution_of(instance);
   double present = instance->fmu_state->time;
   time_events_values(&resolution, present);
-  size_t branch = first_to_switch(&resolution);
+  size_t branch = first_to_switch(&resolution, resolution.switches->timed_count);
   return branch < resolution.switches->branch_count && time_to_zero(&resolution, branch) <= rounding_of_time(present);
 }
 

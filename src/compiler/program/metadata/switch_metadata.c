@@ -130,6 +130,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
                                  .rests_on = switching->rests,
                                  .timed = switching->timed,
                                  .timed_count = switching->timed_count,
+                                 .affine_count = switching->affine_count,
                                  .sample_count = switching->sample_count};
   if (metadata.branch_count > 0) metadata.branches = branches_of(program);
   if (metadata.contact_count > 0) metadata.contacts = contacts_of(program);
