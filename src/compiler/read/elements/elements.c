@@ -13,7 +13,7 @@
 #include "read/elements/constraint_reader.h"
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
-#include "read/elements/preset_reader.h"
+#include "read/context/preset_reader.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"

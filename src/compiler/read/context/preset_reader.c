@@ -1,4 +1,4 @@
-#include "read/elements/preset_reader.h"
+#include "read/context/preset_reader.h"
 
 #include <math.h>
 #include <string.h>
