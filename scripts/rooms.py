@@ -29,6 +29,7 @@ LAGC = House(
     src/compiler/mechanics/mass_matrix
     src/compiler/mechanics
     src/compiler/interface
+    src/compiler/display
     src/compiler/read/names
     src/compiler/read/tables
     src/compiler/read/expressions

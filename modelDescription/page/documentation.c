@@ -6,10 +6,9 @@
 #include <libxml/xmlwriter.h>
 
 #include "base/memory.h"
-#include "mechanics_sections.h"
 #include "drawing/svg.h"
+#include "equation_lines.h"
 #include "page.h"
-#include "value_sections.h"
 #include "variables_section.h"
 #include "xml_output.h"
 
@@ -20,13 +19,13 @@ static void write_solver(struct Page *page) {
   const struct Method *method = page->equations->method;
   if (method == NULL) return;
   page_heading(page, "Solver");
-  page_element(page, "p", method->sentence);
+  page_paragraph(page, method->sentence);
   if (!isnan(page->model->solver.max_step)) {
     char *text = format_text("No step of the method is longer than %g s.", page->model->solver.max_step);
-    page_element(page, "p", text);
+    page_paragraph(page, text);
   } else if (method->series == FIRST_TERMS)
-    page_element(
-        page, "p",
+    page_paragraph(
+        page,
         "Each step is so short that it skips no narrow peak, jump or pulse of a function in the equations, as far as "
         "the first three terms of their Taylor series show; maxStep in system.xml bounds the steps further.");
 }
@@ -41,16 +40,11 @@ static void write_form(struct Page *page) {
                           : "as compiled C code";
   char *text = format_text("The equations are %zu instructions, %s.", instruction_count(program), form);
   page_heading(page, "Code");
-  page_element(page, "p", text);
+  page_paragraph(page, text);
 }
 
 static void write_sections(struct Page *page) {
-  write_calculated(page);
-  write_definitions(page);
-  write_starts(page);
-  if (page->equations->count > 0) write_mechanics(page);
-  write_rates(page);
-  write_outputs(page);
+  write_equations(page);
   write_solver(page);
   write_form(page);
   write_variables(page);
@@ -92,6 +86,14 @@ static void write_contents(const struct Page *page) {
   xmlTextWriterEndElement(page->writer);
 }
 
+/* Writes by what the page was made, and the version of the system; no date, so that builds are reproducible. */
+static void write_origin(const struct Page *page) {
+  const struct Origin *origin = &page->model->origin;
+  char *version = origin->version != NULL ? format_text("Version %s of the system. ", origin->version) : copy_text("");
+  char *author = origin->author != NULL ? format_text("By %s. ", origin->author) : copy_text("");
+  page_element(page, "footer", format_text("%s%sEquations derived by lagrange-fmu %s.", version, author, LAGC_VERSION));
+}
+
 /* Writes the page around the sections, which are written first, as the contents list them. */
 static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterPtr writer = page->writer;
@@ -103,9 +105,10 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   write_contents(page);
   xmlTextWriterStartElement(writer, BAD_CAST "main");
   page_element(page, "h1", page->model->name);
-  if (page->model->description != NULL) page_element(page, "p", page->model->description);
+  if (page->model->description != NULL) page_paragraph(page, page->model->description);
   write_sketch(page->writer, page->drawing);
   xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
+  write_origin(page);
   xmlTextWriterEndElement(writer);
   write_as_it_is(page, "script", page_script);
   xmlTextWriterEndElement(writer);
@@ -114,12 +117,14 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary,
                          const struct Drawing *drawing) {
+  struct Display display = {.graph = program->model->graph, .names = &summary->names};
   struct Page page = {.program = program,
                       .model = program->model,
                       .equations = program->equations,
                       .interface = program->interface,
                       .summary = summary,
-                      .drawing = drawing};
+                      .drawing = drawing,
+                      .display = &display};
   xmlBufferPtr sections = xmlBufferCreate();
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
   page.writer = sections != NULL ? xmlNewTextWriterMemory(sections, 0) : NULL;

@@ -144,10 +144,14 @@ static struct Formula *read_sum(struct Text *text) {
   return whole;
 }
 
+bool is_choice(const struct Formula *formula) {
+  return formula->kind == APPLICATION && formula->count == 3 && strcmp(formula->word, "if") == 0;
+}
+
 /* Estimates the widths of a formula and its parts. Signs with their spaces, and parentheses, count as letters. */
 static void measure(struct Formula *formula) {
   double sum = 0.0, largest = 0.0;
-  formula->is_tall = formula->kind == FRACTION;
+  formula->is_tall = formula->kind == FRACTION || is_choice(formula);
   for (size_t i = 0; i < formula->count; i++) {
     measure(formula->parts[i]);
     formula->is_tall |= formula->parts[i]->is_tall;
@@ -159,7 +163,12 @@ static void measure(struct Formula *formula) {
   case NUMBER: formula->width = (double)strlen(formula->word); break;
   case NAME: formula->width = glyphs_width(formula->word); break;
   case ELLIPSIS: formula->width = 2.0; break;
-  case APPLICATION: formula->width = (double)strlen(formula->word) + 2.0 + sum + count - 1.0; break;
+  case APPLICATION:
+    formula->width = (double)strlen(formula->word) + 2.0 + sum + count - 1.0;
+    if (is_choice(formula))
+      formula->width = sum - formula->parts[1]->width - formula->parts[2]->width + 4.0 +
+                       fmax(formula->parts[1]->width, formula->parts[2]->width);
+    break;
   case CONDITION: formula->width = sum + 3.0; break;
   case SUM: formula->width = sum + 2.0 * (count - 1.0) + 2.0; break; /* with parentheses */
   case NEGATIVE: formula->width = sum + 1.0; break;

@@ -14,11 +14,14 @@ struct Formula {
   struct Formula **parts;
   size_t count;
   double width; /* estimated, in letters */
-  bool is_tall; /* contains a fraction */
+  bool is_tall; /* contains a fraction or cases */
 };
 
 /* Parses both sides of "left = right". Returns false if the text is not of this form. */
 bool formula_read(const char *equation, struct Formula *sides[2]);
+
+/* True for if(condition, value, other). */
+bool is_choice(const struct Formula *formula);
 
 /* Parses a name, or the derivative of one. */
 struct Formula *formula_of_name(const char *name);

@@ -19,6 +19,9 @@
 /* Width in letters up to which a formula is not broken: it fits on a phone. */
 static const double narrow = 20.0;
 
+/* The same for cases, which are not broken as a formula: they would become if(c, a, b). */
+static const double narrow_cases = 28.0;
+
 /* Length in characters above which an equation is shown as text only. */
 enum { LENGTH_LIMIT = 3000 };
 
@@ -53,7 +56,7 @@ static void write_product_in_pieces(FILE *file, const struct Formula *formula) {
       width = 0.0;
     }
     width += factor->width;
-    if (factor->width <= narrow) typeset_factor(file, formula, i);
+    if (factor->width <= (is_choice(factor) ? narrow_cases : narrow)) typeset_factor(file, formula, i);
     else write_fenced_in_pieces(file, factor, !stands_as_factor(factor));
   }
 }
@@ -115,7 +118,7 @@ static void write_name_in_pieces(FILE *file, const char *name) {
 
 static void write_in_pieces(FILE *file, const struct Formula *formula) {
   const struct Formula *inside = formula;
-  if (formula->width <= narrow) {
+  if (formula->width <= (is_choice(formula) ? narrow_cases : narrow)) {
     typeset(file, formula);
     return;
   }

@@ -91,11 +91,37 @@ static int dots_of(const struct Formula *formula, const char **name) {
   return formula->kind == NAME && dots <= 2 ? dots : 0;
 }
 
+/* Writes the cases of if(c, a, if(d, b, e)), one in each row, with a brace before them. */
+static void write_cases(FILE *file, const struct Formula *formula) {
+  fputs("<mrow><mo form=\"prefix\" stretchy=\"true\">{</mo><mtable>", file);
+  for (; is_choice(formula); formula = formula->parts[2]) {
+    fputs("<mtr><mtd>", file);
+    typeset(file, formula->parts[1]);
+    fputs("</mtd><mtd><mtext>if&#xa0;</mtext>", file);
+    typeset(file, formula->parts[0]);
+    fputs("</mtd></mtr>", file);
+  }
+  fputs("<mtr><mtd>", file);
+  typeset(file, formula);
+  fputs("</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable></mrow>", file);
+}
+
 static void write_application(FILE *file, const struct Formula *formula) {
   const char *name;
   int dots = dots_of(formula, &name);
   if (dots > 0) glyphs_write(file, name, dots);
-  else if (strcmp(formula->word, "sqrt") == 0) {
+  else if (is_choice(formula)) write_cases(file, formula);
+  else if (strcmp(formula->word, "der") == 0) {
+    fputs("<mfrac><mi mathvariant=\"normal\">d</mi><mrow><mi mathvariant=\"normal\">d</mi><mi>t</mi></mrow></mfrac>",
+          file);
+    typeset(file, formula->parts[0]);
+  } else if (strcmp(formula->word, "diff") == 0 && formula->count == 2) {
+    fputs("<mfrac><mrow><mo>∂</mo>", file);
+    typeset(file, formula->parts[0]);
+    fputs("</mrow><mrow><mo>∂</mo>", file);
+    typeset(file, formula->parts[1]);
+    fputs("</mrow></mfrac>", file);
+  } else if (strcmp(formula->word, "sqrt") == 0) {
     fputs("<msqrt>", file);
     write_arguments(file, formula);
     fputs("</msqrt>", file);

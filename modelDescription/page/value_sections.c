@@ -1,6 +1,7 @@
 #include "value_sections.h"
 
 #include "base/memory.h"
+#include "mechanics/switching.h"
 
 /* Writes the author's names for expressions, which formulas use where possible. */
 void write_definitions(struct Page *page) {
@@ -12,7 +13,7 @@ void write_definitions(struct Page *page) {
     if (names->of[definition->node] != definition->name) continue;
     if (first) page_heading(page, "Definitions");
     first = false;
-    page_equation(page, definition->name, definition->shown);
+    page_equation(page, definition->name, without_branches(page->model, definition->shown));
   }
 }
 

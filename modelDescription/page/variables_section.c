@@ -10,7 +10,7 @@
 
 /* Writes the name as formulas show it. */
 static void write_symbol(const struct Page *page, const char *name) {
-  char *math = mathml_of_name(name);
+  char *math = mathml_of_name(page_with_multipliers(page, name));
   xmlTextWriterStartElement(page->writer, BAD_CAST "td");
   xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
   xmlTextWriterEndElement(page->writer);

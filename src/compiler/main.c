@@ -13,6 +13,7 @@
 #include "mechanics/linearize.h"
 #include "mechanics/motion.h"
 #include "output.h"
+#include "page/equation_lines.h"
 #include "program/program.h"
 #include "read/names/words.h"
 #include "read/reader.h"
@@ -24,6 +25,7 @@ static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--arrays]\n"
     "            [--along NAME ...] [-D NAME=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
+    "       lagc --equations SYSTEM.xml [-D NAME=VALUE ...]\n"
     "       lagc --value NAME=VALUE --unit UNIT\n"
     "       lagc --words | --version\n"
     "\n"
@@ -43,6 +45,7 @@ static const char usage[] =
     "  --arrays         writes variables of <for> as arrays in FMI 3.0\n"
     "  --along NAME     adds sensitivities X.by.NAME of coordinates and outputs to a parameter, an input or a start\n"
     "                   value, by the variational equations\n"
+    "  --equations      prints the equations of the documentation as lines with tabs, which 'lagrange-fmu show' reads\n"
     "  --at NAME=VALUE  part of the point, such as theta=30deg; several can be joined by commas\n"
     "  --value VALUE    prints the number that 30deg, 20cm, pi/2, ... is in the UNIT\n"
     "  --words          prints the words of the language: function NAME, name NAME or element NAME in each line\n";
@@ -57,7 +60,7 @@ struct Arguments {
   char **point;
   size_t point_count;
   enum CodeForm form;
-  bool linearize, pull, arrays, words, help, version;
+  bool linearize, equations, pull, arrays, words, help, version;
   struct Extras extras;
 };
 
@@ -94,6 +97,7 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     else if (strcmp(word, "--unit") == 0) arguments->unit = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
     else if (strcmp(word, "--linearize") == 0) arguments->linearize = true;
+    else if (strcmp(word, "--equations") == 0) arguments->equations = true;
     else if (strcmp(word, "--pull") == 0) arguments->pull = true;
     else if (strcmp(word, "--arrays") == 0) arguments->arrays = true;
     else if (strcmp(word, "--adjoint") == 0) arguments->extras.adjoint = true;
@@ -108,8 +112,10 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
   }
   if (arguments->help || arguments->words || arguments->version) return true;
   if (arguments->value != NULL) return arguments->unit != NULL && strchr(arguments->value, '=') != NULL;
-  bool consistent = arguments->linearize ? arguments->directory == NULL && arguments->solver == NULL
-                                         : arguments->directory != NULL && arguments->point_count == 0;
+  bool only_reads = arguments->linearize || arguments->equations;
+  bool consistent =
+      only_reads ? arguments->directory == NULL && arguments->solver == NULL : arguments->directory != NULL;
+  if (!arguments->linearize && arguments->point_count > 0) return false;
   return arguments->system != NULL && consistent;
 }
 
@@ -152,6 +158,8 @@ static int run(const struct Arguments *arguments) {
   struct Model *model = model_read(arguments->system, &options, &diagnostics);
   struct Equations *equations = model != NULL ? motion_with_sensitivities(model, arguments, &diagnostics) : NULL;
   if (diagnostics.errors == 0 && arguments->linearize) print_linearization(model, equations, &diagnostics);
+  else if (diagnostics.errors == 0 && arguments->equations)
+    equations_print(stdout, model, equations, summary_create(model, equations));
   else if (diagnostics.errors == 0) compile(model, equations, arguments, &diagnostics);
   if (diagnostics.errors > 0 && arguments->directory != NULL) output_remove(arguments->directory);
   return diagnostics.errors > 0 ? 1 : 0;

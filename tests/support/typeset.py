@@ -26,6 +26,9 @@ def infix(element):
         return parts[0] + "_" + re.sub(r"\W", "_", parts[1])
     if tag == "msqrt":
         return f"sqrt({''.join(parts)})"
+    if tag == "mtable":  # cases with a brace before them
+        *rows, last = ([infix(cell) for cell in row] for row in element)
+        return "".join(f"gate({condition[3:]}, {value}, " for value, condition in rows) + last[0] + ")" * len(rows)
     if tag == "mover":
         return {"˙": "der_", "¨": "der_der_"}[parts[1]] + parts[0]
     if tag == "mrow" and parts and parts[0] == parts[-1] == "|":
@@ -33,7 +36,7 @@ def infix(element):
     if tag == "mrow" and len(parts) == 4 and parts[1] == "apply":  # sin x, sin² x
         power = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0])
         return f"({power[1]}({parts[3]})**{power[2]})" if power else f"{parts[0]}({parts[3]})"
-    parts = [part for part in parts if part != "apply"]
+    parts = [part for part in parts if part not in ("apply", "{")]
     return {"⋅": "*", "\u2062": "*", "−": "-", "\u2061": "apply"}.get(element.text, GREEK.get(element.text, element.text or "")) + "".join(parts)
 
 
@@ -75,6 +78,8 @@ def check(page):
         conditions = lambda side: re.sub(r"\bif\(", "gate(", side)
         typeset = conditions("".join(infix(math) for math in equation.find("p") if math.tag != "wbr")).split("=")
         text = [plain(conditions(side)) for side in equation.find("details/code").text.split(" = ")]
+        # The force of a constraint is typeset as a multiplier.
+        typeset = [re.sub(r"\blambda_(\w+)", lambda found: f"F_{found[1]}" if f"F_{found[1]}" in " ".join(text) else found[0], side) for side in typeset]
         names = {name: generator.uniform(0.1, 0.9) for name in sorted(set(re.findall(r"[A-Za-z_]\w*", " ".join(text))))}
         for ours, theirs in zip(typeset, text, strict=True):
             assert np.isclose(value(ours, names), value(theirs, names), rtol=1e-9, equal_nan=True), (ours, theirs)

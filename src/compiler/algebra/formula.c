@@ -140,13 +140,7 @@ static Node opposite_of(const struct Graph *graph, Node guard_condition) {
   return guard->operation == GUARD && guard->right == ONE ? guard->left : ZERO;
 }
 
-/* if(guard_condition > 0, positive, other) */
-struct Choice {
-  Node guard_condition, positive, other;
-};
-
-/* Splits a guard, or a sum of two guards with opposite conditions, into a choice. False for other nodes. */
-static bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
+bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
   const struct Vertex *vertices = graph->vertices, *vertex = &vertices[node];
   if (vertex->operation == GUARD) {
     Node opposite = opposite_of(graph, vertex->left);

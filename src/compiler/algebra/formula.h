@@ -19,6 +19,14 @@ struct NodeNames {
 /* Returns the text with these names for all subexpressions. */
 char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names);
 
+/* if(guard_condition > 0, positive, other) */
+struct Choice {
+  Node guard_condition, positive, other;
+};
+
+/* True for a gate, and for a sum of two gates of which one is open where the other is closed. */
+bool choice_of(const struct Graph *graph, Node node, struct Choice *choice);
+
 /* Bytes for a number's text; 17 digits with sign, point and exponent take 25. */
 enum { NUMBER_LENGTH = 40 };
 

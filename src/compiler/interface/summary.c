@@ -42,16 +42,14 @@ static struct NodeNames author_names(const struct Model *model) {
   return names;
 }
 
-/* Returns the expression, or its reduced fraction if that has a shorter text. */
-static Node readable(const struct Model *model, const struct NodeNames *names, Node node) {
-  struct Graph *graph = model->graph;
-  node = without_branches(model, node);
-  Node expanded = simplify_fraction(graph, node);
-  if (expanded == node) return node;
-  char *text = expression_text_with_names(graph, node, names);
-  char *expanded_text = expression_text_with_names(graph, expanded, names);
-  bool shorter = strlen(expanded_text) < strlen(text);
-  return shorter ? expanded : node;
+/* Returns a constraint as it is while it holds: the gap of a closed contact, the velocity of a friction that sticks. */
+static Node shown_constraint(const struct Model *model, size_t i) {
+  const struct Switches *switches = &model->switches;
+  for (size_t k = 0; k < switches->contact_count; k++)
+    if (switches->contacts[k].constraint == i) return switches->contacts[k].gap;
+  for (size_t k = 0; k < switches->friction_count; k++)
+    if (switches->frictions[k].constraint == i) return switches->frictions[k].velocity;
+  return model->constraints.items[i].node;
 }
 
 /* Returns K a for all rows; NULL if there are no trees, whose K is not formed. */
@@ -65,19 +63,34 @@ static Node *product_of_trees(const struct Model *model, const struct Equations 
   return product;
 }
 
+/* Returns K_ij; the force of a contact is 0 while it is open, so that the element for a closed one stands for both. */
+static Node shown_element(const struct Model *model, const struct Equations *equations, size_t i, size_t j) {
+  Node element = inertia_element(equations->inertia, i, j);
+  for (size_t k = 0; k < model->switches.contact_count; k++) {
+    const struct Contact *contact = &model->switches.contacts[k];
+    if (equations->count + contact->constraint == j)
+      element = substitute_symbol(model->graph, element, contact->mode, ONE);
+  }
+  return element;
+}
+
 /* Returns row i of M a + J^T F, or the acceleration itself. */
-static Node inertial_right_side(const struct Model *model, const struct Equations *equations,
-                                const struct NodeNames *names, const Node *product, size_t i) {
+static Node inertial_side(const struct Model *model, const struct Equations *equations, const Node *product, size_t i) {
   struct Graph *graph = model->graph;
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   Node sum = ZERO;
-  if (block->tree != NULL) return without_branches(model, product[i]); /* not shortened: it is too long */
+  if (block->tree != NULL) return without_branches(model, product[i]);
   for (size_t k = 0; k < block->count; k++) {
-    Node mass = inertia_element(equations->inertia, i, block->coordinates[k]);
+    Node mass = shown_element(model, equations, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
   }
-  return readable(model, names, sum);
+  const struct Elements *loads = &equations->constraints->nonsymmetric; /* frictions that depend on forces */
+  for (size_t k = 0; k < loads->count; k++) {
+    if (loads->positions[k].column != i) continue;
+    sum = add(graph, sum, constraint_force_along(graph, loads, k, model->unknowns.forces));
+  }
+  return without_branches(model, sum);
 }
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
@@ -87,12 +100,13 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   Node lagrangian = subtract(graph, model->energies.kinetic.node, model->energies.potential.node);
   *summary = (struct Summary){
       .names = names,
-      .lagrangian_kinetic = readable(model, &names, model->energies.kinetic.node),
-      .kinetic = readable(model, &names, equations->kinetic),
-      .potential = readable(model, &names, model->linearized ? equations->potential : model->energies.potential.node),
-      .power = readable(model, &names, equations->stated_power),
+      .lagrangian_kinetic = without_branches(model, model->energies.kinetic.node),
+      .kinetic = without_branches(model, equations->kinetic),
+      .potential = without_branches(model, model->linearized ? equations->potential : model->energies.potential.node),
+      .power = without_branches(model, equations->stated_power),
       .is_autonomous = !graph_depends_on(graph, lagrangian, STATE) &&
                        simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
+      .constraint_count = smaller(model->constraints.count, SHOWN_LIMIT),
       .motion_count = smaller(equations->count, SHOWN_LIMIT),
       .reaction_count = smaller(model->reactions.count, SHOWN_LIMIT),
       .rate_count = smaller(model->states.count, SHOWN_LIMIT),
@@ -102,19 +116,22 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   summary->outputs = allocate(summary->output_count, sizeof(Node));
   const Node *product = product_of_trees(model, equations);
   for (size_t i = 0; i < summary->motion_count; i++) {
-    summary->inertial[i] = inertial_right_side(model, equations, &names, product, i);
-    summary->right_side[i] = readable(model, &names, equations->right_side[i]);
+    summary->inertial[i] = inertial_side(model, equations, product, i);
+    summary->right_side[i] = without_branches(model, equations->right_side[i]);
   }
+  summary->constraints = allocate(summary->constraint_count, sizeof(Node));
+  for (size_t i = 0; i < summary->constraint_count; i++)
+    summary->constraints[i] = without_branches(model, shown_constraint(model, i));
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));
   for (size_t i = 0; i < summary->reaction_count; i++)
-    summary->reactions[i] = readable(model, &names, equations->reactions[i]);
+    summary->reactions[i] = without_branches(model, equations->reactions[i]);
   summary->rates = allocate(summary->rate_count, sizeof(Node));
   for (size_t i = 0; i < summary->rate_count; i++) {
     const struct Variable *state = &model->states.items[i];
     bool is_as_written = !model->linearized && !state->is_work;
-    summary->rates[i] = readable(model, &names, is_as_written ? state->rate : equations->rates.nodes[i]);
+    summary->rates[i] = without_branches(model, is_as_written ? state->rate : equations->rates.nodes[i]);
   }
   for (size_t i = 0; i < summary->output_count; i++)
-    summary->outputs[i] = readable(model, &names, equations->outputs[i]);
+    summary->outputs[i] = without_branches(model, equations->outputs[i]);
   return summary;
 }

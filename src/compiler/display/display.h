@@ -1,0 +1,25 @@
+/*
+ * Expressions as a textbook prints them, as text in the language of system.xml: cos(a - b) in place of products of
+ * sines and cosines, parameters collected in factors such as (m1 + m2), accelerations before squares of velocities,
+ * then other terms and inputs. Only the text differs; the value is that of the node but for rounding.
+ *
+ * The text is the shortest of several: with and without products that are multiplied out (terms.h), and as a reduced
+ * fraction. Expressions beyond the limits of terms.h keep the form of formula.h.
+ */
+#pragma once
+
+#include "algebra/formula.h"
+
+struct Display {
+  struct Graph *graph;
+  const struct NodeNames *names;
+  char **known; /* texts of nodes inside of others; NULL if unknown */
+  size_t known_count;
+  int depth; /* of texts inside of others */
+};
+
+/* Returns a node of equal value, multiplied out and shortened by addition theorems; the node itself if it is large. */
+Node display_node(struct Display *display, Node node);
+
+/* Returns the text of a node; subexpressions that have names are shown by them. */
+char *display_text(struct Display *display, Node node);
