@@ -15,6 +15,7 @@ def assemble(folder):
     package = folder / "lagrange_fmu"
     shutil.copytree(SCRIPTS / "wheel" / "lagrange_fmu", package, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(SCRIPTS / "live_page", package / "live_page", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(SCRIPTS / "show_equations", package / "show_equations", ignore=shutil.ignore_patterns("__pycache__"))
     (package / "bin").mkdir()
     (package / "runtime" / "scripts").mkdir(parents=True)
     files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("co_simulation", "ensembles", "exchange", "feedback", "named_values", "picture", "problem", "progress", "quantities", "signals", "simulation", "sweep_records", "sweep_words", "sweep_worker", "sweeping", "variables", "whole_files")}

@@ -17,15 +17,13 @@ def table(name, matrix, rows, columns):
     return "\n".join("  ".join([line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]) for line in cells)
 
 
-def run(arguments):
+def text_of(found):
+    """Return a linearization as text."""
     import numpy as np
 
-    from ..linearization import linearize
-
-    found = linearize(arguments.system, dict(arguments.at + arguments.set))
-    print("at " + ", ".join(f"{name} = {value:.9g}" for name, value in found.point.items()))
+    parts = ["at " + ", ".join(f"{name} = {value:.9g}" for name, value in found.point.items())]
     if found.constraints:
-        print(f"contacts that stay closed and frictions that stay stuck: {', '.join(found.constraints)}")
+        parts.append(f"contacts that stay closed and frictions that stay stuck: {', '.join(found.constraints)}")
     rates = [f"der({state})" for state in found.states]
     for name, matrix, rows, columns in (
         ("A", found.A, rates, found.states),
@@ -34,5 +32,12 @@ def run(arguments):
         ("D", found.D, found.outputs, found.inputs),
     ):
         if matrix.size:
-            print(f"\n{table(name, matrix, rows, columns)}")
-    print("\neigenvalues of A: " + ", ".join(f"{value:.6g}" for value in np.linalg.eigvals(found.A)))
+            parts.append(f"\n{table(name, matrix, rows, columns)}")
+    parts.append("\neigenvalues of A: " + ", ".join(f"{value:.6g}" for value in np.linalg.eigvals(found.A)))
+    return "\n".join(parts)
+
+
+def run(arguments):
+    from ..linearization import linearize
+
+    print(text_of(linearize(arguments.system, dict(arguments.at + arguments.set))))
