@@ -87,3 +87,13 @@ def test_units_of_modes_and_functions(tmp_path, content, message):
     text = f'<system name="X"><parameter name="k" start="2" unit="N/m"/><parameter name="m" start="1" unit="kg"/><coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/>{content}</system>'
     result = compiled(tmp_path, text)
     assert (result.returncode, result.stderr) == (0, "") if message is None else (result.returncode == 1 and message in result.stderr), result.stderr
+
+
+def test_a_forgotten_unit_in_a_for_is_warned_of_once(tmp_path):
+    """Once for each line of a <for>, and for each variable outside of it."""
+    (tmp_path / "system.xml").write_text("""<system name="F"><input name="u" unit="1"/><parameter name="T" start="1" unit="s"/><state name="x[0]" rate="(u - x[0])/T"/>
+<for index="i" from="1" to="4"><state name="x[i]" rate="(x[i-1] - x[i])/T"/>
+<state name="y[i]" rate="(x[i-1] - y[i])/T"/></for></system>""")
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    warned = [line.split("'")[1] for line in result.stderr.splitlines() if "has no unit" in line]
+    assert result.returncode == 0 and warned == ["x[0]", "x[1]", "y[1]"]

@@ -37,6 +37,15 @@ static void check_content(const struct Reader *reader) {
                  "a system without coordinates and states has nothing to solve; expected no <solver>");
 }
 
+/* True for an element with an index, such as x[2], if one before it comes from the same line of a <for>. */
+static bool is_repeated(const struct VariableList *list, size_t i) {
+  const struct Variable *own = &list->items[i];
+  size_t length = strcspn(own->name, "[");
+  for (size_t j = 0; j < i && own->name[length] == '['; j++)
+    if (list->items[j].line == own->line && strncmp(list->items[j].name, own->name, length + 1) == 0) return true;
+  return false;
+}
+
 /* A variable without a unit agrees with all units, so that a forgotten unit hides errors. */
 static void warn_without_unit(const struct Reader *reader) {
   const struct Model *model = reader->model;
@@ -45,7 +54,8 @@ static void warn_without_unit(const struct Reader *reader) {
   for (size_t list = 0; reader->scope->checks_units && list < 5; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       if (lists[list]->items[i].unit == NULL && lists[list]->items[i].type == TYPE_REAL &&
-          !lists[list]->items[i].is_work && !(lists[list] == &model->inputs && is_input_rate(model, i)))
+          !lists[list]->items[i].is_work && !is_repeated(lists[list], i) &&
+          !(lists[list] == &model->inputs && is_input_rate(model, i)))
         report_warning(reader->diagnostics, lists[list]->items[i].line,
                        "'%s' has no unit, so that units are not checked where it is used; expected one, or "
                        "unit=\"1\"",
