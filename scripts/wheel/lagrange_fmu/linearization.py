@@ -20,7 +20,7 @@ from .problem import Problem
 
 STEP = 1e-3  # of the differences, relative: errors of truncation and rounding are both about 1e-12
 HALVINGS = 8  # of the step at most; rounding errors are then 3e-10
-INDEPENDENT = 0.02  # length of a row relative to the longest one, above which it is independent: coordinates come first, at the cost of two digits
+COORDINATE, OTHER = 0.02, 0.3  # length of a row relative to the longest one, above which a state is independent: coordinates are preferred
 UNEVEN = 1e-6  # relative difference of P^2 and P above which a mode has switched
 
 
@@ -134,12 +134,12 @@ def tangents(point, at):
     raise Switching(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
-def independent(directions):
-    """Return the indices of as many independent rows as there are columns: the first rows that are far from the span of those before."""
+def independent(directions, shares):
+    """Return the indices of as many independent rows as there are columns: the first rows whose distance from the span of those before exceeds `shares` of the largest one."""
     rows, chosen = directions.copy(), []
     for _ in range(directions.shape[1]):
         lengths = np.linalg.norm(rows, axis=1)
-        chosen.append(int(np.argmax(lengths >= INDEPENDENT * lengths.max())))
+        chosen.append(int(np.argmax(lengths >= shares * lengths.max())))
         direction = rows[chosen[-1]] / lengths[chosen[-1]]
         rows -= np.outer(rows @ direction, direction)
     return sorted(chosen)
@@ -161,13 +161,14 @@ def linearization_at(point):
     at = point.start()
     constraints = point.constraining()
     directions = tangents(point, at) if len(at) else np.empty((0, 0))
-    chosen = independent(directions)
-    basis = directions @ np.linalg.inv(directions[chosen])
     point.start(at)
-    rates = [point.derivatives[i] for i in chosen]
+    slopes = point.jacobian(point.derivatives, point.states)
+    is_coordinate = (np.count_nonzero(slopes, axis=1) == 1) & (slopes.max(axis=1, initial=0.0) == 1)  # der(x) = v
+    chosen = independent(directions, np.where(is_coordinate, COORDINATE, OTHER))
+    basis = directions @ np.linalg.inv(directions[chosen])
     return Linearization(
-        point.jacobian(rates, point.states) @ basis,
-        point.jacobian(rates, point.inputs),
+        slopes[chosen] @ basis,
+        point.jacobian([point.derivatives[i] for i in chosen], point.inputs),
         point.jacobian(point.outputs, point.states) @ basis,
         point.jacobian(point.outputs, point.inputs),
         [point.states[i] for i in chosen],
