@@ -42,7 +42,7 @@ def named_function(draw):
 
 def energy_density(draw):
     """A potential that is an integral over a length, whose ends may move."""
-    label = f"s{len(draw.system.dummies) + 1}"
+    label = f"along{len(draw.system.dummies) + 1}"
     draw.system.dummies.append(label)
     s, atoms = name(label), [name(any_mass(draw).name) for _ in range(2)]
     shape = draw.quantity(-1, 1) * smooth(draw, atoms, 1) + sin(draw.choice(atoms)) * s ** draw.whole(1, 3)

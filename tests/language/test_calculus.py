@@ -128,6 +128,14 @@ def test_ranges_are_named(tmp_path, expression, stop, message):
     assert re.search(message, said), said
 
 
+def test_a_function_of_an_integral_with_a_range(tmp_path):
+    """A range that is open at one end leaves the sine of the integral as it is."""
+    (tmp_path / "system.xml").write_text('<system name="S"><parameter name="p" start="1.2"/><coordinate name="x" velocity="v" start="0.3"/><particle mass="1" x="x"/>'
+                                         "<potential>sin(integral(s, 0, p, exp(-x^2)*s + cos(x)*cos(2.8*s)))</potential></system>")  # fmt: skip
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and "beyond which the FMU stops" in result.stderr, result.stderr
+
+
 def test_shapes_of_many_sines_stay_small(tmp_path):
     """The shortening of a beam with eight shapes; its rate is a quadratic form of coordinates and velocities."""
     shapes = "".join(f'<coordinate name="q{k}" velocity="v{k}" start="0.0{k}"/>' for k in range(1, 9))

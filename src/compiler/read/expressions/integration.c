@@ -247,9 +247,14 @@ static Node within_ranges(struct Graph *graph, const struct Choice *choice, Node
   for (size_t i = 0; i < choice->range_count; i++) {
     const struct Range *range = &choice->ranges[i];
     Node symbol = graph->symbols[range->symbol].node;
-    Node low = graph_constant(graph, range->low), high = graph_constant(graph, range->high);
-    if (!isinf(range->high)) inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, high, symbol)));
-    if (!isinf(range->low)) inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, symbol, low)));
+    if (!isinf(range->high)) {
+      Node high = graph_constant(graph, range->high);
+      inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, high, symbol)));
+    }
+    if (!isinf(range->low)) {
+      Node low = graph_constant(graph, range->low);
+      inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, symbol, low)));
+    }
   }
   return divide(graph, sum, inside);
 }
