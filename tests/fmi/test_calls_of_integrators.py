@@ -2,6 +2,7 @@
 
 from ctypes import c_double
 
+import fmpy
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
@@ -196,6 +197,16 @@ def test_few_events_project_onto_the_constraints(name, others):
         return
     assert steps <= 3 * integrate(others, end, tolerance)[0]
     assert abs(np.hypot(*state[:2]) - 1.0) < np.sqrt(tolerance)
+
+
+@pytest.mark.parametrize("rows", [0.01, 0.1])
+@pytest.mark.parametrize("name", ["PendulumCartesian", "FourBar"])
+def test_few_events_without_a_tolerance(name, rows, monkeypatch):
+    """FMPy passes no tolerance in model exchange. Its CVode at 1e-6 then needs no more than 10 projections a second either, at any rows."""
+    events, enter = [], FMU2Model.enterEventMode
+    monkeypatch.setattr(FMU2Model, "enterEventMode", lambda model: events.append(1) or enter(model))
+    fmpy.simulate_fmu(str(fmu.archive(name)), fmi_type="ModelExchange", stop_time=10.0, relative_tolerance=1e-6, output_interval=rows)
+    assert len(events) <= 100
 
 
 def test_drift_is_within_the_tolerance_of_the_steps():

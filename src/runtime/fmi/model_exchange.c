@@ -146,11 +146,23 @@ enum Status exchange_leave_event_mode(struct Instance *instance) {
  */
 static const double largest_redundant_drift = 1e-8;
 
+/*
+ * Tolerance e of an importer that passes none, as FMPy in model exchange. Where its integrator is more exact, the drift
+ * is smaller, and few projections are as exact as many.
+ */
+static const double usual_tolerance = 1e-6;
+
+static double tolerance_of_importer(const struct FmuState *fmu_state) {
+  bool is_default = fmu_state->tolerance == lagrangian.steps.tolerance;
+  return is_default ? fmax(fmu_state->tolerance, usual_tolerance) : fmu_state->tolerance;
+}
+
 static bool has_drifted(struct Instance *instance) {
   const struct FmuState *fmu_state = instance->fmu_state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
   double drift = lagrangian.constraints.projection->drift(instance, fmu_state->time);
-  double largest = fmin((double)fmu_state->completed_steps * fmu_state->tolerance, sqrt(fmu_state->tolerance));
+  double tolerance = tolerance_of_importer(fmu_state);
+  double largest = fmin((double)fmu_state->completed_steps * tolerance, sqrt(tolerance));
   if (lagrangian.constraints.projection->found_redundant(instance)) largest = fmin(largest, largest_redundant_drift);
   return drift > largest;
 }
