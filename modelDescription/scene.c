@@ -130,6 +130,7 @@ static void write_line(xmlTextWriterPtr writer, const struct DrawnLine *line) {
   if (line->radius_formula != NULL) write_attribute(writer, "radius", line->radius_formula);
   if (line->axis != 2) write_attribute(writer, "axis", axes[line->axis]);
   if (line->color != NULL) write_attribute(writer, "color", line->color);
+  if (line->is_guessed) write_attribute(writer, "guessed", "true");
   if (line->has_trail) write_attribute(writer, "trail", "true");
   xmlTextWriterEndElement(writer);
 }

@@ -9,7 +9,8 @@
  *   <body name="crank" mass="rho*a" inertia=""/>          planar, rotated by crank.angle; may be a frame of others
  *   <point name="tip" in="arm"/>
  *   <line kind="rod" from="" to="bob" radius="r"/>        drawn, without mechanics; from, to: "" is the origin; instead
- *                                                         x1, y1, z1 and x2, y2, z2, formulas of variables of the FMU
+ *                                                         x1, y1, z1 and x2, y2, z2, formulas of variables of the FMU;
+ *                                                         guessed="true": of a <spring>, without any <line>
  *   <rod from="" to="bob" force="rod.force" factor="1"/>  of constant length; from="" is the origin; factor times force
  *                                                         is its compressive force, in N
  *   <joint of="crank" x="" y="" with="coupler" withX="" withY=""/>  a point that a planar body shares with another

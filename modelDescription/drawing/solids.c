@@ -119,6 +119,11 @@ void append_solid(struct Drawing *drawing, const struct View *view, const struct
     append_line(drawing, BAR, corner(view, &solid, (double[]){-1, 0, 0}), corner(view, &solid, (double[]){1, 0, 0}));
     return;
   }
+  if (fmax(fabs(moment[1] - moment[0]), fabs(moment[2] - moment[0])) <= 1e-3 * moment[0]) { /* 2/5 m r^2 of a ball */
+    for (int i = 0; i < 3; i++) solid.half[i] = sqrt(2.5 * moment[0] / mass);
+    append_ellipsoid(drawing, view, &solid);
+    return;
+  }
   int axis = axis_of_revolution(moment);
   set_edges(&solid, moment, mass, axis);
   if (axis >= 0) append_cylinder(drawing, view, &solid, axis);

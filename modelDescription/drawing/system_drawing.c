@@ -160,7 +160,7 @@ static void append_bodies(struct Drawing *drawing, const struct Sight *sight, co
     if (samples->things[i].body != NULL && is_solid(samples->things[i].body) &&
         !has_drawn_shape(model, samples->things[i].body))
       append_solid(drawing, &sight->view, model, samples->things[i].body, sight->values);
-  if (sight->line_values != NULL) return;
+  if (has_described_lines(&model->drawing)) return;
   for (size_t i = 0; i < connections->rod_count; i++)
     append_line(drawing, LINK, spot_of(sight, connections->rods[i].from), spot_of(sight, connections->rods[i].to));
   for (size_t i = 0; i < connections->joint_count; i++)
@@ -179,7 +179,7 @@ static void append_pivot(struct Drawing *drawing, struct Spot spot) {
 /* Appends dots and joints; the origin last, on top. With lines, only dots of particles that have no shape. */
 static void append_points(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
-  bool is_guessed = sight->line_values == NULL;
+  bool is_guessed = !has_described_lines(&model->drawing);
   for (size_t i = samples->thing_count; i-- > 1;) {
     const struct Thing *thing = &samples->things[i];
     struct Spot spot = spot_of(sight, i);
@@ -252,7 +252,7 @@ static enum Plane plane_of(const struct Sight *sight, const struct Model *model)
     has_z |= model->drawing.lines[i / 2].ends[i % 2].position[2] != ZERO;
   }
   if (!has_z) return IN_XY;
-  return has_y || sight->line_values == NULL ? IN_SPACE : IN_XZ;
+  return has_y || !has_described_lines(&model->drawing) ? IN_SPACE : IN_XZ;
 }
 
 static struct Sight sight_of(const struct Model *model) {
@@ -321,13 +321,15 @@ static bool draw_guesses(struct Drawing *drawing, const struct Sight *sight, con
   if (sight->samples.thing_count <= 1 || !is_finite(&all)) return false;
   append_surfaces(&seen_things, sight, size_of(&all));
   append_axes(drawing, sight, size_of(&all));
+  for (size_t i = 0; i < model->drawing.count; i++)
+    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size_of(&all));
   append_drawing(drawing, &seen_things);
   return true;
 }
 
 static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
   struct Sight sight = sight_of(model);
-  bool has_drawn = sight.line_values != NULL && draw_lines(drawing, &sight, model);
+  bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &sight, model);
   bool is_seen = has_drawn || draw_guesses(drawing, &sight, model);
   release_samples(&sight.samples);
   release(sight.values);

@@ -49,6 +49,7 @@ class Scene {
     this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
     this.turns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
     this.lines = this.lineElements.map((line) => new DrawnLine(this, line, compiled));
+    this.isDescribed = this.lineElements.some((line) => !line.guessed);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     container.append(this.renderer.domElement);
     this.world = new THREE.Scene();
@@ -131,7 +132,7 @@ class Scene {
     this.box = this.viewOf(samples, times);
     const size = this.box.getSize(point).length();
     const isHeldByBase = this.holders.some((holder) => holder.tag === "rod" && !holder.from);
-    const isNear = this.lines.length === 0 && (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
+    const isNear = !this.isDescribed && (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
     if (isNear) this.box.expandByPoint(point.set(0, 0, 0));
     this.span = this.box.getSize(point).length() || 1;
     this.solids = this.things.map((thing) => this.solidOf(thing));
@@ -144,7 +145,7 @@ class Scene {
     this.makeColors();
     this.addGround();
     this.objects = this.things.map((thing, i) => this.addThing(thing, i));
-    const isGuessed = this.lines.length === 0;
+    const isGuessed = !this.isDescribed;
     this.rods = isGuessed ? this.holders.map((holder) => this.addRod(holder)) : [];
     this.addStillShapes();
     if (isGuessed) this.addSurfaces();
@@ -212,7 +213,7 @@ class Scene {
 
   solidOf(thing) {
     if (this.hasShape(thing)) return null;
-    if (thing.tag !== "body" || (isPlanarBody(thing) && (this.lines.length > 0 || this.isLink(thing)))) return null;
+    if (thing.tag !== "body" || (isPlanarBody(thing) && (this.isDescribed || this.isLink(thing)))) return null;
     const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
     if (thing.inertia !== undefined) {
       const moment = entry("inertia");
@@ -237,7 +238,7 @@ class Scene {
 
   // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for things that are drawn otherwise.
   ballRadius(i) {
-    const thing = this.things[i], isLoose = thing.tag === "body" && !this.isJointed(thing.name) && !(this.lines.length > 0 && isPlanarBody(thing));
+    const thing = this.things[i], isLoose = thing.tag === "body" && !this.isJointed(thing.name) && !(this.isDescribed && isPlanarBody(thing));
     if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || isLoose)) return 0;
     const massOf = (one) => this.value(one.mass || "0"), mass = massOf(thing);
     const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
@@ -261,7 +262,7 @@ class Scene {
     else if (this.ballRadius(i) > 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
     } else if (thing.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
-    else if (thing.tag === "frame" && this.lines.length + this.shapes.length === 0) {
+    else if (thing.tag === "frame" && !this.isDescribed && this.shapes.length === 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
       if (!this.plane) group.add(new THREE.AxesHelper(0.12 * this.radius));
     }

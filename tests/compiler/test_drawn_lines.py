@@ -118,6 +118,30 @@ def test_names_vectors_and_loops(tmp_path):
     assert used - {"sin", "cos", "max"} <= names and {"h", "q"} <= used | {"q"}
 
 
+SPRINGS = """<system name="Springs">
+  <parameter name="k" start="9" unit="N/m" min="0"/> <parameter name="J" start="0.4" unit="kg.m2" min="0"/>
+  <coordinate name="x" velocity="v" unit="m" start="1"/> <coordinate name="q" velocity="w" unit="rad"/>
+  <frame name="slide"><translate x="x"/><rotate axis="z" angle="q"/></frame>
+  <body name="ball" in="slide" mass="1" Ixx="J" Iyy="J" Izz="J"/>
+  <spring from="base" to="ball" stiffness="k" length="0.5"/>
+  {}
+</system>"""
+
+
+def test_springs_are_coils_without_lines(tmp_path):
+    """A <spring> is drawn beside what is guessed; where the author draws, it is not drawn twice. A body with equal moments is a ball."""
+    (spring,) = lines_of(written(tmp_path, SPRINGS.format("")))
+    assert (spring["kind"], spring["from"], spring["to"], spring["guessed"]) == ("spring", "", "ball", "true")
+    icon = ElementTree.parse(tmp_path / "fmi3" / "icon.svg").getroot()
+    points = [one.get("points").split() for one in icon if one.tag.endswith("polygon") and one.get("class") == "solid"]
+    corners = [tuple(map(float, point.split(","))) for point in points[0]]
+    middle = [sum(corner[i] for corner in corners) / len(corners) for i in (0, 1)]
+    radii = [math.dist(corner, middle) for corner in corners]
+    assert max(radii) == pytest.approx(min(radii), rel=0.01) and max(radii) > 5
+    described = lines_of(written(tmp_path, SPRINGS.format('<line kind="rope" from="base" to="ball"/>')))
+    assert [line["kind"] for line in described] == ["rope"]
+
+
 def without_lines(text):
     return re.sub(r"<line\b[^>]*/>", "", text)
 

@@ -6,6 +6,12 @@ const char *const line_kind_names[LINE_KINDS] = {
     [LINE_PIVOT] = "pivot", [LINE_ARROW] = "arrow",
 };
 
+bool has_described_lines(const struct LineDrawing *drawing) {
+  bool has = false;
+  for (size_t i = 0; i < drawing->count; i++) has |= !drawing->lines[i].is_guessed;
+  return has;
+}
+
 bool has_two_ends(const struct DrawnLine *line) {
   return line->kind != LINE_PIVOT;
 }

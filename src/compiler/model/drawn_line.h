@@ -40,6 +40,7 @@ struct DrawnLine {
   int axis;          /* of a hoop, wheel or belt: x, y or z of the base is its normal */
   const char *color; /* as that of a shape; NULL for the page's choice */
   bool has_trail;    /* pages draw the path of its last end */
+  bool is_guessed;   /* of a <spring>; beside it, rods and joints are guessed */
   long line;
 };
 
@@ -48,6 +49,9 @@ struct LineDrawing {
   struct DrawnLine *lines;
   size_t count;
 };
+
+/* True if the author describes what is drawn by a <line>. */
+bool has_described_lines(const struct LineDrawing *drawing);
 
 /* True for a line with two ends. */
 bool has_two_ends(const struct DrawnLine *line);

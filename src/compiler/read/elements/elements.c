@@ -373,7 +373,7 @@ static const struct Element elements[] = {
     {"sample", NULL, NULL, NULL, read_sample, NULL, false},
     {"shape", declare_shape, NULL, place_shape, NULL, NULL, false},
     {"solver", read_solver, NULL, NULL, NULL, NULL, true},
-    {"spring", NULL, collect_spring, NULL, read_spring, NULL, false},
+    {"spring", NULL, collect_spring, NULL, read_spring, draw_spring, false},
     {"state", read_state, collect_rate, read_start_of_state, NULL, NULL, false},
     {"stop", declare_stop, NULL, NULL, read_stop, NULL, false},
     {"table", read_table, NULL, NULL, NULL, NULL, false},

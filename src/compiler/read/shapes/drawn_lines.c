@@ -109,8 +109,19 @@ static void read_end(struct Reader *reader, xmlNodePtr node, const char *attribu
   if (reader->diagnostics->errors == 0) end->name = name_in(reader, text, location);
 }
 
+static void keep_line(struct LineDrawing *drawing, struct DrawnLine line) {
+  drawing->lines = make_room(drawing->lines, drawing->count, sizeof *drawing->lines);
+  drawing->lines[drawing->count++] = line;
+}
+
+void draw_spring(struct Reader *reader, xmlNodePtr node) {
+  struct DrawnLine line = {.kind = LINE_SPRING, .axis = 2, .is_guessed = true};
+  line.line = scope_line(reader->scope, line_of(node));
+  for (int i = 0; i < 2; i++) read_end(reader, node, end_names[i], &line.ends[i]);
+  keep_line(&reader->model->drawing, line);
+}
+
 void read_line(struct Reader *reader, xmlNodePtr node) {
-  struct LineDrawing *drawing = &reader->model->drawing;
   struct DrawnLine line = {.kind = kind_of(node), .axis = 2, .color = attribute(node, "color"), .line = line_of(node)};
   check_attributes(reader, node, &line);
   reader->scope->keeps_whole = true;
@@ -125,13 +136,15 @@ void read_line(struct Reader *reader, xmlNodePtr node) {
     if (attribute_is(node, "axis", axes[i])) line.axis = i;
   line.has_trail = attribute_is(node, "trail", "true") || attribute_is(node, "trail", "1");
   line.line = scope_line(reader->scope, line.line);
-  drawing->lines = make_room(drawing->lines, drawing->count, sizeof *drawing->lines);
-  drawing->lines[drawing->count++] = line;
+  keep_line(&reader->model->drawing, line);
 }
 
 bool has_lines(const struct Reader *reader) {
   bool has = false;
-  for (size_t i = 0; i < reader->occurrence_count; i++) has |= is_element(reader->occurrences[i].node, "line");
+  for (size_t i = 0; i < reader->occurrence_count; i++) {
+    const xmlNode *node = reader->occurrences[i].node;
+    has |= is_element(node, "line") || is_element(node, "spring");
+  }
   return has;
 }
 
@@ -181,9 +194,19 @@ static void check_radius(struct Reader *reader, const struct DrawnLine *line, co
                  values[line->radius]);
 }
 
+/* Removes the springs of mechanics beside lines that the author describes. */
+static void remove_guesses(struct LineDrawing *drawing) {
+  size_t count = 0;
+  if (!has_described_lines(drawing)) return;
+  for (size_t i = 0; i < drawing->count; i++)
+    if (!drawing->lines[i].is_guessed) drawing->lines[count++] = drawing->lines[i];
+  drawing->count = count;
+}
+
 void end_drawing(struct Reader *reader, struct Scope *scope) {
   struct Model *model = reader->model;
   struct LineDrawing *drawing = &model->drawing;
+  remove_guesses(drawing);
   struct NodeNames names = names_of_variables(model);
   double *values = graph_evaluate(model->graph, start_values(model));
   for (size_t i = 0; i < drawing->count && reader->diagnostics->errors == 0; i++) {

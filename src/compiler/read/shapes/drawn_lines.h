@@ -6,9 +6,12 @@
 /* Reads a <line> in the pass DRAWING. */
 void read_line(struct Reader *reader, xmlNodePtr node);
 
+/* Draws a <spring> as a coil, in systems without a <line>. */
+void draw_spring(struct Reader *reader, xmlNodePtr node);
+
 /* Begins and ends the pass DRAWING, whose expressions become nodes of a graph of their own. */
 struct Scope *begin_drawing(struct Reader *reader);
 void end_drawing(struct Reader *reader, struct Scope *scope);
 
-/* True if the system has a <line>. */
+/* True if the system has a <line> or <spring>. */
 bool has_lines(const struct Reader *reader);
