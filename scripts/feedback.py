@@ -11,20 +11,12 @@ from .variables import known
 
 
 def is_feedback(data):
-    """Return True for a function of two arguments, the time and the simulation, False for one of the time; raise Problem for other functions."""
+    """Return True for a function of two arguments, the time and the simulation."""
     try:
-        signature = inspect.signature(data) if callable(data) else None
+        parameters = inspect.signature(data).parameters.values() if callable(data) else ()
     except ValueError:  # NumPy's functions have no signature
         return False
-    if signature is None:
-        return False
-    if sum(p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in signature.parameters.values()) == 2:
-        return True
-    try:
-        signature.bind(0.0)
-    except TypeError:
-        raise Problem(f"the input is a function with the arguments {signature}; expected one of (time), or of (time, sim)") from None
-    return False
+    return sum(p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD) for p in parameters) == 2
 
 
 class Feedback:

@@ -256,8 +256,6 @@ def test_feedback_is_held_in_each_step(version):
     (lambda t, sim: sim["y"], "'y' is not a variable of Pushed"),
     (lambda t, sim: None, "'F' is set to None; expected a number|expected a finite number"),
     (lambda t, sim: sim.__setitem__("F", 1), "'F' cannot be set here; expected the inputs as what the function returns"),
-    (lambda: 1.0, r"the input is a function with the arguments \(\); expected one of \(time\), or of \(time, sim\)"),
-    (lambda t, sim, more: 1.0, r"with the arguments \(t, sim, more\); expected one of"),
 ])  # fmt: skip
 def test_wrong_feedback(function, message):
     with pytest.raises(Problem, match=message):
