@@ -75,26 +75,26 @@ static double next_affine(struct Resolution *resolution, double present) {
 }
 
 /* Returns the value of a branch at a time, with the sign that makes it positive while its mode stays. */
-static double value_at(struct Resolution *resolution, size_t branch, double time) {
+static double value_in_mode(struct Resolution *resolution, size_t branch, double time) {
   time_events_values(resolution, time);
   return mode_of(resolution, resolution->switches->branches[branch].mode) * resolution->value[branch];
 }
 
 /* Returns the first time after a fall below 0, by bisection to the resolution of time. */
-static double bisect(struct Resolution *resolution, size_t branch, double before, double after) {
+static double bisect_fall(struct Resolution *resolution, size_t branch, double before, double after) {
   for (;;) {
     double middle = before + 0.5 * (after - before);
     if (middle <= before || middle >= after) return after;
-    if (value_at(resolution, branch, middle) < 0.0) after = middle;
+    if (value_in_mode(resolution, branch, middle) < 0.0) after = middle;
     else before = middle;
   }
 }
 
 /* Judges whether a branch falls below 0 in an interval. */
-static enum Verdict judge(struct Resolution *resolution, size_t branch, double from, double to) {
+static enum Verdict judge_window(struct Resolution *resolution, size_t branch, double from, double to) {
   double f[CHEBYSHEV_NODES], largest = 0.0;
   for (int node = 0; node < CHEBYSHEV_NODES; node++) {
-    f[node] = value_at(resolution, branch, chebyshev_time(from, to, node));
+    f[node] = value_in_mode(resolution, branch, chebyshev_time(from, to, node));
     largest = fmax(largest, fabs(f[node]));
   }
   double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
@@ -110,8 +110,8 @@ static double next_fall(struct Resolution *resolution, size_t branch, double fro
   if (mode_of(resolution, resolution->switches->branches[branch].mode) == 0.0) return INFINITY;
   for (int i = 0; i < WINDOW_LIMIT && from < end; i++) {
     double to = fmin(end, from + window);
-    enum Verdict verdict = judge(resolution, branch, from, to);
-    if (verdict == FALLS) return bisect(resolution, branch, from, to);
+    enum Verdict verdict = judge_window(resolution, branch, from, to);
+    if (verdict == FALLS) return bisect_fall(resolution, branch, from, to);
     bool is_shortest = to - from <= 8.0 * rounding_of_time(to);
     if (verdict == STAYS || is_shortest) from = to;
     window *= verdict == STAYS ? 2.0 : is_shortest ? 1.0 : 0.5;
