@@ -26,7 +26,7 @@ from .signals import REAL, value
 EVENTS = "events"  # variable of the FMU that counts events
 NEAR = 1e-9  # times that differ by less, relative to a step, are equal
 FOUND = 1e-10  # accuracy of the time of an event, relative to a step
-CROWD = 20  # events of a step that are located; further ones have no rows
+EVENT_ROWS = 20  # events of a step that are located; further ones have no rows
 OPTIONS = ("start_time", "stop_time", "output_interval", "relative_tolerance", "record_events", "logger", "debug_logging", "visible", "fmi_call_logger")
 
 
@@ -73,7 +73,7 @@ class Slave:
         if left:
             raise Problem(f"{self.description.modelName} takes no start values of {', '.join(left)}")
 
-    def held_halves(self, piece, begin, end):
+    def constant_halves(self, piece, begin, end):
         """Return a list of (begin, end, values) of constant inputs that replace polynomials: one if these are constant, else two."""
         if not np.any(piece[1:]):
             return [(begin, end, piece[0])]
@@ -115,11 +115,11 @@ class Slave2(Slave):
         if piece is not None and self.follows:
             self.follow(piece)
         elif piece is not None:
-            parts = self.held_halves(piece, begin, end)
+            parts = self.constant_halves(piece, begin, end)
         saved, count = (self.saved(0), self.events()) if self.can_find and record else (None, 0)
-        for low, high, held in parts:
-            if held is not None:
-                self.set(held)
+        for low, high, constant in parts:
+            if constant is not None:
+                self.set(constant)
             self.fmu.doStep(low, high - low)
         if not self.follows and piece is not None:
             self.set(value(piece, end - begin))
@@ -157,7 +157,7 @@ class Slave2(Slave):
         last, total = self.saved(1), self.events()
         self.is_looking = True
         try:
-            for _ in range(CROWD):
+            for _ in range(EVENT_ROWS):
                 if count == total:
                     break
                 low, high = self.narrowed(state, count, begin, end)
@@ -259,16 +259,16 @@ class Slave3(Slave):
         if piece is None or self.follows(begin, end, piece):
             parts = [(begin, end, None)]
         else:
-            parts = [(begin, end, piece[0])] if self.signals.moving else self.held_halves(piece, begin, end)
-        for low, high, held in parts:
-            if held is not None:
-                self.set(held)
-            self.reach(low, high, held, lambda time: None if piece is None else value(piece, time - begin), record)
+            parts = [(begin, end, piece[0])] if self.signals.moving else self.constant_halves(piece, begin, end)
+        for low, high, constant in parts:
+            if constant is not None:
+                self.set(constant)
+            self.reach(low, high, constant, lambda time: None if piece is None else value(piece, time - begin), record)
         if piece is not None:
             self.set(value(piece, end - begin))
 
-    def reach(self, time, end, held, inputs, record):
-        """Step to `end` through all events, with constant inputs `held`; inputs(time) are the true inputs, for rows."""
+    def reach(self, time, end, constant, inputs, record):
+        """Step to `end` through all events, with the inputs `constant`; inputs(time) are the true inputs, for rows."""
         while time < end:
             is_event, ends, is_early, last = self.fmu.doStep(time, end - time)
             if ends:
@@ -281,8 +281,8 @@ class Slave3(Slave):
                 self.fmu.enterEventMode()
                 self.update()
                 self.show(time, inputs, record)
-                if held is not None:
-                    self.set(held)
+                if constant is not None:
+                    self.set(constant)
 
     def show(self, time, inputs, record):
         """Add a row with the true inputs of that time."""

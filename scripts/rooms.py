@@ -14,12 +14,12 @@ ROOT = Path(__file__).resolve().parent.parent
 MOST_MODULES = 12
 
 
-class House(NamedTuple):
+class Layers(NamedTuple):
     rooms: list  # folders from the lowest layer up; a room includes files of itself and of rooms before it
     paths: list  # include paths beside the file's own folder; they contain all rooms
 
 
-LAGC = House(
+LAGC = Layers(
     """
     src/compiler/base
     src/compiler/algebra
@@ -59,7 +59,7 @@ LAGC = House(
     """.split(),
     ["src/compiler", "modelDescription", "src/laboratory"],
 )
-RUNTIME = House(
+RUNTIME = Layers(
     """
     src/runtime/support
     src/runtime/instance
@@ -77,23 +77,23 @@ RUNTIME = House(
     """.split(),
     ["src/runtime"],
 )
-ENSEMBLE = House(["src/ensemble/single", "src/ensemble"], ["src/ensemble"])
-HOUSES = [LAGC, RUNTIME, ENSEMBLE]
+ENSEMBLE = Layers(["src/ensemble/single", "src/ensemble"], ["src/ensemble"])
+ALL_LAYERS = [LAGC, RUNTIME, ENSEMBLE]
 
 
-def files_of(house):
+def files_of(layers):
     """Return the C files of each room, by the room's path."""
     rooms = {}
-    for file in sorted({file for path in house.paths for file in (ROOT / path).rglob("*.[ch]")}):
+    for file in sorted({file for path in layers.paths for file in (ROOT / path).rglob("*.[ch]")}):
         rooms.setdefault(str(file.parent.relative_to(ROOT)), []).append(file)
     return rooms
 
 
-def arrows_from(file, house):
-    """Yield the #include lines that lead to a file of the house, as (name, room)."""
+def arrows_from(file, layers):
+    """Yield the #include lines that lead to a file of the layers, as (name, room)."""
     for name in re.findall(r'^#include "(.*)"', file.read_text(), re.MULTILINE):
-        places = [file.parent / name, *(ROOT / path / name for path in house.paths)]
-        found = next((place for place in places if place.exists()), None)
+        candidates = [file.parent / name, *(ROOT / path / name for path in layers.paths)]
+        found = next((candidate for candidate in candidates if candidate.exists()), None)
         if found is not None:
             yield name, str(found.parent.relative_to(ROOT))
 
@@ -111,18 +111,18 @@ def way(arrows, start, end):
     return None
 
 
-def complaints(house):
+def complaints(layers):
     """Yield a message for each violation."""
-    rooms = files_of(house)
-    lines = [(room, file, *arrow) for room in rooms for file in rooms[room] for arrow in arrows_from(file, house)]
+    rooms = files_of(layers)
+    lines = [(room, file, *arrow) for room in rooms for file in rooms[room] for arrow in arrows_from(file, layers)]
     arrows = {room: {to for start, _, _, to in lines if start == room} for room in rooms}
     for room, files in rooms.items():
         modules = {file.stem for file in files}
         if len(modules) > MOST_MODULES:
             yield f"{room}: {len(modules)} modules; expected at most {MOST_MODULES}, the others in a room of their own"
-        if room not in house.rooms:
+        if room not in layers.rooms:
             yield f"{room}: no room of scripts/rooms.py; expected it there, behind all that it includes"
-    heights = {room: height for height, room in enumerate(house.rooms)}
+    heights = {room: height for height, room in enumerate(layers.rooms)}
     for start, file, name, to in lines:
         if heights.get(to, 0) > heights.get(start, len(heights)):
             back = way(arrows, to, start)
@@ -131,5 +131,5 @@ def complaints(house):
 
 
 if __name__ == "__main__":
-    found = [complaint for house in HOUSES for complaint in complaints(house)]
+    found = [complaint for layers in ALL_LAYERS for complaint in complaints(layers)]
     sys.exit("\n".join(found) or None)

@@ -178,11 +178,11 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     return motion_with(values)
 
 
-def crowds_of(names):
+def families_of(names):
     """Return by name "x[]" for x[1], x[2], ..., if these are too many for a legend, and "" for all other names."""
     of = {name: re.sub(r"\[[^]]*\]", "[]", name) for name in names}
     members = Counter(of.values())
-    return {name: crowd if members[crowd] > MOST_NAMES + 1 else "" for name, crowd in of.items()}
+    return {name: family if members[family] > MOST_NAMES + 1 else "" for name, family in of.items()}
 
 
 def scalars(values):
@@ -210,13 +210,13 @@ def panels_of(description, result):
     """
     unit_of = units_of(description)
     size = sizes_of(unit_of, result)
-    crowd = crowds_of(size)
+    family = families_of(size)
     panels = []
     for name in size:
         for unit, names in panels:
             sizes = [size[other] for other in (*names, name) if size[other] > 0]
-            fits = crowd[name] or not sizes or max(sizes) <= FLAT * min(sizes)
-            if unit == unit_of[name] and crowd[names[0]] == crowd[name] and fits:
+            fits = family[name] or not sizes or max(sizes) <= FLAT * min(sizes)
+            if unit == unit_of[name] and family[names[0]] == family[name] and fits:
                 names.append(name)
                 break
         else:
@@ -239,14 +239,14 @@ def draw(axis, result, names, size):
     """
     from matplotlib import colormaps
 
-    crowd, all_named = any(crowds_of(names).values()), len(names) <= MOST_NAMES + 1
+    family, all_named = any(families_of(names).values()), len(names) <= MOST_NAMES + 1
     for i, name in enumerate(names):
-        named = all_named or (i in (0, len(names) - 1) if crowd else i < MOST_NAMES)
-        color = colormaps["viridis"](0.9 * i / (len(names) - 1)) if crowd else f"C{i}" if named else "#bbb"
+        named = all_named or (i in (0, len(names) - 1) if family else i < MOST_NAMES)
+        color = colormaps["viridis"](0.9 * i / (len(names) - 1)) if family else f"C{i}" if named else "#bbb"
         axis.plot(result["time"], result[name], linewidth=1.2, color=color, label=name if named else "_", zorder=2 if named else 1.5)
-        if crowd and i == 0:
+        if family and i == 0:
             axis.plot([], [], " ", label=f"and {len(names) - 2} between")
-    if not crowd and not all_named:
+    if not family and not all_named:
         axis.plot([], [], " ", label=f"and {len(names) - MOST_NAMES} others")
     low, high = (limit([limit(result[name]) for name in names]) for limit in (np.nanmin, np.nanmax))
     if size == 0 or high - low < LEVEL * size:

@@ -93,7 +93,7 @@ class Sweep(Structure):
     ]  # fmt: skip
 
 
-def lawful_energies(description):
+def conserved_energies(description):
     """Return the variables of the energy balance; none for a system without a conservation law, such as one with prescribed motion."""
     law = next((v.description or "" for v in description.modelVariables if v.name == "totalEnergy"), "")
     if law.endswith("; constant"):
@@ -118,7 +118,7 @@ def states_of(description):
 class Results:
     """The results of n runs, arrays with a row for each."""
 
-    before: np.ndarray  # energies at the start, in the order of lawful_energies()
+    before: np.ndarray  # energies at the start, in the order of conserved_energies()
     after: np.ndarray  # energies at the end
     ends: np.ndarray  # states at the end
     recorded: np.ndarray  # a column for each record
@@ -138,7 +138,7 @@ def sampled_of(settings):
 
 def run_by_fmi(instance, rows, names, settings):
     """Perform the runs one after another, by the functions of FMI; return their Results."""
-    states, watched, sampled, records = states_of(instance.description), lawful_energies(instance.description), sampled_of(settings), settings["records"]
+    states, watched, sampled, records = states_of(instance.description), conserved_energies(instance.description), sampled_of(settings), settings["records"]
     variables, count = [instance.references(of) for of in (names, watched, states, sampled)], len(rows)
     counter = instance.references(["events"] if any(VALUE < kind < EVENTS_OF for _, kind, _, _ in records) and instance.counts_events() else [])
     names_events = any(kind >= EVENTS_OF for _, kind, _, _ in records)
@@ -160,7 +160,7 @@ def run_in_lanes(ensemble, instance, rows, names, settings):
 
     Each run in lanes gets an equal share of their time. All records must be values at times.
     """
-    begin, states, watched = time.perf_counter(), len(states_of(instance.description)), len(lawful_energies(instance.description))
+    begin, states, watched = time.perf_counter(), len(states_of(instance.description)), len(conserved_energies(instance.description))
     values, is_left = ensemble.run(rows)
     seconds, sampled, times = np.full(len(rows), (time.perf_counter() - begin) / len(rows)), sampled_of(settings), list(ensemble.times)
     energies = values[:, :, states : states + watched]

@@ -191,7 +191,7 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
     if not library:
         return None
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
-    asked = [*states, *sweep_worker.lawful_energies(description), *sweep_worker.sampled_of(settings)]
+    asked = [*states, *sweep_worker.conserved_energies(description), *sweep_worker.sampled_of(settings)]
     times = sorted({0.0, settings["stop"], *(time for *_, time in settings["records"])})
     ensemble = Ensemble(library, *([references[name] for name in some] for some in (names, asked)), times, settings["tolerance"])
     return ensemble if ensemble.serves() else None

@@ -44,13 +44,13 @@ class History {
     return this.times[i];
   }
 
-  value(i, place, run) {
+  value(i, index, run) {
     const runs = this.samples[i];
-    return (runs[run] || runs[0])[place];
+    return (runs[run] || runs[0])[index];
   }
 
   // Returns the index of the last sample that is not after a time.
-  placeOf(time, first = 0, last = this.length) {
+  indexAt(time, first = 0, last = this.length) {
     let low = first, high = last - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;

@@ -8,17 +8,17 @@ const SAVED = 600; // saved states at most, for steps back
 const PREVIEW = 150; // ms for the simulation that determines the size of the view
 
 let description, pulls, wasmOf; // wasmOf(isPulled): returns the functions of a new module
-let shipped, pulled = null, side; // the FMU as shipped, the one whose bodies can be pulled, and the one that runs
+let shipped, pulled = null, active; // the FMU as shipped, the one whose bodies can be pulled, and the one that runs
 let values = [new Map(), new Map()]; // settings of each FMU, by the index of the variable
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
 let period = 0; // s between points of the section; 0 for none
 let ghost = null; // the second FMU while it does not run
 
-const tell = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
+const report = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
-function refuse(problem, content = {}) {
+function reject(problem, content = {}) {
   if (!(problem instanceof Refusal)) throw problem;
-  tell("refused", { words: problem.message, ...content });
+  report("rejected", { words: problem.message, ...content });
 }
 
 // Returns the length of the next step: at most the FMU's step size, at least 30 steps per second of wall-clock time, and ending at a period's end.
@@ -32,42 +32,42 @@ function stepLength() {
 const isAtPeriod = () => period > 0 && Math.abs(time / period - Math.round(time / period)) < 1e-9;
 
 function save() {
-  if (side.saved.length === SAVED) side.free.push(side.saved.shift()[1]);
-  const places = side.free.pop() || [];
-  side.saved.push([time, side.fmus.map((fmu, i) => fmu.save(places[i]))]);
+  if (active.saved.length === SAVED) active.free.push(active.saved.shift()[1]);
+  const states = active.free.pop() || [];
+  active.saved.push([time, active.fmus.map((fmu, i) => fmu.save(states[i]))]);
 }
 
 function goBack() {
-  if (side.saved.length === 0) return false;
-  const [then, places] = side.saved.pop();
-  side.fmus.forEach((fmu, i) => fmu.restore(places[i]));
-  side.free.push(places);
+  if (active.saved.length === 0) return false;
+  const [then, states] = active.saved.pop();
+  active.fmus.forEach((fmu, i) => fmu.restore(states[i]));
+  active.free.push(states);
   time = then;
   return true;
 }
 
 function advance(length) {
-  for (const fmu of side.fmus) fmu.step(time, length);
+  for (const fmu of active.fmus) fmu.step(time, length);
   time += length;
 }
 
-const sample = () => side.fmus.map((fmu) => fmu.read(side.references));
+const sample = () => active.fmus.map((fmu) => fmu.read(active.references));
 
 // Returns the time, the values, and the number of events so far.
-const row = () => [time, sample(), side.fmus[0].events()];
+const row = () => [time, sample(), active.fmus[0].events()];
 
-function tellOf(rows, isFresh, name = "samples") {
+function reportRows(rows, isFresh, name = "samples") {
   const [times, values, events] = [0, 1, 2].map((part) => rows.map((one) => one[part]));
-  tell(name, { times, rows: values, events, isFresh });
+  report(name, { times, rows: values, events, isFresh });
 }
 
-function tellNow(isFresh = false) {
-  tellOf([row()], isFresh);
+function reportNow(isFresh = false) {
+  reportRows([row()], isFresh);
 }
 
 function pause() {
   playing = false;
-  tell("paused");
+  report("paused");
 }
 
 function tick() {
@@ -88,14 +88,14 @@ function tick() {
     }
   } catch (problem) {
     goBack();
-    refuse(problem);
+    reject(problem);
     pause();
-    tellNow(true);
+    reportNow(true);
     return;
   }
-  if (rows.length > 0) tellOf(rows);
-  if (section.length > 0) tellOf(section, false, "section");
-  tell("pace", { reached: time - from, isBehind: debt >= length });
+  if (rows.length > 0) reportRows(rows);
+  if (section.length > 0) reportRows(section, false, "section");
+  report("pace", { reached: time - from, isBehind: debt >= length });
   debt = Math.min(debt, length);
   setTimeout(tick, Math.max(0, TICK - (performance.now() - start)));
 }
@@ -112,27 +112,27 @@ function preview() {
   } catch (problem) {
     if (!(problem instanceof Refusal)) throw problem;
   }
-  tell("preview", { rows, times });
+  report("preview", { rows, times });
 }
 
 function startAnew() {
-  side.forgetSaved();
-  side = shipped;
+  active.forgetSaved();
+  active = shipped;
   debt = 0;
   time = description.startTime;
-  side.fmus.forEach((fmu, i) => fmu.start(values[i]));
+  active.fmus.forEach((fmu, i) => fmu.start(values[i]));
 }
 
 // Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.
 function goOnPulled() {
-  if (side !== shipped) return;
-  const variables = description.variables.map((variable, place) => ({ ...variable, reference: pulls.references[place] }));
-  pulled ||= new Side(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
+  if (active !== shipped) return;
+  const variables = description.variables.map((variable, index) => ({ ...variable, reference: pulls.references[index] }));
+  pulled ||= new FmuInstances(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
   while (pulled.fmus.length < shipped.fmus.length) pulled.add();
   pulled.fmus.length = shipped.fmus.length;
   pulled.fmus.forEach((fmu, i) => fmu.start([...values[i], ...shipped.statesOf(shipped.fmus[i])], time));
   shipped.forgetSaved();
-  side = pulled;
+  active = pulled;
 }
 
 // Returns the functions of an FMU's module.
@@ -146,12 +146,12 @@ const orders = {
   begin(message) {
     ({ description, pulls } = message);
     wasmOf = message.laboratory ? (isPulled) => derivedIn(message.laboratory, isPulled) : (isPulled) => instanceOf(message.modules[Number(isPulled)]);
-    side = shipped = new Side(wasmOf(false), description, message.shown);
+    active = shipped = new FmuInstances(wasmOf(false), description, message.shown);
     shipped.add();
     orders.reset(message);
     preview();
     orders.reset({});
-    tell("ready");
+    report("ready");
   },
   play() {
     if (playing) return;
@@ -172,43 +172,43 @@ const orders = {
       advance(stepLength());
     } catch (problem) {
       goBack();
-      refuse(problem);
+      reject(problem);
     }
-    tellNow();
+    reportNow();
   },
   back() {
-    if (goBack()) tellNow(true);
+    if (goBack()) reportNow(true);
   },
   // Sets a value, which applies now and after the next start; start values and fixed parameters apply after the next start only.
-  set({ place, value }) {
-    const variable = description.variables[place], isLater = variable.role === "start" || variable.isFixed;
-    const { fmus, kept } = side, earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
-    fmus.forEach((_, i) => values[i].set(place, value));
+  set({ index, value }) {
+    const variable = description.variables[index], isLater = variable.role === "start" || variable.isFixed;
+    const { fmus, kept } = active, earlier = fmus.map((_, i) => values[i].get(index) ?? variable.start);
+    fmus.forEach((_, i) => values[i].set(index, value));
     if (isLater) return;
     fmus.forEach((fmu, i) => (kept[i] = fmu.save(kept[i])));
     try {
-      for (const fmu of fmus) fmu.set(place, value);
+      for (const fmu of fmus) fmu.set(index, value);
       sample(); // the FMU may reject the value only when it is evaluated
-      tell("accepted", { about: place });
+      report("accepted", { about: index });
     } catch (problem) {
-      refuse(problem, { about: place, value, held: earlier[0] });
+      reject(problem, { about: index, value, previous: earlier[0] });
       fmus.forEach((fmu, i) => {
-        values[i].set(place, earlier[i]);
+        values[i].set(index, earlier[i]);
         fmu.restore(kept[i]);
       });
     }
-    if (!playing) tellNow(true);
+    if (!playing) reportNow(true);
   },
   // Restarts with all settings.
   reset({ set = [] }) {
-    for (const [place, value] of set) values[0].set(place, value);
+    for (const [index, value] of set) values[0].set(index, value);
     try {
       startAnew();
-      tellNow(true);
-      tell("accepted");
+      reportNow(true);
+      report("accepted");
     } catch (problem) {
       pause();
-      refuse(problem);
+      reject(problem);
     }
   },
   ghost({ differences }) {
@@ -226,21 +226,21 @@ const orders = {
   pull({ body, pointer, stiffness }) {
     try {
       if (stiffness > 0) goOnPulled();
-      if (side === shipped) return;
-      for (const fmu of side.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
+      if (active === shipped) return;
+      for (const fmu of active.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
     } catch (problem) {
-      refuse(problem);
+      reject(problem);
     }
   },
   // Steps to a time as fast as possible, with the FMU's step size.
   run({ until }) {
     const steps = Math.round((until - time) / description.stepSize), start = performance.now(), from = time;
     for (let i = 0; i < steps; i++) {
-      for (const fmu of side.fmus) fmu.step(from + i * description.stepSize, description.stepSize);
+      for (const fmu of active.fmus) fmu.step(from + i * description.stepSize, description.stepSize);
       time = from + (i + 1) * description.stepSize;
     }
-    tell("ran", { seconds: (performance.now() - start) / 1000, time, values: sample()[0] });
-    tellNow(true);
+    report("ran", { seconds: (performance.now() - start) / 1000, time, values: sample()[0] });
+    reportNow(true);
   },
 };
 

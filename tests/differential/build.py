@@ -12,7 +12,7 @@ from building import SPEED, library_in, library_words, pack_words
 TIME_LIMIT = 300  # s, for one program
 
 
-class Refused(Exception):
+class RejectedSystem(Exception):
     """An error message of lagc, with a line, or of the FMU."""
 
 
@@ -34,7 +34,7 @@ def compile_system(system, folder):
     target = folder / "fmu"
     result = run([fmu.LAGC, source, "-o", target, "--form", system.plan.form], "lagc")
     if result.returncode == 1 and re.search(r"system\.xml(:\d+)?: \S", result.stderr):
-        raise Refused("lagc: " + re.sub(r"^.*?system\.xml(:\d+)?: ", "", result.stderr.splitlines()[0]))
+        raise RejectedSystem("lagc: " + re.sub(r"^.*?system\.xml(:\d+)?: ", "", result.stderr.splitlines()[0]))
     if result.returncode != 0:
         raise Wrong(f"lagc ends with {result.returncode}: {result.stderr[:500]}")
     plan = system.plan

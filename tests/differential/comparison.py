@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .build import Refused, Wrong, compile_system
+from .build import RejectedSystem, Wrong, compile_system
 from .derivation import Derivation
 from .exact import Exact, NoValue
 from .event_reference import EventReference
@@ -40,16 +40,16 @@ def judge_system(system, folder, time_limit=60):
     try:
         record = simulate_apart(system, compile_system(system, folder), time_limit)
         outcome.unavailable = record.unavailable
-        if record.refusal:
-            outcome.verdict, outcome.message = "refused", record.refusal
+        if record.rejection:
+            outcome.verdict, outcome.message = "refused", record.rejection
         compare(system, record, folder, outcome)
         outcome.regular = True
-    except Refused as error:
+    except RejectedSystem as error:
         outcome.verdict, outcome.message = "refused", str(error)
     except Wrong as error:
         outcome.verdict, outcome.message = "wrong", str(error)
     except Undecided as error:
-        if not record.refusal:
+        if not record.rejection:
             outcome.verdict, outcome.message = "undecided", str(error)
     return outcome
 

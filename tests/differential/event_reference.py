@@ -109,7 +109,7 @@ class EventReference:
             self.constants = self._constants(communication)
             self.time = np.longdouble(communication.time)
             if not rows:
-                self._settle(starts=True)
+                self._resolve_event(starts=True)
                 rows.append(self._row())
             for moment, end in part(communication.time, communication.end, parts):
                 self.time = np.longdouble(moment)
@@ -131,7 +131,7 @@ class EventReference:
                 self.events += 1
                 if self.events > EVENT_LIMIT:
                     raise Undecided("the reference meets too many events")
-                self._settle()
+                self._resolve_event()
 
     def _follow(self, end):
         """Integrate to the end or the first change; return True if there is a change."""
@@ -163,7 +163,7 @@ class EventReference:
 
     # --- Modes after a change ---
 
-    def _settle(self, starts=False):
+    def _resolve_event(self, starts=False):
         if starts:  # at a kink of a gap, the piece towards which the motion goes applies
             self.state[: self.n] += OFF_KINK * self.state[self.n :]
         for _ in range(ROUND_LIMIT):
@@ -245,7 +245,7 @@ class EventReference:
                     flags.sliding[slow] = sign
                     if not self._is_idle_right(slow):
                         continue
-                    state = self._held_state(p, closed, [j for j, s in zip(slow, sign) if s == 0])
+                    state = self._constrained_state(p, closed, [j for j, s in zip(slow, sign) if s == 0])
                     if self._is_right(state, close, slow):
                         self.state = state
                         return
@@ -258,7 +258,7 @@ class EventReference:
         """True if each friction of an open contact has direction 1, which stands for all of its directions."""
         return all(self.flags.sliding[j] == 1 for j in slow if self._is_idle(j))
 
-    def _held_state(self, p, closed, stuck):
+    def _constrained_state(self, p, closed, stuck):
         """The state without rounding errors in the velocities of active constraints."""
         state = self.state.copy()
         rows = [p.gradients[i] for i in closed] + [p.ways[j] for j in stuck]
@@ -314,7 +314,7 @@ class EventReference:
         if held + stuck:
             change[self.n :] -= p.least_change(held + stuck, [row @ change[self.n :] for row in held + stuck])
         self.state = self.state + change
-        self._settle()
+        self._resolve_event()
 
 
 def REAL_of(value):

@@ -55,7 +55,7 @@ class Point:
 class Record:
     rows: list = field(default_factory=list)  # states at the communication points
     points: list = field(default_factory=list)
-    refusal: str = None
+    rejection: str = None
     unavailable: list = field(default_factory=list)  # messages of failed derivatives
     wrong: str = None
 
@@ -139,8 +139,8 @@ def simulate(system, folder, record):
             if i in selected:
                 read_point(record, instance, system, step, step.end)
     except FMICallException as error:
-        record.refusal = instance.problem()
-        if not record.refusal:
+        record.rejection = instance.problem()
+        if not record.rejection:
             record.wrong = f"{error} without a message"
     finally:
         instance.free()

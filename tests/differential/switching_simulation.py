@@ -124,8 +124,8 @@ def simulate(system, folder, record):
                     record.wrong = f"the step from {step.time!r} gives other bits when repeated: {row} and {again}"
             record.rows.append(row)
     except FMICallException as error:
-        record.refusal = importer.instance.problem()
-        if not record.refusal:
+        record.rejection = importer.instance.problem()
+        if not record.rejection:
             record.wrong = f"{error} without a message"
     finally:
         importer.instance.free()

@@ -46,7 +46,7 @@ def test_life_under_valgrind(name):
     run(["valgrind", *flags, *words_for(name, BUILD)])
 
 
-def words_for_refusals(name, build, library):
+def arguments_for_failures(name, build, library):
     output = fmu.references(name)[fmu.names_of(name, "output")[0]]
     return [build / "bin" / "out_of_memory", library, fmu.description(name).guid, str(output)]
 
@@ -55,7 +55,7 @@ def words_for_refusals(name, build, library):
 def test_every_allocation_fails_once(name):
     """Each allocation fails in turn: the FMU logs a message, leaks nothing, and works after a reset."""
     library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"
-    result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
+    result = run(arguments_for_failures(name, SANITIZED, library), **CLEAN)
     assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 5
 
 
@@ -87,7 +87,7 @@ def test_every_allocation_of_sundials_fails_once(solver, rows_of_springs):
     folder = SANITIZED / "rows-of-springs" / "systems" / name
     assert f"&{WITH_SUNDIALS[solver][1]}," in (folder / "system.c").read_text()
     library = folder / "binaries" / "linux64" / f"{name}.so"
-    result = run(words_for_refusals(name, SANITIZED, library), **CLEAN)
+    result = run(arguments_for_failures(name, SANITIZED, library), **CLEAN)
     assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 60
 
 

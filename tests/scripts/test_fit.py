@@ -231,7 +231,7 @@ def test_fit(lagrange_fmu):
         generator = np.random.default_rng(seed)
         found = lagrange_fmu.fit(fmu.archive("Oscillator"), [measured(generator, truth, F) for F in (0.0, 5.0)], list(truth))
         off.append([(found.values[name] - truth[name]) / found.deviations[name] for name in truth])
-        assert found.rms["x"] == pytest.approx(1e-3, rel=0.2) and found.untold == []
+        assert found.rms["x"] == pytest.approx(1e-3, rel=0.2) and found.undetermined == []
     off = np.array(off)
     assert (abs(off) < 4).all() and 0.7 < off.std() < 1.3
 
@@ -282,7 +282,7 @@ def test_undetermined_values(lagrange_fmu):
     """Without a force, mass, stiffness and damping are determined up to a common factor only."""
     truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), measured(np.random.default_rng(1), truth), ["m", "k", "d", "x"])
-    assert [set(shares) for shares in found.untold] == [{"m", "k", "d"}]
+    assert [set(shares) for shares in found.undetermined] == [{"m", "k", "d"}]
     assert np.isinf(found.deviations["m"]) and found.deviations["x"] < 1e-3
     assert found.values["k"] / found.values["m"] == pytest.approx(61 / 1.7, rel=1e-3)
 
@@ -298,7 +298,7 @@ def test_only_a_sum_is_known(lagrange_fmu):
     """Only the sum of two forces is determined. Alone, one has the standard deviation sigma/|t^2/2| of linear regression, in any unit."""
     data = line()
     both = lagrange_fmu.fit(fmu.archive("Sum"), data, ["p", "r", "tiny"], noise={"x": 1e-3})
-    assert {frozenset(shares) for shares in both.untold} <= {frozenset(pair) for pair in (("p", "r"), ("p", "tiny"), ("r", "tiny"))} and len(both.untold) == 2
+    assert {frozenset(shares) for shares in both.undetermined} <= {frozenset(pair) for pair in (("p", "r"), ("p", "tiny"), ("r", "tiny"))} and len(both.undetermined) == 2
     assert all(np.isinf(deviation) for deviation in both.deviations.values())
     alone = lagrange_fmu.fit(fmu.archive("Sum"), data, ["p"], noise={"x": 1e-3})
     expected = 1e-3 / np.linalg.norm(data["time"] ** 2 / 2)

@@ -121,7 +121,7 @@ def systems():
     build_systems("frames", TEXTS)
 
 
-def arm_places(t, q, u):
+def arm_poses(t, q, u):
     """(R, position) of the arm, of the elbow's wheel, and of the tip."""
     s, alpha, beta = q
     platform = rotation([0, 1, 0], 0.3 * np.sin(2 * t))
@@ -133,7 +133,7 @@ def arm_places(t, q, u):
 
 
 def arm_bodies(t, q, u):
-    places = arm_places(t, q, u)
+    places = arm_poses(t, q, u)
     (R, elbow), (wheel, hub) = places["arm"], places["wheel"]
     tensor = [[0.02, 0.004, -0.003], [0.004, 0.05, 0.002], [-0.003, 0.002, 0.06]]
     return [
@@ -148,9 +148,9 @@ def arm_with(tau, vs):
     """Mechanism with a force that depends on the velocity vs, which is an argument so that differences by velocities exclude it."""
 
     def power(velocity, spin, at):
-        place = lambda name: lambda t, q, u: arm_places(t, q, u)[name][1]
-        turned = lambda name: lambda t, q, u: arm_places(t, q, u)[name][0]
-        R = np.real(arm_places(*at[:2], at[3])["arm"][0])
+        place = lambda name: lambda t, q, u: arm_poses(t, q, u)[name][1]
+        turned = lambda name: lambda t, q, u: arm_poses(t, q, u)[name][0]
+        R = np.real(arm_poses(*at[:2], at[3])["arm"][0])
         total = (R @ [3, -1, 2]) @ velocity(place("tip")) + 0.7 * vs * velocity(place("wheel"))[2]
         return total + np.array([0.2, 0, tau]) @ spin(turned("wheel")) + np.array([0, tau, -0.4]) @ (R @ spin(turned("arm")))
 
@@ -180,7 +180,7 @@ def test_what_is_told_of_an_arm(open_fmu):
     middle = {name: rows[4, 4 + i] for i, name in enumerate(names)}
     column = {name: rows[:, 4 + i] for i, name in enumerate(names)}
     derivative = lambda values: sum(float(w) * (values[4 + k] - values[4 - k]) for k, w in enumerate(WEIGHTS, 1)) / step
-    places = arm_places(rows[4, 0], rows[4, 1:4], ())
+    places = arm_poses(rows[4, 0], rows[4, 1:4], ())
     wheel, tip = np.real(places["tip"][0]), np.real(places["tip"][1])
     assert np.allclose([middle[f"tip.{x}"] for x in "xyz"], tip.astype(float), atol=1e-12)
     assert np.allclose([middle[f"wheel.R{i}{j}"] for i in (1, 2, 3) for j in (1, 2, 3)], wheel.astype(float).ravel(), atol=1e-12)
@@ -209,13 +209,13 @@ def random_quaternion_state(random):
     return [*q], [*(rate - q * (q @ rate))]
 
 
-def plate_places(t, q, u):
+def plate_poses(t, q, u):
     R, origin = rotation_of_quaternion(*q[3:7]), q[:3]
     return R, origin, R @ rotation([0, 1, 1], q[7])
 
 
 def plate_bodies(t, q, u):
-    R, origin, rotor = plate_places(t, q, u)
+    R, origin, rotor = plate_poses(t, q, u)
     return [
         (3, R, origin + R @ array(0.05, 0, 0), [[0.2, 0, 0], [0, 0.3, 0.02], [0, 0.02, 0.45]]),
         (0.5, rotor, origin + R @ array(0, 0, 0.3), np.diag([0.001, 0.002, 0.002])),
@@ -223,7 +223,7 @@ def plate_bodies(t, q, u):
 
 
 def plate_potential(t, q, u):
-    R, origin, _ = plate_places(t, q, u)
+    R, origin, _ = plate_poses(t, q, u)
     return 15 * np.sum((origin + R @ array(0.4, 0.3, 0) - array(0, 0, 1)) ** 2)
 
 

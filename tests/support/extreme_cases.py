@@ -97,7 +97,7 @@ def judge(case, run, evaluations, bound):
     return Outcome("right", error, evaluations)
 
 
-def judge_refusal(case, messages):
+def judge_rejection(case, messages):
     text = " / ".join(messages)
     fits = case.refused is not None and re.search(case.refused, text)
     return Outcome("refused" if fits else "wrong", message=text)
@@ -118,7 +118,7 @@ def co_simulate(case):
         evaluations, steps = count(instance, "derivativeEvaluations"), count(instance, "solverSteps")
         handovers = count(instance, "solverHandovers")
     except FMICallException:
-        return judge_refusal(case, [text for status, _, text in instance.messages if status > 1])
+        return judge_rejection(case, [text for status, _, text in instance.messages if status > 1])
     finally:
         instance.free()
     if case.refused is not None:
@@ -142,7 +142,7 @@ def exchange_model(case):
             relative_tolerance=case.tolerance, logger=log, debug_logging=True,
         )  # fmt: skip
     except FMICallException:
-        return judge_refusal(case, messages)
+        return judge_rejection(case, messages)
     if not case.exchange:
         return Outcome("wrong", message="not refused")
     return judge(case, Run(case, result["time"], {name: result[name] for name in names}), 0, case.exchange)

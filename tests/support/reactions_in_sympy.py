@@ -13,30 +13,30 @@ from mechanics import System, kinetic, time, velocity
 
 
 @dataclass
-class Held:
+class ConstrainedSystem:
     """
-    System whose coordinates `held` (by index) have prescribed accelerations; those of displacements are 0, as are their values. forces: the
+    System whose coordinates `constrained_system` (by index) have prescribed accelerations; those of displacements are 0, as are their values. forces: the
     names of the multipliers and the sign of each in M a = Q + ... - J^T F.
     """
 
     system: System
-    held: dict
+    constrained_system: dict
     forces: dict
     outputs: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        values = [*self.held.values()]
+        values = [*self.constrained_system.values()]
         self.evaluate = self.system.evaluator("numpy")
         self.given = sp.lambdify(self.system.arguments, [sp.sympify(value) for value in values], modules="numpy")
 
     def solve(self, *arguments):
         """Solve [[M, J^T], [J, 0]] [a, F] = [Q + ..., given]; return the accelerations, and the multipliers F by name."""
         mass, terms = self.evaluate(*arguments)
-        n, held = len(mass), list(self.held)
-        matrix, right = np.zeros((n + len(held), n + len(held))), np.zeros(n + len(held))
+        n, constrained_system = len(mass), list(self.constrained_system)
+        matrix, right = np.zeros((n + len(constrained_system), n + len(constrained_system))), np.zeros(n + len(constrained_system))
         matrix[:n, :n] = mass
         right[:n] = [sum(row) for row in terms]
-        for k, (i, given) in enumerate(zip(held, self.given(*arguments))):
+        for k, (i, given) in enumerate(zip(constrained_system, self.given(*arguments))):
             matrix[i, n + k] = matrix[n + k, i] = 1.0
             right[n + k] = given
         solution = np.linalg.solve(matrix, right)
@@ -47,13 +47,13 @@ class Held:
 m, l, g, b, k, J, F, tau, u = symbols("m l g b k J F tau u")
 
 
-def held(q, v, particles, potential, forces, parameters, inputs, held_ones, names, rotations=(), dissipation=0, further=0):
+def constrained_system(q, v, particles, potential, forces, parameters, inputs, constrained, names, rotations=(), dissipation=0, further=0):
     """
-    Build a Held. particles: (mass, position); rotations: (inertia, angle); forces: (F, position), in addition to those of the dissipation.
+    Build a ConstrainedSystem. particles: (mass, position); rotations: (inertia, angle); forces: (F, position), in addition to those of the dissipation.
     """
     T = kinetic(particles, q, v) + kinetic([(inertia, (angle,)) for inertia, angle in rotations], q, v) + further
     Q = [sum(f * sp.diff(x, qi) for f, x in forces) - sp.diff(dissipation, vi) for qi, vi in zip(q, v)]
-    return Held(System(q, v, T, sp.sympify(potential), Q, inputs, parameters), held_ones, names)
+    return ConstrainedSystem(System(q, v, T, sp.sympify(potential), Q, inputs, parameters), constrained, names)
 
 
 def bearing():
@@ -63,7 +63,7 @@ def bearing():
     angle = theta + turn
     bob = (px + (l + stretch) * sin(angle), py - (l + stretch) * cos(angle))
     drag = b * (velocity(bob[0], q, v) ** 2 + velocity(bob[1], q, v) ** 2) / 2
-    return held(
+    return constrained_system(
         q, v, [(m, bob)], m * g * bob[1], [(F, bob[0]), (-2 * F, bob[1]), (tau, theta)], [m, l, g, b, J], [F, tau],
         {1: 0, 2: 0, 3: 0, 4: 0}, {"stretch.force": 1, "px.force": 1, "py.force": 1, "turn.force": 1},
         rotations=[(J, angle)], dissipation=drag,
@@ -80,7 +80,7 @@ def chain(count=3):
         x, y = x + (l + stretch[i]) * sin(theta[i]), y - (l + stretch[i]) * cos(theta[i])
         bobs.append((x, y))
     forces = {f"stretch[{i + 1}].force": 1 for i in range(count)}
-    return held(
+    return constrained_system(
         q, v, [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [(F, bobs[-1][0])], [m, l, g], [F],
         {count + i: 0 for i in range(count)}, forces,
     )  # fmt: skip
@@ -94,7 +94,7 @@ def charged():
     vx, vy = velocity(x, q, rates), velocity(y, q, rates)
     potential = -b * (x * vy - y * vx) / 2 + k * (s - l + d / 3) ** 2 / 2
     further = J * (vx + 2 * vy) ** 2 / 2
-    return held(q, rates, [(m, (x, y))], potential, [], [m, l, b, k, J, u], [], {1: 0}, {"d.force": 1}, further=further)
+    return constrained_system(q, rates, [(m, (x, y))], potential, [], [m, l, b, k, J, u], [], {1: 0}, {"d.force": 1}, further=further)
 
 
 a, M, h = symbols("a M h")
@@ -106,7 +106,7 @@ def crane():
     q, rates = [x, theta, stretch], [v, omega, vs]
     load = (x + (l + stretch) * sin(theta), -(l + stretch) * cos(theta))
     damping = b * v**2 / 2 + b * omega**2 / 2
-    return held(
+    return constrained_system(
         q, rates, [(M, (x,)), (m, load)], m * g * load[1] + k * x**2 / 2, [(F, x)], [M, m, l, g, b, k], [F, u],
         {0: u, 2: 0}, {"x.force": -1, "stretch.force": 1}, dissipation=damping,
     )  # fmt: skip
@@ -119,7 +119,7 @@ def robot(count=4):
     for i in range(count):
         x, y = x + l * sin(theta[i]), y - l * cos(theta[i])
         bobs.append((x, y))
-    return held(
+    return constrained_system(
         theta, omega, [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [], [m, l, g, a], [u],
         {1: a * cos(3 * time), 3: 2 * u}, {"theta[2].force": -1, "theta[4].force": -1},
     )  # fmt: skip
@@ -132,7 +132,7 @@ def arm():
     elbow = (l * cos(alpha), l * sin(alpha))
     hand = (elbow[0] + 2 * l * cos(alpha + beta), elbow[1] + 2 * l * sin(alpha + beta))
     weight = m * g * (elbow[1] + 3 * hand[1])
-    return held(q, v, [(m, elbow), (3 * m, hand)], weight, [], [m, l, g], [u], {0: u, 1: 0}, {"alpha.force": -1, "beta.force": -1})
+    return constrained_system(q, v, [(m, elbow), (3 * m, hand)], weight, [], [m, l, g], [u], {0: u, 1: 0}, {"alpha.force": -1, "beta.force": -1})
 
 
 def moved(name):
@@ -147,7 +147,7 @@ def seat():
     q, rates = [x, y, s, zb], [v, w, vs, rate]
     damping = b * (v - rate) ** 2 / 2 + a * (w - v) ** 2 / 2
     potential = k * (x + s - zb) ** 2 / 2 + 2 * k * (y - x) ** 2 / 2 + M * g * x + m * g * y
-    return held(
+    return constrained_system(
         q, rates, [(M, (x,)), (m, (y,))], potential, [(F, x + zb**2 / h / 2)], [M, m, g, b, k, a, h],
         [F, acceleration], {2: 0, 3: acceleration}, {"s.force": 1}, dissipation=damping,
     )  # fmt: skip
@@ -162,7 +162,7 @@ def hoist(count=3):
         length = L if i == 0 else l
         x, y = x + length * sin(theta[i]), y - length * cos(theta[i])
         bobs.append((x, y))
-    return held(
+    return constrained_system(
         [*theta, xp, L], [*omega, rate, drawn], [(m, bob) for bob in bobs], sum(m * g * bob[1] for bob in bobs), [],
         [m, l, g], [acceleration, jerked], {count: acceleration, count + 1: jerked}, {},
     )  # fmt: skip
@@ -176,7 +176,7 @@ def table():
     x, y = r * cos(phi), r * sin(phi)
     potential = -b * (x * velocity(y, q, v) - y * velocity(x, q, v)) / 2 + k * r**2 / 2
     further = J * (vr / l + rate) ** 2 / 2
-    return held(q, v, [(m, (x, y))], potential, [], [m, l, b, k, J], [acceleration], {1: acceleration}, {}, further=further)
+    return constrained_system(q, v, [(m, (x, y))], potential, [], [m, l, b, k, J], [acceleration], {1: acceleration}, {}, further=further)
 
 
 CASES = {

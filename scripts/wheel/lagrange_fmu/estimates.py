@@ -134,20 +134,20 @@ def estimate(values, limits, slopes, residuals, accuracy, noise_is_known, loss):
     correlation = unit / np.outer(*[np.where(spread > 0, spread, 1.0)] * 2)
     deviations = np.sqrt(variance) * spread / sizes if np.isfinite(variance) else np.full(len(values), np.inf)
     deviations[null.any(axis=0)] = np.inf
-    law = norm if noise_is_known else student(max(1, freedom))
+    distribution = norm if noise_is_known else student(max(1, freedom))
     reach = AT_LIMIT * np.where(np.isfinite(deviations), deviations, 0.0) + NEAR * np.where(np.isfinite(limits), abs(limits), abs(values))
     is_near = abs(values - limits) <= reach
     step = -unit @ (slopes / sizes).T @ (loss(residuals**2)[1] * residuals) / sizes
-    intervals = [_interval(*parts, law) for parts in zip(values, step, deviations, limits.T, is_near.T)]
+    intervals = [_interval(*parts, distribution) for parts in zip(values, step, deviations, limits.T, is_near.T)]
     values = np.where(is_near[0], limits[0], np.where(is_near[1], limits[1], values))
     return Estimate(values, deviations, np.array(intervals), correlation, _sparse(null, sizes), is_near.any(axis=0), freedom)
 
 
-def _interval(value, step, deviation, limits, is_near, law):
+def _interval(value, step, deviation, limits, is_near, distribution):
     """
     Return the interval (low, high) of probability PROBABILITY within the limits.
 
-    For a value at a limit it is that of the distribution `law` truncated at the limit, with its mean at the unconstrained minimum, value + step.
+    For a value at a limit it is that of `distribution`, truncated at the limit, with its mean at the unconstrained minimum, value + step.
     """
     low, high = limits
     if not np.isfinite(deviation):
@@ -156,10 +156,10 @@ def _interval(value, step, deviation, limits, is_near, law):
         side = 1.0 if is_near[0] else -1.0
         end = low if is_near[0] else high
         cut = side * (end - value - step) / deviation
-        beyond = law.isf((1 - PROBABILITY) * law.sf(cut)) - cut
+        beyond = distribution.isf((1 - PROBABILITY) * distribution.sf(cut)) - cut
         far = end + side * deviation * (beyond if np.isfinite(beyond) else 0.0)
         return (end, min(far, high)) if is_near[0] else (max(far, low), end)
-    width = law.ppf((1 + PROBABILITY) / 2) * deviation
+    width = distribution.ppf((1 + PROBABILITY) / 2) * deviation
     return max(low, value - width), min(high, value + width)
 
 

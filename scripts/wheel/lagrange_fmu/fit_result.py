@@ -27,7 +27,7 @@ class Fit:
     deviations: dict  # standard deviations; infinite for a value that the data do not determine
     intervals: dict  # confidence intervals of 95 %, (low, high), within the limits
     correlation: np.ndarray  # in the order of the values
-    untold: list  # undetermined directions, each a dict of changes by name: changes together that do not change the measured motion
+    undetermined: list  # undetermined directions, each a dict of changes by name: changes together that do not change the measured motion
     data: list  # the structured array of each experiment
     motions: list  # for each experiment the measured names, and the fitted motion at the times of the data
     rms: dict  # root mean square of the residuals, by measured name
@@ -42,7 +42,7 @@ class Fit:
         width = max(map(len, self.values))
         lines = [f"{name.ljust(width)}  {self._in_words(name)}" for name in self.values]
         lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
-        return "\n".join([*lines, *map(in_words, self.untold), *self.remarks])
+        return "\n".join([*lines, *map(in_words, self.undetermined), *self.remarks])
 
     __repr__ = __str__
 
@@ -101,7 +101,7 @@ class Fit:
         rows = "".join(
             f"<tr><td>{html.escape(name)}</td><td>{self._in_words(name)}</td><td>{low:.6g} ... {high:.6g}</td></tr>" for name, (low, high) in self.intervals.items()
         )
-        remarks = "".join(f"<p>{html.escape(remark)}</p>" for remark in [*map(in_words, self.untold), *self.remarks])
+        remarks = "".join(f"<p>{html.escape(remark)}</p>" for remark in [*map(in_words, self.undetermined), *self.remarks])
         text = f"""<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Fit of {html.escape(self.name)}</title>
 <style>:root{{color-scheme:light dark}}body{{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}}td,th{{padding:.2rem 1rem .2rem 0;text-align:left}}img{{max-width:100%;background:#fff}}</style>
 </head><body><h1>Fit of {html.escape(self.name)}</h1><table><tr><th>name</th><th>value and standard deviation</th><th>95 % interval</th></tr>{rows}</table>{remarks}

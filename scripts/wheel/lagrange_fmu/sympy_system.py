@@ -43,9 +43,9 @@ class _Content:
                 raise Problem(f"{speed} is no speed; expected a dynamicsymbol or a name")
         self.velocity_of = dict(zip(speeds or [], self.velocities))
         rates = self._rates(states)
-        in_motion = self._prepared([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
-        forces = self._prepared(_generalized_forces(method))
-        watched = {name: self._prepared(expressions) for name, expressions in watched.items()}
+        in_motion = self._substituted([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
+        forces = self._substituted(_generalized_forces(method))
+        watched = {name: self._substituted(expressions) for name, expressions in watched.items()}
         others = sum(watched.values(), forces)
 
         self.inputs = self._derivatives_of_inputs(in_motion, others, rates)
@@ -58,7 +58,7 @@ class _Content:
         self.states = {state: rate.xreplace(symbol_of) for state, rate in zip(self.rate_of, rates)}
         self.watched = {name: [expression.xreplace(symbol_of) for expression in expressions] for name, expressions in watched.items()}
 
-    def _prepared(self, expressions):
+    def _substituted(self, expressions):
         """Return expressions with velocities in place of speeds, and with rates in place of the derivatives of states."""
         derivatives = {state.diff(self.time): rate for state, rate in self.rate_of.items()}
         found = [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
@@ -74,7 +74,7 @@ class _Content:
             if not isinstance(state, AppliedUndef) or state in (*self.coordinates, *self.velocity_of):
                 raise Problem(f"{state} is no state; expected a dynamicsymbol or a name that is neither a coordinate nor a speed")
             self.rate_of[state] = prepared(rate).xreplace(self.velocity_of)
-        rates = self._prepared(self.rate_of.values())
+        rates = self._substituted(self.rate_of.values())
         for state, rate in zip(self.rate_of, rates):
             if any(derivative.expr in self.rate_of for derivative in rate.atoms(sympy.Derivative)):
                 raise Problem(f"the rate of {state} needs itself, or a second derivative of a state; expected rates by states, coordinates, velocities and inputs")
@@ -209,7 +209,7 @@ def _watched(content, points, units):
             yield "output", {"name": content.all_names.add(name)} | units.get(name, {}), text_of(expression, f"the output {name}")
 
 
-def _places(points, frame):
+def _positions(points, frame):
     """Return the two or three coordinates of each point; vectors are expressed in the frame."""
     places = {}
     for name, place in points.items():
@@ -286,7 +286,7 @@ def from_sympy(
             f"a {type(method).__name__} has no energies to write; expected a LagrangesMethod(L, q, forcelist=..., bodies=..., frame=N)"
             " of the same bodies and loads, with L = Lagrangian(N, *bodies)"
         )
-    points, outputs = _places(points or {}, method.inertial), outputs or {}
+    points, outputs = _positions(points or {}, method.inertial), outputs or {}
     both = sorted(set(points) & set(outputs))
     if both:
         raise Problem(f"{both[0]} is a point and an output; expected two names")
