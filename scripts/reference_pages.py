@@ -52,7 +52,7 @@ def sections_of(text):
     return sections
 
 
-def place_of(anchor, sections):
+def page_of(anchor, sections):
     """Return the page of an anchor of the reference, with the anchor on it."""
     section = next(section for section in sections if section.anchor == anchor)
     return section.page if section.page == f"{FOLDER}/{anchor}.md" else f"{section.page}#{anchor}"
@@ -67,7 +67,7 @@ def relink(text, old, new, sections):
             return match.group(0)
         target = posixpath.normpath(posixpath.join(posixpath.dirname(old), path)) if path else old
         if target == REFERENCE and anchor:
-            target, _, anchor = place_of(anchor, sections).partition("#")
+            target, _, anchor = page_of(anchor, sections).partition("#")
         place = "" if target == new and anchor else posixpath.relpath(target, posixpath.dirname(new) or ".")
         return f"]({place}{'#' * bool(anchor)}{anchor})"
 

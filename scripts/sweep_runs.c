@@ -179,7 +179,7 @@ static bool go(const struct Course *course, fmi2FMUstate state, double begin, do
          (end <= begin || course->f->step(course->component, begin, end - begin, fmi2False) <= fmi2Warning);
 }
 
-enum { CROWD = 100 };              /* events of a step whose times are searched */
+enum { EVENT_ROWS = 100 };         /* events of a step whose times are searched */
 static const double found = 1e-10; /* accuracy of the times, relative to the step */
 
 /*
@@ -188,7 +188,7 @@ static const double found = 1e-10; /* accuracy of the times, relative to the ste
  */
 static void sample_events(struct Course *course, fmi2FMUstate *state, double begin, double end, int total, int count) {
   double enough = found * (end - begin);
-  for (int i = 0; i < CROWD && count < total; i++) {
+  for (int i = 0; i < EVENT_ROWS && count < total; i++) {
     double low = begin, high = end;
     while (high - low > enough) {
       double middle = 0.5 * (low + high);
@@ -235,10 +235,10 @@ static const char *step(struct Course *course, double begin, double end) {
 static void begin_records(const struct Sweep *sweep, double *recorded) {
   for (size_t i = 0; i < sweep->record_count; i++) {
     size_t kind = sweep->records[i].kind;
-    recorded[i] = kind == RECORD_MAXIMUM                                 ? -INFINITY
-                  : kind == RECORD_MINIMUM                               ? INFINITY
+    recorded[i] = kind == RECORD_MAXIMUM                              ? -INFINITY
+                  : kind == RECORD_MINIMUM                            ? INFINITY
                   : kind == RECORD_EVENTS || kind == RECORD_EVENTS_OF ? 0.0
-                                                                         : NAN;
+                                                                      : NAN;
   }
 }
 

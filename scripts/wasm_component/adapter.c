@@ -122,12 +122,12 @@ static struct CountResult *count_result(fmi3Status status, size_t count) {
 /* --- Instances --- */
 
 __attribute__((import_module("callbacks"), import_name("log-message"))) void
-tell_host(const char *instance, size_t instance_count, int32_t status, const char *category, size_t category_count,
-          const char *message, size_t message_count);
+report_to_host(const char *instance, size_t instance_count, int32_t status, const char *category, size_t category_count,
+               const char *message, size_t message_count);
 
 static void hand_on(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
   const char *name = environment;
-  tell_host(name, strlen(name), (int32_t)status, category, strlen(category), message, strlen(message));
+  report_to_host(name, strlen(name), (int32_t)status, category, strlen(category), message, strlen(message));
 }
 
 static struct Component *component_of(fmi3Instance instance, char *name) {
@@ -223,11 +223,11 @@ EXPORT("update-discrete-states") void *update_discrete_states(struct Component *
       uint8_t status;
     };
   } result;
-  struct Discrete *told = &result.discrete;
+  struct Discrete *reported = &result.discrete;
   memset(&result, 0, sizeof result);
-  fmi3Status status =
-      fmi3UpdateDiscreteStates(self->instance, &told->new_states_needed, &told->terminates, &told->nominals_changed,
-                               &told->states_changed, &told->has_next_event, &told->next_event);
+  fmi3Status status = fmi3UpdateDiscreteStates(self->instance, &reported->new_states_needed, &reported->terminates,
+                                               &reported->nominals_changed, &reported->states_changed,
+                                               &reported->has_next_event, &reported->next_event);
   result.failed = has_failed(status);
   if (result.failed) result.status = (uint8_t)status;
   return &result;
@@ -241,10 +241,10 @@ EXPORT("do-step") void *do_step(struct Component *self, double time, double size
       uint8_t status;
     };
   } result;
-  struct Step *told = &result.step;
+  struct Step *reported = &result.step;
   memset(&result, 0, sizeof result);
-  fmi3Status status = fmi3DoStep(self->instance, time, size, no_set_before, &told->event_handling_needed,
-                                 &told->terminates, &told->early_return, &told->last_successful_time);
+  fmi3Status status = fmi3DoStep(self->instance, time, size, no_set_before, &reported->event_handling_needed,
+                                 &reported->terminates, &reported->early_return, &reported->last_successful_time);
   result.failed = has_failed(status);
   if (result.failed) result.status = (uint8_t)status;
   return &result;
@@ -258,10 +258,10 @@ EXPORT("completed-integrator-step") void *completed_integrator_step(struct Compo
       uint8_t status;
     };
   } result;
-  struct CompletedStep *told = &result.step;
+  struct CompletedStep *reported = &result.step;
   memset(&result, 0, sizeof result);
   fmi3Status status =
-      fmi3CompletedIntegratorStep(self->instance, no_set_before, &told->enter_event_mode, &told->terminates);
+      fmi3CompletedIntegratorStep(self->instance, no_set_before, &reported->enter_event_mode, &reported->terminates);
   result.failed = has_failed(status);
   if (result.failed) result.status = (uint8_t)status;
   return &result;

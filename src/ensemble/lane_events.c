@@ -78,10 +78,10 @@ Mask lane_events_accelerations(struct LaneEvents *events, Lanes time) {
 static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feels_forces, Lanes *indicator) {
   struct LaneSteps *steps = events->steps;
   lane_steps_take_state(steps, time);
-  Mask refused = feels_forces ? lane_events_accelerations(events, time) : (Mask){0};
+  Mask failed = feels_forces ? lane_events_accelerations(events, time) : (Mask){0};
   struct Point point = lane_steps_point(steps, time);
   lagrangian.switches->indicators(&point, events->acceleration, indicator);
-  return refused;
+  return failed;
 }
 
 /*

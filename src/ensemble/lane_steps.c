@@ -203,13 +203,13 @@ static Lanes defect(struct LaneSteps *steps, Lanes s) {
   Lanes largest = {0};
   for (size_t i = 0; i < first; i++) steps->change[i] = change(steps, i, s);
   for (size_t i = first; i < states; i++) steps->change[i] = change_and_rate(steps, i, s, &steps->rate[i]);
-  Mask refused = right_side(steps, s, 0.0, steps->derivative);
+  Mask failed = right_side(steps, s, 0.0, steps->derivative);
   for (size_t i = first; i < states; i++) {
     Lanes exact = steps->derivative[i];
     Lanes difference = lanes_absolute(exact - steps->rate[i]) - rounding * DBL_EPSILON * lanes_absolute(exact);
     largest = larger_or_infinite(largest, difference * s * steps->unit[i]);
   }
-  return lanes_select(refused, LANES_OF(INFINITY), largest / allowed_defect(steps));
+  return lanes_select(failed, LANES_OF(INFINITY), largest / allowed_defect(steps));
 }
 
 /* Does the same; if the coefficients do not limit the step, also inside it. */
@@ -224,13 +224,13 @@ static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
 /* Returns the effect of rounding the state at s on the right side, in units of defect(), which came before. */
 static Lanes rounding_of_right_side(struct LaneSteps *steps, Lanes s) {
   Lanes largest = {0};
-  Mask refused = right_side(steps, s, 4.0 * DBL_EPSILON, steps->rate);
-  refused |= right_side(steps, s, 0.0, steps->derivative);
+  Mask failed = right_side(steps, s, 4.0 * DBL_EPSILON, steps->rate);
+  failed |= right_side(steps, s, 0.0, steps->derivative);
   for (size_t i = lagrangian.coordinate_count; i < lagrangian.state_count; i++) {
     Lanes moved = lanes_absolute(steps->rate[i] - steps->derivative[i]) * s * steps->unit[i];
     largest = lanes_larger(moved, largest);
   }
-  return lanes_select(refused, (Lanes){0}, largest / allowed_defect(steps));
+  return lanes_select(failed, (Lanes){0}, largest / allowed_defect(steps));
 }
 
 /* --- The step ------------------------------------------------------------------------------------------------------ */

@@ -124,7 +124,7 @@ class EventMotion(Motion):
             self.point.messages.clear()
             time, both, saved = known
             self.model.setFMUState(saved)
-            rows += self.go_on(time, both, times[len(rows) :])
+            rows += self.continue_to(time, both, times[len(rows) :])
         self.model.freeFMUState(known[2])
         return as_arrays(rows)
 

@@ -81,7 +81,7 @@ def _column(point, at, i, share):
     moved, logged = {}, len(point.messages)
     for k in (1, -1, 2, -2):
         try:
-            moved[k] = point.held(at, at + k * step)
+            moved[k] = point.projected(at, at + k * step)
         except FMICallException as problem:
             return None, "; ".join(point.messages[logged:] or [str(problem)])
         if moved[k] is None:

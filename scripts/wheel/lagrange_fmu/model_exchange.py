@@ -90,15 +90,15 @@ class Point:
             self.model.setReal([self.references[name] for name in values], list(values.values()))
         self.model.enterInitializationMode()
         self.model.exitInitializationMode()
-        return self._go_on()
+        return self._continue()
 
-    def _go_on(self):
+    def _continue(self):
         """Leave event mode for continuous-time mode; return the states."""
         self.model.newDiscreteStates()
         self.model.enterContinuousTimeMode()
         return self.read(self.states)
 
-    def held(self, at, states):
+    def projected(self, at, states):
         """
         Project `states` onto the constraints, among them the contacts that are closed and the friction that sticks at the states `at`.
 
@@ -111,7 +111,7 @@ class Point:
             return self.start(states)
         self.set_states(states)
         self.model.enterEventMode()
-        moved = self._go_on()
+        moved = self._continue()
         return moved if self.constraining() == constraining else None
 
     def constraining(self):

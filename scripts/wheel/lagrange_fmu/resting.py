@@ -84,8 +84,8 @@ class _Search:
         self.outputs = [name for name in hold if name not in point.states]
         self.wanted = np.array([hold[name] for name in [*(point.states[i] for i in self.places), *self.outputs]])
         self.size = np.array([point.nominals[name] for name in [*point.states, *vary]])
-        held = [point.nominals[point.states[i]] for i in self.places] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
-        self.weight = np.array([*(1 / self.size[: len(point.states)]), *(PRECEDENCE / np.array(held))])
+        fixed = [point.nominals[point.states[i]] for i in self.places] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
+        self.weight = np.array([*(1 / self.size[: len(point.states)]), *(PRECEDENCE / np.array(fixed))])
         self.jacobian, self.reach, self.course = None, NUDGE, np.zeros(len(self.size))
 
     def go_to(self, values):
@@ -113,8 +113,8 @@ class _Search:
             basis = np.eye(count)
         self.go_to(values)
         names = [*point.states, *self.vary]
-        held = np.eye(len(names))[self.places]
-        self.jacobian = np.vstack([point.jacobian(point.derivatives, names), held, point.jacobian(self.outputs, names)])
+        fixed = np.eye(len(names))[self.places]
+        self.jacobian = np.vstack([point.jacobian(point.derivatives, names), fixed, point.jacobian(self.outputs, names)])
         directions = np.zeros((len(names), basis.shape[1] + len(self.vary)))
         directions[:count, : basis.shape[1]] = basis
         directions[count:, basis.shape[1] :] = np.eye(len(self.vary))

@@ -67,7 +67,7 @@ class Saltation:
         self.time, self.state, self.before, self.indicator = time, state, before, indicator
         motion.place(*before, inputs)
         self.saved = self.model.getFMUState()
-        is_held = self.moves_onto_constraints()
+        is_constrained = self.moves_onto_constraints()
         self.model.setFMUState(self.saved)
         motion.place(time, state, inputs)
         self.rates = np.array(self.model.getReal(motion.rate_references))
@@ -75,8 +75,8 @@ class Saltation:
         after = self.update()
         self.noise = ROUNDING / ROUGH * np.append(np.maximum(abs(state), abs(after)), max(1.0, abs(time)))
         self.modes = self.point.modes()
-        self.back, self.own = EARLY * (time - before[0]) if is_held else 0.0, 0.0
-        if is_held:
+        self.back, self.own = EARLY * (time - before[0]) if is_constrained else 0.0, 0.0
+        if is_constrained:
             self.model.setFMUState(self.saved)
             self.own = self.by_constraints(state)
 

@@ -156,9 +156,9 @@ class Motion:
         inputs(time) returns names and values, which are smooth between the times `kinks`.
         """
         both = self.start(values or {})
-        return as_arrays([self.read(times[0], both, inputs), *self.go_on(times[0], both, times[1:], inputs, kinks)])
+        return as_arrays([self.read(times[0], both, inputs), *self.continue_to(times[0], both, times[1:], inputs, kinks)])
 
-    def go_on(self, begin, both, times, inputs=None, kinks=()):
+    def continue_to(self, begin, both, times, inputs=None, kinks=()):
         """Continue from the state `both` at the time `begin`; return a row of values and derivatives for each of the times."""
         due, rows = [*times], []
         for end in [*kinks, *times[-1:]]:
@@ -194,8 +194,8 @@ class Motion:
         """
         state = both[: len(self.state_references)]
         self.place(time, state * (1 + AWAY) + AWAY, inputs)
-        is_held, _ = self.model.completedIntegratorStep()
-        if not is_held or self.point.indicator_count > 0:
+        is_constrained, _ = self.model.completedIntegratorStep()
+        if not is_constrained or self.point.indicator_count > 0:
             return None
         self.place(time, state, inputs)
         steepest = np.argmax(np.max(np.abs(self.point.jacobian(self.point.derivatives, self.point.states)), axis=1))

@@ -93,7 +93,7 @@ class _Printer(StrPrinter):
     _print_Max = _print_Min = _print_extremum
 
 
-def prepared(expression):
+def normalized(expression):
     """Carry out derivatives, rewrite functions that the language lacks, and replace numbers such as E by floats, except pi."""
     expression = sympy.sympify(expression).doit()
     for function, rewrite in REWRITTEN.items():
@@ -103,7 +103,7 @@ def prepared(expression):
 
 def text_of(expression, where):
     """
-    Return the text of a prepared expression, all of whose symbols have valid names.
+    Return the text of a normalized expression, all of whose symbols have valid names.
 
     Raise Problem, whose text begins with `where`, if the language has no counterpart.
     """

@@ -11,7 +11,7 @@ from sympy.core.function import AppliedUndef
 from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, Vector, dynamicsymbols
 
 from .problem import Problem
-from .sympy_expressions import Names, prepared, text_of
+from .sympy_expressions import Names, normalized, text_of
 from .variables import nearest
 from .whole_files import write_whole
 
@@ -61,19 +61,19 @@ class _Content:
     def _substituted(self, expressions):
         """Return expressions with velocities in place of speeds, and with rates in place of the derivatives of states."""
         derivatives = {state.diff(self.time): rate for state, rate in self.rate_of.items()}
-        found = [prepared(expression).xreplace(self.velocity_of) for expression in expressions]
+        found = [normalized(expression).xreplace(self.velocity_of) for expression in expressions]
         for _ in derivatives:
             found = [expression.xreplace(derivatives) for expression in found]
         return found
 
     def _rates(self, states):
-        """Keep the rate of each state of first order as it is given, and return it as prepared."""
+        """Keep the rate of each state of first order as it is given, and return it normalized."""
         self.rate_of = {}
         for state, rate in states.items():
             state = dynamicsymbols(state) if isinstance(state, str) else state
             if not isinstance(state, AppliedUndef) or state in (*self.coordinates, *self.velocity_of):
                 raise Problem(f"{state} is no state; expected a dynamicsymbol or a name that is neither a coordinate nor a speed")
-            self.rate_of[state] = prepared(rate).xreplace(self.velocity_of)
+            self.rate_of[state] = normalized(rate).xreplace(self.velocity_of)
         rates = self._substituted(self.rate_of.values())
         for state, rate in zip(self.rate_of, rates):
             if any(derivative.expr in self.rate_of for derivative in rate.atoms(sympy.Derivative)):

@@ -112,9 +112,9 @@ static void hold_coordinates(struct Model *model) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     size_t coordinate = coordinate_of(model, &switches->frictions[i], &coefficient);
     if (coordinate == n) continue;
-    Node is_unheld = is_free_beside(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
+    Node is_removed = is_free_beside(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
     bool *is_replaced = allocate(n, sizeof *is_replaced);
-    replace_velocity(model, gears, gear_count, coordinate, is_unheld, is_replaced, replacements);
+    replace_velocity(model, gears, gear_count, coordinate, is_removed, is_replaced, replacements);
   }
   substitute_in_observers(model, replacements);
 }
@@ -122,15 +122,15 @@ static void hold_coordinates(struct Model *model) {
 /* --- Other velocities, such as v - vBelt --- */
 
 /* If value is c f plus a term without velocities, sets *held to that term, the value at f = 0; else returns false. */
-static bool is_along(struct Graph *graph, Node value, Node f, Node *held) {
+static bool is_along(struct Graph *graph, Node value, Node f, Node *rest) {
   const struct Gradient by = gradient_by_kinds(graph, f, OF_VELOCITIES),
                         of = gradient_by_kinds(graph, value, OF_VELOCITIES);
   bool are_same = of.count == by.count && of.count > 0;
   for (size_t i = 0; i < of.count && are_same; i++) are_same = of.symbols[i] == by.symbols[i];
   if (!are_same) return false;
   Node ratio = divide(graph, of.values[0], by.values[0]);
-  *held = simplify_fraction(graph, subtract(graph, value, multiply(graph, ratio, f)));
-  return !graph_depends_on(graph, *held, VELOCITY);
+  *rest = simplify_fraction(graph, subtract(graph, value, multiply(graph, ratio, f)));
+  return !graph_depends_on(graph, *rest, VELOCITY);
 }
 
 static void hold_indicators(struct Model *model) {
@@ -141,9 +141,9 @@ static void hold_indicators(struct Model *model) {
     Node coefficient = ZERO;
     bool has_other = !friction->is_given && coordinate_of(model, friction, &coefficient) == model->coordinates.count;
     for (size_t j = 0; j < switches->branch_count && has_other; j++) {
-      Node *indicator = &switches->branches[j].indicator, held;
-      if (is_along(graph, *indicator, friction->velocity, &held))
-        *indicator = choose_node(graph, is_free(graph, friction), *indicator, held);
+      Node *indicator = &switches->branches[j].indicator, rest;
+      if (is_along(graph, *indicator, friction->velocity, &rest))
+        *indicator = choose_node(graph, is_free(graph, friction), *indicator, rest);
     }
   }
 }

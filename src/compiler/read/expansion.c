@@ -27,7 +27,7 @@ static const double index_limit = 1e9;
  * States of a <for>, stored as addresses in its field _private: refused has an error, backwards always ran from a
  * larger to a smaller number, repeated ran at least once.
  */
-static char refused, backwards, repeated;
+static char rejected, backwards, repeated;
 
 static void expand_children(struct Reader *reader, xmlNodePtr parent);
 
@@ -59,16 +59,16 @@ static void check_limit(struct Reader *reader, xmlNodePtr node) {
 static void expand_repetition(struct Reader *reader, xmlNodePtr node) {
   struct Scope *scope = reader->scope;
   double from = 0, to = -1;
-  if (node->_private == &refused) return;
+  if (node->_private == &rejected) return;
   char *index_name = attribute(node, "index"), *index = scope_full_name(scope, index_name);
   if (!number_attribute(reader, node, "from", &from) || !number_attribute(reader, node, "to", &to) ||
       !check_repetition(reader, node, index, from, to)) {
-    node->_private = &refused;
+    node->_private = &rejected;
     return;
   }
   if (from <= to) node->_private = &repeated;
   else if (to < from - 1 && node->_private == NULL) node->_private = &backwards;
-  for (double i = from; i <= to && node->_private != &refused && graph_limit(reader->model->graph) == NULL; i++) {
+  for (double i = from; i <= to && node->_private != &rejected && graph_limit(reader->model->graph) == NULL; i++) {
     graph_work(reader->model->graph, REPETITION_WORK);
     scope_set_index(scope, index, i);
     definitions_enter(reader->definitions,
@@ -133,11 +133,11 @@ void expand(struct Reader *reader, xmlNodePtr root) {
 static bool check_loops(struct Reader *reader, const struct Loop *loops) {
   const struct Loop *taken = NULL;
   for (const struct Loop *loop = loops; loop != NULL; loop = loop->outer) {
-    if (loop->node->_private == &refused) return false;
+    if (loop->node->_private == &rejected) return false;
     if (scope_find(reader->scope, loop->index) != NULL) taken = loop;
   }
   if (taken == NULL) return true;
-  taken->node->_private = &refused;
+  taken->node->_private = &rejected;
   source_enter(reader, taken->source);
   report_index(reader, taken->node);
   return false;

@@ -157,8 +157,8 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
       (struct ContactImpulses){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
   size_t count = impulses->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
   size_t scratch = rows + 2 * n + values;
-  impulses->block =
-      scratch_take(resolution->instance, SCRATCH_PUSHES, (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+  impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES,
+                                 (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
   if (impulses->block == NULL) {
     solver_is_out_of_memory(resolution->instance);
     return false;
@@ -185,6 +185,6 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
 }
 
 void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses) {
-  scratch_return(resolution->instance, SCRATCH_PUSHES);
+  scratch_return(resolution->instance, SCRATCH_IMPULSES);
   impulses->block = NULL;
 }

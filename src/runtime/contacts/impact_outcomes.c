@@ -15,7 +15,7 @@
 #include "contacts/impacts.h"
 
 /* Impulses up to which all combinations are tried: at most 3^8 = 6561. */
-enum { MOST_PUSHES = 8 };
+enum { MOST_IMPULSES = 8 };
 
 /* Relative to the largest impulse, but at least to 1: violations below this are rounding errors. */
 static const double rounded_impulse = 1e-9;
@@ -23,11 +23,11 @@ static const double rounded_impulse = 1e-9;
 /* Scaled such that W_ii = 1 for each impulse, and to a largest rate of 1. */
 struct Combination {
   const struct ContactImpulses *impulses;
-  double unit[MOST_PUSHES], rate[MOST_PUSHES], impulse[MOST_PUSHES];
-  double scale[MOST_PUSHES]; /* factor from scaled to physical impulses */
-  int way[MOST_PUSHES];      /* contact: 1 if it presses, else 0; friction: sign of its sliding, 0 if it sticks */
-  size_t sought[MOST_PUSHES], sought_count; /* rows with a rate of 0, whose impulses are unknown */
-  double equations[MOST_PUSHES * (MOST_PUSHES + 1)];
+  double unit[MOST_IMPULSES], rate[MOST_IMPULSES], impulse[MOST_IMPULSES];
+  double scale[MOST_IMPULSES]; /* factor from scaled to physical impulses */
+  int way[MOST_IMPULSES];      /* contact: 1 if it presses, else 0; friction: sign of its sliding, 0 if it sticks */
+  size_t sought[MOST_IMPULSES], sought_count; /* rows with a rate of 0, whose impulses are unknown */
+  double equations[MOST_IMPULSES * (MOST_IMPULSES + 1)];
 };
 
 static bool is_contact_in(const struct Combination *combination, size_t row) {
@@ -130,12 +130,12 @@ static void fill_units(struct Combination *combination, const double *rate) {
 bool impact_has_others(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                        const double *impulse) {
   (void)resolution;
-  if (impulses->count > MOST_PUSHES) return false;
+  if (impulses->count > MOST_IMPULSES) return false;
   struct Combination combination = {.impulses = impulses};
   bool is_other = false;
   fill_units(&combination, rate);
   do {
-    double candidate[MOST_PUSHES];
+    double candidate[MOST_IMPULSES];
     if (!find_combined_impulses(&combination) || !fulfils_law(&combination)) continue;
     for (size_t i = 0; i < impulses->count; i++) candidate[i] = combination.impulse[i] * combination.scale[i];
     is_other = is_other_outcome(impulses, candidate, impulse);

@@ -1,6 +1,6 @@
 /* Inputs in constraints: prescribed motion. */
-#ifndef GUIDES_H
-#define GUIDES_H
+#ifndef PRESCRIBED_INPUTS_H
+#define PRESCRIBED_INPUTS_H
 
 #include "instance/instance.h"
 

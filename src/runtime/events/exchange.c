@@ -57,9 +57,9 @@ static void complete_indicators(struct Instance *instance, double *value) {
   size_t count = indicator_count(lagrangian.switches);
   double *completed = instance->switching_work + count; /* values may be stored before it */
   struct Point point = instance_point(instance);
-  bool lacks = false;
-  for (size_t i = 0; i < count; i++) lacks |= isnan(value[i]);
-  if (!lacks || !exchange_return_to_domain(instance, &point)) return;
+  bool has_gaps = false;
+  for (size_t i = 0; i < count; i++) has_gaps |= isnan(value[i]);
+  if (!has_gaps || !exchange_return_to_domain(instance, &point)) return;
   if (!indicators_at(instance, point.time, point.state, completed)) return;
   for (size_t i = 0; i < count; i++)
     if (isnan(value[i])) value[i] = completed[i];

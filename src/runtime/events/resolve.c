@@ -196,8 +196,8 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
     resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);
   if (problem == NULL) problem = resolve_in_rounds(&resolution);
-  bool lacks = problem == no_accelerations || problem == no_first_accelerations;
-  bool is_explained = lacks && explain_jam(&resolution);
+  bool is_missing = problem == no_accelerations || problem == no_first_accelerations;
+  bool is_explained = is_missing && explain_jam(&resolution);
   if (problem == no_accelerations && !is_explained) report_missing_for_frictions(&resolution);
   if (problem == NULL) problem = branches_check(&resolution);
   if (problem == NULL) problem = push(&resolution);

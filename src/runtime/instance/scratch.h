@@ -7,7 +7,7 @@
 
 /* The users; each has a block of its own. */
 enum ScratchUse {
-  SCRATCH_PUSHES,
+  SCRATCH_IMPULSES,
   SCRATCH_IMPACT,
   SCRATCH_RESTING,
   SCRATCH_CONES,

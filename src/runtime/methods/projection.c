@@ -307,7 +307,7 @@ static void log_redundant(const struct Instance *instance, const struct Work *wo
                   instance->fmu_state->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }
 
-static bool refuse(struct Instance *instance, size_t constraint, const char *what) {
+static bool report_violated(struct Instance *instance, size_t constraint, const char *what) {
   struct Work work = work_of(instance);
   if (instance->singular != 0) {
     log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
@@ -382,10 +382,10 @@ static bool make_consistent(struct Instance *instance) {
   if (violated < lagrangian.constraints.count) {
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
     evaluate_residual(instance, time, instance->state, POSITIONS);
-    return refuse(instance, violated, "coordinates");
+    return report_violated(instance, violated, "coordinates");
   }
   violated = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
-  if (violated < lagrangian.constraints.count) return refuse(instance, violated, "velocities");
+  if (violated < lagrangian.constraints.count) return report_violated(instance, violated, "velocities");
   log_redundant(instance, &work);
   if (keeps_fixed && !keep_fixed(instance, work.before)) return false;
   log_moves(instance, work.before, instance->fmu_state->tolerance);

@@ -53,7 +53,7 @@ static enum Comparison parse_comparison(struct Parser *parser) {
  * Reports a comparison by =: along a motion two numbers are equal at an instant only, which no test between steps
  * finds.
  */
-static void refuse_equality(struct Parser *parser) {
+static void reject_equality(struct Parser *parser) {
   skip_space(parser);
   bool is_unequal = strncmp(parser->next, "!=", 2) == 0;
   if (is_unequal || *parser->next == '=')
@@ -82,7 +82,7 @@ static Node both(struct Graph *graph, Node first, Node second) {
 static Node parse_relation(struct Parser *parser) {
   struct Graph *graph = parser->graph;
   struct Quantity left = parse_sum(parser);
-  if (!parser->failed) refuse_equality(parser);
+  if (!parser->failed) reject_equality(parser);
   enum Comparison comparison = parser->failed ? NO_COMPARISON : parse_comparison(parser);
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {

@@ -11,7 +11,7 @@
 /* Switching functions that are compared per unit of work. */
 enum { COMPARISONS = 8 };
 
-static bool tells_of_contacts(const struct Switches *switches, const struct Cone *cone) {
+static bool depends_on_contacts(const struct Switches *switches, const struct Cone *cone) {
   bool determines = false;
   for (size_t i = 0; i < switches->contact_count; i++) determines |= cone_has(cone, switches->contacts[i].mode);
   for (size_t i = 0; i < switches->friction_count; i++) determines |= cone_has(cone, switches->frictions[i].reported);
@@ -27,7 +27,7 @@ unsigned kinds_that_decide(const struct Scope *scope, Node node) {
     const struct Branch *branch = &scope->switches->branches[i];
     if (cone_has(graph->cone, branch->mode)) kinds |= branch->kinds;
   }
-  if (tells_of_contacts(scope->switches, graph->cone)) kinds |= CONTACT_STATE;
+  if (depends_on_contacts(scope->switches, graph->cone)) kinds |= CONTACT_STATE;
   return kinds;
 }
 

@@ -68,7 +68,7 @@ static void write_site_force(const struct Writer *writer, const struct Link *end
                               axes[i], end->symbol, other->symbol));
 }
 
-static void write_pushes(const struct Writer *writer, const struct Transmission *transmission, const char *force) {
+static void write_forces(const struct Writer *writer, const struct Transmission *transmission, const char *force) {
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct Link *first = transmission->sites[i - 1], *second = transmission->sites[i];
     if (first->carrier == second->carrier) continue; /* of constant length */
@@ -97,7 +97,7 @@ void write_term(const struct Writer *writer, const struct Transmission *transmis
     set_content(definition, force);
     force = format_text("%s_force", name);
   }
-  write_pushes(writer, transmission, format_text("%s*%s", gear, force));
+  write_forces(writer, transmission, format_text("%s*%s", gear, force));
   for (size_t i = 0; i < transmission->count; i++) {
     const struct TransmissionTerm *term = &transmission->terms[i];
     if (is_of_actuator && !isnan(term->joint->actuator_limits[0]))

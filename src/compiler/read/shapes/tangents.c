@@ -18,7 +18,7 @@ static struct Vector velocity_of_material(struct Reader *reader, const struct Co
   return vector_add(graph, velocity, vector_cross(graph, spin, lever_arm));
 }
 
-static struct Vector oblique_axis(struct Graph *graph, int which) {
+static struct Vector tilted_axis(struct Graph *graph, int which) {
   struct Vector axis;
   for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, nonsymmetric[which][i]);
   return axis;
@@ -54,10 +54,10 @@ static bool tangents_in_plane(struct Graph *graph, struct Vector normal, struct 
  * (n + e3).
  */
 static void tangents_of_normal(struct Graph *graph, struct Vector normal, struct Vector tangents[2]) {
-  struct Vector third = oblique_axis(graph, 2), both = vector_add(graph, normal, third);
+  struct Vector third = tilted_axis(graph, 2), both = vector_add(graph, normal, third);
   Node whole = add(graph, ONE, vector_dot(graph, normal, third));
   for (int i = 0; i < 2; i++) {
-    struct Vector axis = oblique_axis(graph, i);
+    struct Vector axis = tilted_axis(graph, i);
     Node share = divide(graph, vector_dot(graph, normal, axis), whole);
     tangents[i] = vector_subtract(graph, axis, vector_scale(graph, share, both));
   }

@@ -220,7 +220,7 @@ void collect_joint(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* Returns the quantity whose force has this name. */
-static enum ConstrainedQuantity held_by(xmlNodePtr node, const char *force_name) {
+static enum ConstrainedQuantity quantity_of_force(xmlNodePtr node, const char *force_name) {
   char *joint = format_text("%.*s", (int)(strrchr(force_name, '.') - force_name), force_name);
   const enum ConstrainedQuantity *quantity = type_of(node)->quantities;
   while (strcmp(force_name_of(joint, node, *quantity), force_name) != 0) quantity++;
@@ -237,7 +237,7 @@ struct Quantity read_joint_force(struct Reader *reader, xmlNodePtr node, const c
   for (int end = 0; end < 2; end++) exchange_axes(&ends[end], shift_of(node));
   while (strcmp(constraint_force_name(&model->constraints.items[i]), name) != 0) i++;
   struct Variable *constraint = &model->constraints.items[i];
-  constraint->force_share = share_of(reader, node, held_by(node, name), &ends[0], &ends[1]);
+  constraint->force_share = share_of(reader, node, quantity_of_force(node, name), &ends[0], &ends[1]);
   return (struct Quantity){.node = multiply(model->graph, constraint->force_share, model->unknowns.forces[i]),
                            .dimension = constraint_force_dimension(constraint)};
 }

@@ -92,7 +92,7 @@ static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
  * Stops parsing at a document type declaration: by its entities a short file can expand to any length ("billion
  * laughs"). libxml2 passes its parser as the first argument.
  */
-static void refuse_document_type(void *context, const xmlChar *name, const xmlChar *external_id,
+static void reject_document_type(void *context, const xmlChar *name, const xmlChar *external_id,
                                  const xmlChar *system_id) {
   (void)name, (void)external_id, (void)system_id;
   xmlParserCtxtPtr parser = context;
@@ -106,7 +106,7 @@ static xmlDocPtr parse(const char *path, const char *text, size_t length, struct
   xmlParserCtxtPtr parser = xmlNewParserCtxt();
   if (parser == NULL) return NULL;
   parser->_private = diagnostics;
-  parser->sax->internalSubset = refuse_document_type;
+  parser->sax->internalSubset = reject_document_type;
   int errors = diagnostics->errors;
   enum { OPTIONS = XML_PARSE_NONET | XML_PARSE_NOCDATA };
   xmlDocPtr document = xmlCtxtReadMemory(parser, text, (int)length, path, NULL, OPTIONS);

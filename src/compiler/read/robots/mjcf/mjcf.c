@@ -30,28 +30,28 @@
 
 /* Reports unsupported elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
-                                           {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
-                                           {"composite", "rigid bodies"},
-                                           {"flexcomp", "rigid bodies"},
-                                           {"flex", "rigid bodies"},
-                                           {"plugin", "a file without it"}};
+  static const char *const rejected[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
+                                            {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+                                            {"composite", "rigid bodies"},
+                                            {"flexcomp", "rigid bodies"},
+                                            {"flex", "rigid bodies"},
+                                            {"plugin", "a file without it"}};
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (child->type != XML_ELEMENT_NODE || is_element(child, "sensor") || is_element(child, "asset")) continue;
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-      if (is_element(child, refused[i][0])) mjcf_report_unknown(mjcf, child, refused[i][1]);
+    for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++)
+      if (is_element(child, rejected[i][0])) mjcf_report_unknown(mjcf, child, rejected[i][1]);
     check_elements(mjcf, child);
   }
 }
 
 static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
-  static const char *const refused[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia"};
+  static const char *const rejected[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia"};
   if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
   if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
   if (has_attribute(node, "inertiafromgeom"))
     mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler>; expected local",
@@ -71,8 +71,8 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
                                       "limit",   "equality", "frictionloss", "constraint"};
   double groups[ACTUATOR_GROUPS];
   mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
-  mjcf_refuse(mjcf, node, "density");
-  mjcf_refuse(mjcf, node, "viscosity");
+  mjcf_reject(mjcf, node, "density");
+  mjcf_reject(mjcf, node, "viscosity");
   size_t count = mjcf_numbers(mjcf, node, "actuatorgroupdisable", 1, ACTUATOR_GROUPS, groups);
   for (size_t i = 0; i < count; i++)
     if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;
@@ -104,7 +104,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
-  mjcf_refuse(mjcf, node, "springdamper");
+  mjcf_reject(mjcf, node, "springdamper");
   mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->actuator_limits);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   joint->lower = limits[0] * scale;
@@ -118,8 +118,8 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
 
 /* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
-  static const char *const refused[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  static const char *const rejected[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
@@ -201,8 +201,8 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   struct Placement placement = mjcf_placement(mjcf, node);
   struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
   struct Link *link = mjcf_add_link(mjcf, node, name);
-  mjcf_refuse(mjcf, node, "gravcomp");
-  mjcf_refuse(mjcf, node, "mocap");
+  mjcf_reject(mjcf, node, "gravcomp");
+  mjcf_reject(mjcf, node, "mocap");
   mjcf_note_placement(mjcf, name, parent, &chain.placement);
   read_joints(mjcf, node, &chain);
   mjcf_read_body(mjcf, node, link);

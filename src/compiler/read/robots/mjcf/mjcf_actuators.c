@@ -32,7 +32,7 @@ static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuat
 }
 
 /* Reports ratios to critical damping, which MuJoCo computes from the inertia of the compiled model. */
-static void refuse_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
   if (ratio != 0)
     report_error(mjcf->file.diagnostics, line_of(node),
@@ -93,7 +93,7 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
 }
 
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const refused[] = {"timeconst", "actdim", "delay", "damping", "armature"};
+  static const char *const rejected[] = {"timeconst", "actdim", "delay", "damping", "armature"};
   struct Robot *robot = mjcf->file.robot;
   if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
       !is_element(node, "general")) {
@@ -110,10 +110,10 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   actuator.gear = gear[0];
   mjcf_check_laws(mjcf, node);
   read_law(mjcf, node, &actuator);
-  refuse_ratio(mjcf, node, &actuator);
+  reject_ratio(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
   if (is_element(node, "position")) inherit_range(mjcf, node, tendon, &actuator);
-  else mjcf_refuse(mjcf, node, "inheritrange");
+  else mjcf_reject(mjcf, node, "inheritrange");
   mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
   check_limited_joints(mjcf, node, &actuator);
   double group = mjcf_number(mjcf, node, "group", 0);
@@ -122,7 +122,7 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     memset(actuator.bias, 0, sizeof actuator.bias);
     actuator.force[0] = actuator.force[1] = NAN;
   }
-  for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) mjcf_refuse(mjcf, node, refused[i]);
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
   robot->actuators[robot->actuator_count++] = actuator;
 }

@@ -106,7 +106,7 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   double density = mjcf_number_not_negative(mjcf, node, "density", usual_density);
   double mass = has_mass ? mjcf_number_not_negative(mjcf, node, "mass", 0) : density * volume(geom);
   bool is_solid = geom->type <= ELLIPSOID, has_problem = geom->mesh != NULL && geom->mesh->problem != NULL;
-  mjcf_refuse(mjcf, node, "shellinertia");
+  mjcf_reject(mjcf, node, "shellinertia");
   if (geom->mesh != NULL && geom->mesh->is_weighed) {
     struct RigidBody body = body_scaled(&geom->mesh->body, has_mass ? mass / geom->mesh->body.mass : density);
     return body_seen_from(&geom->placement, &body);

@@ -60,10 +60,10 @@ static void start_joint(struct Joint *joint, const double *position, const doubl
   if (velocity == NULL) return;
   memcpy(start->velocity, velocity, moved * sizeof *velocity);
   if (count < 4) return;
-  static const double not_turned[4] = {1};
+  static const double unrotated[4] = {1};
   const double *q = &start->position[3];
-  bool is_turned = q[0] != 0 || q[1] != 0 || q[2] != 0 || q[3] != 0;
-  set_rate(is_turned ? q : not_turned, velocity + moved, &start->velocity[3]);
+  bool is_rotated = q[0] != 0 || q[1] != 0 || q[2] != 0 || q[3] != 0;
+  set_rate(is_rotated ? q : unrotated, velocity + moved, &start->velocity[3]);
 }
 
 void mjcf_read_keyframe(struct Mjcf *mjcf) {

@@ -134,7 +134,7 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_limits(mjcf, node, "range", "limited", limits);
   tendon.lower = limits[0];
   tendon.upper = limits[1];
-  mjcf_refuse(mjcf, node, "actuatorfrcrange");
+  mjcf_reject(mjcf, node, "actuatorfrcrange");
   robot->tendons = make_room(robot->tendons, robot->tendon_count, sizeof *robot->tendons);
   robot->tendons[robot->tendon_count++] = tendon;
 }

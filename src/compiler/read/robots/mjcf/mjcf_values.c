@@ -305,7 +305,7 @@ void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy)
                (const char *)node->name, remedy);
 }
 
-void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const char *text = mjcf_text(mjcf, node, name);
   if (text == NULL || says_nothing(text)) return;
   report_error(mjcf->file.diagnostics, line_of(node),

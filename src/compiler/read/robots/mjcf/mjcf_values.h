@@ -95,4 +95,4 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
 
 /* Reports an attribute that is not supported and would change the motion, unless it is 0, false, none or missing. */
-void mjcf_refuse(struct Mjcf *mjcf, xmlNodePtr node, const char *name);
+void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name);
