@@ -25,6 +25,24 @@ INSTEAD = {
     r"behind which": "followed by",
 }
 
+NAMES = {
+    r"told|untold|tells?": "report, determine or show",
+    r"settle[sd]?|settlement": "resolve or resolution",
+    r"situations?": "snapshot",
+    r"refuse[sd]?|refusals?": "reject or report",
+    r"held": "constrained, closed, fixed or sticking",
+    r"pushes": "impulses or forces",
+    r"turned": "rotated",
+    r"oblique": "nonsymmetric",
+    r"stillness": "regularization",
+    r"promised|crawls?": "predicted or stagnation",
+    r"facts": "metadata",
+    r"openers?": "guard conditions",
+    r"gathered|crowded": "Zeno counters",
+    r"wished": "options or requested",
+    r"go_on|goes_on": "continue",
+}
+
 
 def wrong_words(text):
     for words, instead in INSTEAD.items():
@@ -46,6 +64,19 @@ def python_comments(source):
             yield token.start[0], token.string
         if token.type not in (tokenize.COMMENT, tokenize.NL):
             before = token.type
+
+
+def wrong_names(source):
+    """Of code without comments and strings: names that have a word of NAMES, with the line of the first use."""
+    found = {}
+    for match in re.finditer(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|(?://|#)[^\n]*|/\*.*?\*/|[A-Za-z_]\w*', source, re.DOTALL):
+        if match[0][0].isalpha() or match[0][0] == "_":
+            found.setdefault(match[0], source.count("\n", 0, match.start()) + 1)
+    for name, number in found.items():
+        words = "_".join(re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)).lower()
+        for pattern, instead in NAMES.items():
+            if re.search(rf"(^|_)({pattern})(_|$)", words):
+                yield number, f"the name '{name}'", instead
 
 
 def paragraphs(page):
@@ -86,13 +117,16 @@ def faults_of(path):
     else:
         for number, comment in (python_comments if path.suffix == ".py" else c_comments)(text):
             yield from ((number, *fault) for fault in wrong_words(comment))
+        if "tests" not in path.parts:
+            code = re.sub(r'(?s)""".*?"""', lambda match: "\n" * match[0].count("\n"), text)
+            yield from wrong_names(code)
 
 
 def files():
     yield from ROOT.glob("*.md")
     yield from ROOT.glob("fmu/*.md")
     for folder in FOLDERS:
-        for suffix in ("md", "py", "c", "h"):
+        for suffix in ("md", "py", "c", "h", "js"):
             yield from (ROOT / folder).rglob(f"*.{suffix}")
 
 

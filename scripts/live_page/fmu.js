@@ -25,7 +25,7 @@ class Memory {
 }
 
 // An error that the FMU reports, with its message.
-class Refusal extends Error {}
+class FmuError extends Error {}
 
 class Fmu {
   // description: guid, startTime and variables, each with type, reference.
@@ -36,7 +36,7 @@ class Fmu {
     const guid = new TextEncoder().encode(`${description.guid}\0`), address = this.memory.reserve(guid.length);
     new Uint8Array(wasm.memory.buffer).set(guid, address);
     this.instance = wasm.instantiate(address);
-    if (!this.instance) throw new Refusal(this.said());
+    if (!this.instance) throw new FmuError(this.said());
     this.isNew = true;
   }
 
@@ -49,7 +49,7 @@ class Fmu {
 
   check(status) {
     const words = this.said();
-    if (status > WARNING) throw new Refusal(words || `the FMU answered with the status ${status}`);
+    if (status > WARNING) throw new FmuError(words || `the FMU answered with the status ${status}`);
   }
 
   // Resets and initializes with values, [index of the variable, value] each.

@@ -17,7 +17,7 @@ let ghost = null; // the second FMU while it does not run
 const report = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
 function reject(problem, content = {}) {
-  if (!(problem instanceof Refusal)) throw problem;
+  if (!(problem instanceof FmuError)) throw problem;
   report("rejected", { words: problem.message, ...content });
 }
 
@@ -110,7 +110,7 @@ function preview() {
       times.push(time);
     }
   } catch (problem) {
-    if (!(problem instanceof Refusal)) throw problem;
+    if (!(problem instanceof FmuError)) throw problem;
   }
   report("preview", { rows, times });
 }
@@ -124,7 +124,7 @@ function startAnew() {
 }
 
 // Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.
-function goOnPulled() {
+function continuePulled() {
   if (active !== shipped) return;
   const variables = description.variables.map((variable, index) => ({ ...variable, reference: pulls.references[index] }));
   pulled ||= new FmuInstances(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
@@ -225,7 +225,7 @@ const orders = {
   // pointer: its position, the grasped point in the body's frame, and the damping time; a stiffness of 0 releases the body.
   pull({ body, pointer, stiffness }) {
     try {
-      if (stiffness > 0) goOnPulled();
+      if (stiffness > 0) continuePulled();
       if (active === shipped) return;
       for (const fmu of active.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
     } catch (problem) {

@@ -31,3 +31,9 @@ def test_comments_of_python():
 ])  # fmt: skip
 def test_pages(page, expected):
     assert [what for _, what, _ in words.faults_of_page(page)] == expected
+
+
+def test_names():
+    """Names by their words, whatever joins these; comments and strings do not count."""
+    source = 'int is_told;\nint toldings, hold;\nchar s[] = "settle"; /* held */\nstruct PlaneFacts f;\nconst goOn = 1;\nint let_go, on;\n'
+    assert [number for number, _, _ in words.wrong_names(source)] == [1, 4, 5]
