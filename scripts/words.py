@@ -126,7 +126,7 @@ def files():
     yield from ROOT.glob("*.md")
     yield from ROOT.glob("fmu/*.md")
     for folder in FOLDERS:
-        for suffix in ("md", "py", "c", "h", "js"):
+        for suffix in ("md", "py", "c", "h"):
             yield from (ROOT / folder).rglob(f"*.{suffix}")
 
 

@@ -40,9 +40,9 @@ function offerWords(source, list, language) {
     list.style.top = y + list.offsetHeight > source.clientHeight ? `${Math.max(0, y - LINE - list.offsetHeight)}px` : `${y}px`;
   }
 
-  function offer(isRequested) {
+  function offer(isWished) {
     const at = source.selectionStart, found = at === source.selectionEnd ? wordsAt(source.value, at, language) : { word: "", words: [] };
-    const isBegun = found.word || /<\/?$/.test(source.value.slice(0, at)) || isRequested;
+    const isBegun = found.word || /<\/?$/.test(source.value.slice(0, at)) || isWished;
     if (!isBegun || found.words.length === 0) {
       close();
       return;

@@ -58,8 +58,8 @@ class Control {
   }
 
   // Shows that a value was rejected, and the value in effect, unless another was chosen in the meantime.
-  reject(words, value, previous) {
-    if (this.value === value) this.value = previous;
+  refuse(words, value, held) {
+    if (this.value === value) this.value = held;
     this.show();
     this.say(words);
   }

@@ -73,8 +73,8 @@ function pullsOf(file, description) {
 
 // Returns the elements of <scene>, see modelDescription/scene.h: their attributes, and the tag.
 function sceneOf(file) {
-  const selectors = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
-  return [...file.querySelectorAll(selectors.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
+  const places = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
+  return [...file.querySelectorAll(places.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
 }
 
 // Returns the names in the formulas of a line's ends.
@@ -94,10 +94,10 @@ function variablesOfScene(scene) {
 function shownPlaces(description, scene, names) {
   const ofScene = variablesOfScene(scene);
   const isShown = ({ name, type, isMoving, isDiscrete }) => type === "Real" && (isMoving || (isDiscrete && ofScene.has(name)));
-  const indices = [...description.variables.keys()].filter((index) => isShown(description.variables[index]));
-  const isShownFirst = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
-  const few = indices.length > MANY ? indices.filter((index) => isShownFirst(description.variables[index])) : indices;
-  return names ? few.filter((index) => names.includes(description.variables[index].name)) : few;
+  const places = [...description.variables.keys()].filter((place) => isShown(description.variables[place]));
+  const tells = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
+  const few = places.length > MANY ? places.filter((place) => tells(description.variables[place])) : places;
+  return names ? few.filter((place) => names.includes(description.variables[place].name)) : few;
 }
 
 // Returns the initial plots: coordinates of the first unit, the first velocity against the first coordinate, and energies.
@@ -109,8 +109,8 @@ function firstPlots(variables) {
   const first = [coordinates, states, outputs].find((some) => some.length > 0) ?? [];
   const sameUnit = first.filter((k) => variables[k].unit === variables[first[0]].unit).slice(0, 6);
   const energies = ["kineticEnergy", "potentialEnergy", "totalEnergy", "energy"].map((name) => variables.findIndex((variable) => variable.name === name)).filter((k) => k >= 0);
-  const plots = [{ indices: sameUnit, across: -1 }];
-  if (coordinates.length > 0 && velocities.length > 0) plots.push({ indices: [velocities[0]], across: coordinates[0] });
-  if (energies.length > 0) plots.push({ indices: energies, across: -1 });
+  const plots = [{ places: sameUnit, across: -1 }];
+  if (coordinates.length > 0 && velocities.length > 0) plots.push({ places: [velocities[0]], across: coordinates[0] });
+  if (energies.length > 0) plots.push({ places: energies, across: -1 });
   return plots;
 }

@@ -35,11 +35,11 @@ function goTo({ name, line }) {
   $("source").scrollTop = Math.max(0, (line - 5) * 19);
 }
 
-function showMessages(messages) {
+function tell(messages) {
   const items = messages.map((message) => {
     const button = document.createElement("button"), item = document.createElement("li");
-    const location = `${message.name === file ? "" : `${message.name}, `}${message.line > 0 ? `line ${message.line}: ` : ""}`;
-    button.textContent = `${location}${message.isWarning ? "warning: " : ""}${message.words}`;
+    const place = `${message.name === file ? "" : `${message.name}, `}${message.line > 0 ? `line ${message.line}: ` : ""}`;
+    button.textContent = `${place}${message.isWarning ? "warning: " : ""}${message.words}`;
     button.classList.toggle("warning", message.isWarning);
     button.addEventListener("click", () => goTo(message));
     item.append(button);
@@ -82,7 +82,7 @@ function answer({ data: { number: answered, said, result, milliseconds } }) {
   clearTimeout(slow);
   if (answered !== number) return;
   const messages = said.split("\n").filter((line) => line).map(messageOf), errors = messages.filter(({ isWarning }) => !isWarning).length;
-  showMessages(messages);
+  tell(messages);
   derived = result ?? null;
   showState(result ? `derived in ${Math.round(milliseconds)} ms` : `${errors} ${errors === 1 ? "error" : "errors"}`, result ? "right" : "wrong");
   if (result && wishesToRun) show();

@@ -10,7 +10,7 @@ class Memory {
   }
 
   // Returns the address of a buffer of at least this many bytes, which the next call reuses.
-  reserve(bytes) {
+  place(bytes) {
     if (bytes > this.room) {
       this.room = 2 * bytes;
       this.at = this.wasm.allocate(this.room);
@@ -25,7 +25,7 @@ class Memory {
 }
 
 // An error that the FMU reports, with its message.
-class FmuError extends Error {}
+class Refusal extends Error {}
 
 class Fmu {
   // description: guid, startTime and variables, each with type, reference.
@@ -33,10 +33,10 @@ class Fmu {
     this.wasm = wasm;
     this.memory = new Memory(wasm);
     this.description = description;
-    const guid = new TextEncoder().encode(`${description.guid}\0`), address = this.memory.reserve(guid.length);
-    new Uint8Array(wasm.memory.buffer).set(guid, address);
-    this.instance = wasm.instantiate(address);
-    if (!this.instance) throw new FmuError(this.said());
+    const guid = new TextEncoder().encode(`${description.guid}\0`), place = this.memory.place(guid.length);
+    new Uint8Array(wasm.memory.buffer).set(guid, place);
+    this.instance = wasm.instantiate(place);
+    if (!this.instance) throw new Refusal(this.said());
     this.isNew = true;
   }
 
@@ -49,7 +49,7 @@ class Fmu {
 
   check(status) {
     const words = this.said();
-    if (status > WARNING) throw new FmuError(words || `the FMU answered with the status ${status}`);
+    if (status > WARNING) throw new Refusal(words || `the FMU answered with the status ${status}`);
   }
 
   // Resets and initializes with values, [index of the variable, value] each.
@@ -57,13 +57,13 @@ class Fmu {
     if (!this.isNew) this.check(this.wasm.fmi2Reset(this.instance));
     this.isNew = false;
     this.check(this.wasm.fmi2SetupExperiment(this.instance, 0, 0, time, 0, 0));
-    for (const [index, value] of values) this.set(index, value);
+    for (const [place, value] of values) this.set(place, value);
     this.check(this.wasm.fmi2EnterInitializationMode(this.instance));
     this.check(this.wasm.fmi2ExitInitializationMode(this.instance));
   }
 
-  set(index, value) {
-    const variable = this.description.variables[index], at = this.memory.reserve(16), buffer = this.wasm.memory.buffer;
+  set(place, value) {
+    const variable = this.description.variables[place], at = this.memory.place(16), buffer = this.wasm.memory.buffer;
     new Uint32Array(buffer, at, 1)[0] = variable.reference;
     if (variable.type === "Real") new Float64Array(buffer, at + 8, 1)[0] = value;
     else new Int32Array(buffer, at + 8, 1)[0] = Math.round(value);
@@ -71,7 +71,7 @@ class Fmu {
   }
 
   setReals(references, values) {
-    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.reserve(offset + 8 * count);
+    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
     new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
     new Float64Array(this.wasm.memory.buffer, at + offset, count).set(values);
     this.check(this.wasm.fmi2SetReal(this.instance, at, count, at + offset));
@@ -79,7 +79,7 @@ class Fmu {
 
   // Returns the values of the Reals with these references.
   read(references) {
-    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.reserve(offset + 8 * count);
+    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
     new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
     this.check(this.wasm.fmi2GetReal(this.instance, at, count, at + offset));
     return new Float64Array(this.wasm.memory.buffer, at + offset, count).slice();
@@ -99,15 +99,15 @@ class Fmu {
     this.check(this.wasm.fmi2DoStep(this.instance, time, length, 0));
   }
 
-  // Saves the FMU state and returns its address; reuses the memory of the state `address`, if it is given.
-  save(address = 0) {
-    const at = this.memory.reserve(8);
-    new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = address;
+  // Saves the FMU state and returns its address; reuses the memory of the state `place`, if it is given.
+  save(place = 0) {
+    const at = this.memory.place(8);
+    new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = place;
     this.check(this.wasm.fmi2GetFMUstate(this.instance, at));
     return new Uint32Array(this.wasm.memory.buffer, at, 1)[0];
   }
 
-  restore(address) {
-    this.check(this.wasm.fmi2SetFMUstate(this.instance, address));
+  restore(place) {
+    this.check(this.wasm.fmi2SetFMUstate(this.instance, place));
   }
 }

@@ -44,13 +44,13 @@ class History {
     return this.times[i];
   }
 
-  value(i, index, run) {
+  value(i, place, run) {
     const runs = this.samples[i];
-    return (runs[run] || runs[0])[index];
+    return (runs[run] || runs[0])[place];
   }
 
   // Returns the index of the last sample that is not after a time.
-  indexAt(time, first = 0, last = this.length) {
+  placeOf(time, first = 0, last = this.length) {
     let low = first, high = last - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;

@@ -9,15 +9,15 @@ const leaning = [false, false]; // true while a stick determines the input
 
 // Sets an input to a share, from -1 to 1, of its slider's range on that side of the start value.
 function push(i, share) {
-  const [index, control] = pushed[i], { start } = control.variable;
+  const [place, control] = pushed[i], { start } = control.variable;
   const value = start + share * (share > 0 ? control.high - start : start - control.low);
-  control.choose(value, (chosen) => set(index, chosen));
+  control.choose(value, (chosen) => set(place, chosen));
 }
 
 const isTyping = (event) => ["INPUT", "SELECT"].includes(event.target.tagName);
 
 function addKeys() {
-  pushed = [...controls].filter(([index]) => description.variables[index].role === "input").slice(0, 2);
+  pushed = [...controls].filter(([place]) => description.variables[place].role === "input").slice(0, 2);
   const keys = [["ArrowLeft", "ArrowRight", " keys ← →"], ["ArrowDown", "ArrowUp", " keys ↓ ↑"]];
   pushed.forEach(([, control], i) => control.element.querySelector(".name").append(Object.assign(document.createElement("small"), { textContent: keys[i][2] })));
   const answer = (event, share) => {

@@ -34,9 +34,9 @@ class Laboratory {
 
   // Returns the address of a copy of the text in the module's memory, which is never freed.
   textIn(text) {
-    const bytes = new TextEncoder().encode(`${text}\0`), address = this.wasm.allocate(bytes.length);
-    new Uint8Array(this.wasm.memory.buffer).set(bytes, address);
-    return address;
+    const bytes = new TextEncoder().encode(`${text}\0`), place = this.wasm.allocate(bytes.length);
+    new Uint8Array(this.wasm.memory.buffer).set(bytes, place);
+    return place;
   }
 
   view() {
@@ -44,9 +44,9 @@ class Laboratory {
   }
 
   // Returns the normalized path at an address, as it is in `files`.
-  nameAt(address, length) {
+  nameAt(place, length) {
     const parts = [];
-    for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, address, length)).split("/")) {
+    for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, place, length)).split("/")) {
       if (part === "..") parts.pop();
       else if (part !== "" && part !== ".") parts.push(part);
     }
@@ -73,8 +73,8 @@ class Laboratory {
     return SUCCESS;
   }
 
-  open(folder, flags, address, length, further, rights, inherited, how, result) {
-    const content = this.files.get(this.nameAt(address, length));
+  open(folder, flags, place, length, further, rights, inherited, how, result) {
+    const content = this.files.get(this.nameAt(place, length));
     if (!content) return NO_ENTRY;
     let descriptor = ROOT + 1;
     while (this.opened.has(descriptor)) descriptor++;
@@ -104,32 +104,32 @@ class Laboratory {
     return SUCCESS;
   }
 
-  describeDescriptor(descriptor, address) {
+  tellOfDescriptor(descriptor, place) {
     if (descriptor > ROOT && !this.opened.has(descriptor)) return BAD_DESCRIPTOR;
-    new Uint8Array(this.wasm.memory.buffer).fill(0, address, address + 24);
-    this.view().setUint8(address, descriptor === ROOT ? DIRECTORY : REGULAR_FILE);
-    for (const rights of [8, 16]) this.view().setBigUint64(address + rights, (1n << 29n) - 1n, true);
+    new Uint8Array(this.wasm.memory.buffer).fill(0, place, place + 24);
+    this.view().setUint8(place, descriptor === ROOT ? DIRECTORY : REGULAR_FILE);
+    for (const rights of [8, 16]) this.view().setBigUint64(place + rights, (1n << 29n) - 1n, true);
     return SUCCESS;
   }
 
-  describeFile(folder, flags, path, length, address) {
+  tellOfFile(folder, flags, path, length, place) {
     const name = this.nameAt(path, length), content = this.files.get(name);
     if (!content && !this.isFolder(name)) return NO_ENTRY;
-    new Uint8Array(this.wasm.memory.buffer).fill(0, address, address + 64);
-    this.view().setUint8(address + 16, content ? REGULAR_FILE : DIRECTORY);
-    this.view().setBigUint64(address + 32, BigInt(content ? content.length : 0), true);
+    new Uint8Array(this.wasm.memory.buffer).fill(0, place, place + 64);
+    this.view().setUint8(place + 16, content ? REGULAR_FILE : DIRECTORY);
+    this.view().setBigUint64(place + 32, BigInt(content ? content.length : 0), true);
     return SUCCESS;
   }
 
-  describeFolder(descriptor, address) {
+  tellOfFolder(descriptor, place) {
     if (descriptor !== ROOT) return BAD_DESCRIPTOR;
-    this.view().setUint8(address, 0);
-    this.view().setUint32(address + 4, 1, true); // the length of "/"
+    this.view().setUint8(place, 0);
+    this.view().setUint32(place + 4, 1, true); // the length of "/"
     return SUCCESS;
   }
 
-  nameFolder(descriptor, address) {
-    new Uint8Array(this.wasm.memory.buffer)[address] = "/".charCodeAt(0);
+  nameFolder(descriptor, place) {
+    new Uint8Array(this.wasm.memory.buffer)[place] = "/".charCodeAt(0);
     return SUCCESS;
   }
 
@@ -142,18 +142,18 @@ class Laboratory {
   // Returns the functions of WASI that the module imports.
   system() {
     return {
-      clock_time_get: (clock, precision, address) => (this.view().setBigUint64(address, 0n, true), SUCCESS),
+      clock_time_get: (clock, precision, place) => (this.view().setBigUint64(place, 0n, true), SUCCESS),
       environ_get: () => SUCCESS,
-      environ_sizes_get: (...addresses) => this.noEnvironment(...addresses),
+      environ_sizes_get: (...places) => this.noEnvironment(...places),
       fd_close: (descriptor) => (this.opened.delete(descriptor) ? SUCCESS : BAD_DESCRIPTOR),
-      fd_fdstat_get: (...about) => this.describeDescriptor(...about),
+      fd_fdstat_get: (...about) => this.tellOfDescriptor(...about),
       fd_fdstat_set_flags: () => SUCCESS,
       fd_prestat_dir_name: (...about) => this.nameFolder(...about),
-      fd_prestat_get: (...about) => this.describeFolder(...about),
+      fd_prestat_get: (...about) => this.tellOfFolder(...about),
       fd_read: (...about) => this.read(...about),
       fd_seek: (...about) => this.seek(...about),
       fd_write: (...about) => this.write(...about),
-      path_filestat_get: (...about) => this.describeFile(...about),
+      path_filestat_get: (...about) => this.tellOfFile(...about),
       path_open: (...about) => this.open(...about),
       path_readlink: () => INVALID, // no file is a symbolic link
       proc_exit: (status) => {

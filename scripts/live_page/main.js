@@ -13,7 +13,7 @@ const description = descriptionOf(file), sceneParts = sceneOf(file);
 for (const variable of description.variables) if (variable.name in (data.start ?? {})) variable.start = data.start[variable.name];
 const pulls = data.pulled && sceneParts.length > 0 ? pullsOf(await parsed(data.pulled), description) : null;
 const shownOnes = shownPlaces(description, sceneParts, recording?.names);
-const shownVariables = shownOnes.map((index) => description.variables[index]);
+const shownVariables = shownOnes.map((place) => description.variables[place]);
 const shownWindow = recording ? recording.duration : Math.min(WINDOW, description.duration);
 const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
 const history = new History(shownVariables.length);
@@ -46,8 +46,8 @@ function inJavaScript(formula, hasSamples) {
     if (/^\d/.test(name)) return name;
     if (name === "time") return "t";
     if (hasSamples && columnOf.has(name)) return `s[${columnOf.get(name)}]`;
-    const index = description.variables.findIndex((variable) => variable.name === name);
-    return index >= 0 ? `p(${index})` : name === "pi" ? "Math.PI" : "NaN";
+    const place = description.variables.findIndex((variable) => variable.name === name);
+    return place >= 0 ? `p(${place})` : name === "pi" ? "Math.PI" : "NaN";
   });
   // JavaScript rejects a sign before a power, and `if` as the name of a function.
   return text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**").replace(/\bif\(/g, "choose(");
@@ -60,7 +60,7 @@ function compiled(formula, hasSamples = true) {
   let evaluate = () => NaN;
   try {
     const called = new Function("s", "t", "p", "choose", ...FUNCTIONS, `return ${inJavaScript(formula, hasSamples)}`);
-    const valueAt = (index) => controls.get(index)?.value ?? description.variables[index].start;
+    const valueAt = (place) => controls.get(place)?.value ?? description.variables[place].start;
     const choose = (condition, first, second) => (condition ? first : second), maths = FUNCTIONS.map((name) => Math[name]);
     evaluate = (sample, time) => {
       try {
@@ -119,8 +119,8 @@ const answers = {
     controls.get(about)?.say("");
     say("");
   },
-  rejected({ words, about, value, previous }) {
-    if (controls.has(about)) controls.get(about).reject(words, value, previous);
+  refused({ words, about, value, held }) {
+    if (controls.has(about)) controls.get(about).refuse(words, value, held);
     else say(words);
   },
   ran(message) {
@@ -165,28 +165,28 @@ function setSpeed() {
 function addControls() {
   const kinds = [["input", "Inputs"], ["parameter", "Parameters"], ["start", "Start values"]];
   for (const [role, title] of kinds) {
-    const found = description.variables.map((variable, index) => [variable, index]).filter(([variable]) => variable.role === role);
+    const found = description.variables.map((variable, place) => [variable, place]).filter(([variable]) => variable.role === role);
     if (found.length === 0) continue;
-    const made = found.map(([variable, index]) => {
-      const control = new Control(variable, (value) => set(index, value));
-      controls.set(index, control);
+    const made = found.map(([variable, place]) => {
+      const control = new Control(variable, (value) => set(place, value));
+      controls.set(place, control);
       return control;
     });
     $("controls").append(section(title, made, role !== "start" || found.length <= 12));
   }
 }
 
-function set(index, value) {
-  order("set", { index, value });
-  const { role, isFixed } = description.variables[index];
+function set(place, value) {
+  order("set", { place, value });
+  const { role, isFixed } = description.variables[place];
   if ((role !== "start" && !isFixed) || resetDue !== null) return;
   // Takes effect at the next start; before the first step the FMU is reset at once.
   if (history.length <= 1) resetDue = setTimeout(() => order("reset"), 50);
 }
 
 function addPlots() {
-  for (const { indices, across } of firstPlots(shownVariables)) {
-    const plot = new Plot(history, sections, shownVariables, indices, across);
+  for (const { places, across } of firstPlots(shownVariables)) {
+    const plot = new Plot(history, sections, shownVariables, places, across);
     plots.push(plot);
     $("plots").append(plot.element);
   }
@@ -200,20 +200,20 @@ function playOn(now) {
   if (playing && player.before !== null) {
     player.time += ((now - player.before) / 1000) * speedOf();
     if (player.time > last) player.time = first;
-    view(history.indexAt(player.time));
+    view(history.placeOf(player.time));
   }
   player.before = now;
 }
 
 // Shows an earlier sample, or one of the recording.
-function view(index) {
-  viewed = Math.max(0, Math.min(history.length - 1, index));
+function view(place) {
+  viewed = Math.max(0, Math.min(history.length - 1, place));
   $("past").value = viewed;
 }
 
 // Shows a sample, from which the recording continues.
-function viewFrom(index) {
-  view(index);
+function viewFrom(place) {
+  view(place);
   player.time = history.time(viewed);
 }
 
@@ -225,12 +225,12 @@ function frame(now) {
     $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
     $("pace").textContent = playing && pace[0] > 0.5 ? "slower than requested" : "";
     if (scene && scene.objects) {
-      if (at === history.length - 1) updatePull();
+      if (at === history.length - 1) pullOn();
       scene.draw(history, at);
     }
     energyBar?.draw(at);
     drawPresented(at);
-    const first = history.indexAt(history.time(history.length - 1) - shownWindow);
+    const first = history.placeOf(history.time(history.length - 1) - shownWindow);
     for (const plot of plots) plot.draw(first, history.length, at);
   }
   requestAnimationFrame(frame);
@@ -243,18 +243,18 @@ function save(name, content, type) {
 }
 
 // Returns the controls whose values differ from those of the FMU.
-const settings = () => [...controls].filter(([index, control]) => control.value !== description.variables[index].start);
+const settings = () => [...controls].filter(([place, control]) => control.value !== description.variables[place].start);
 
 // Starts or ends a second run, whose first start value differs slightly.
 function toggleGhost() {
-  const start = [...controls].find(([index]) => description.variables[index].role === "start");
-  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([index, control]) => [index, control.value + (index === start[0] ? GHOST : 0)]);
+  const start = [...controls].find(([place]) => description.variables[place].role === "start");
+  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([place, control]) => [place, control.value + (place === start[0] ? GHOST : 0)]);
   order("ghost", { differences });
 }
 
 function addActions() {
   $("ghost").addEventListener("click", toggleGhost);
-  $("ghost").hidden = ![...controls].some(([index]) => description.variables[index].role === "start");
+  $("ghost").hidden = ![...controls].some(([place]) => description.variables[place].role === "start");
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
@@ -264,12 +264,12 @@ function addActions() {
   });
   $("past").addEventListener("input", () => viewFrom(Number($("past").value)));
   $("fit").addEventListener("click", () => scene && scene.fit());
-  $("turning").addEventListener("change", () => scene && scene.allowRotation((scene.options.turning = $("turning").checked)));
-  for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.options[name] = $(name).checked));
+  $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
+  for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
   $("csv").addEventListener("click", () => save(`${description.name}.csv`, history.csv(live.names), "text/csv"));
   $("picture").addEventListener("click", () => scene && scene.renderer.domElement.toBlob((picture) => save(`${description.name}.png`, picture, "image/png")));
   $("link").addEventListener("click", () => {
-    const words = new URLSearchParams(settings().map(([index, control]) => [description.variables[index].name, control.value]));
+    const words = new URLSearchParams(settings().map(([place, control]) => [description.variables[place].name, control.value]));
     window.history.replaceState(null, "", `#${words}`);
     if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
   });
@@ -285,12 +285,12 @@ function addActions() {
 // Applies the page's settings, and those of the address after #, name=value&name=value, which have precedence; returns them.
 function settingsAtStart() {
   const given = [...Object.entries(data.settings ?? {}), ...new URLSearchParams(location.hash.slice(1))];
-  const byName = new Map(description.variables.map((variable, index) => [variable.name, index])), found = [];
+  const byName = new Map(description.variables.map((variable, place) => [variable.name, place])), found = [];
   for (const [name, text] of given) {
-    const index = byName.get(name), value = Number(text);
-    if (!controls.has(index) || !Number.isFinite(value)) continue;
-    controls.get(index).choose(value, () => {});
-    found.push([index, value]);
+    const place = byName.get(name), value = Number(text);
+    if (!controls.has(place) || !Number.isFinite(value)) continue;
+    controls.get(place).choose(value, () => {});
+    found.push([place, value]);
   }
   return found;
 }
@@ -371,7 +371,7 @@ async function begin() {
     scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf, compiled);
     addPulling();
     addEnergyBar();
-    scene.options = { trails: true, names: false, turning: false, forces: true, velocities: false, follow: true };
+    scene.wished = { trails: true, names: false, turning: false, forces: true, velocities: false, follow: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", sceneParts.length === 0);
   document.body.classList.toggle("recorded", Boolean(recording));

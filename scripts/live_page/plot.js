@@ -23,9 +23,9 @@ function shown(value, digits = 4) {
 
 class Plot {
   // history: a History; section: a History that is drawn as points, if it has any and the plot is not against time; choices: names and units of
-  // the variables; indices: those of the drawn ones; across: index of the horizontal variable, or -1 for the time.
-  constructor(history, section, choices, indices, across = -1) {
-    Object.assign(this, { history, section, choices, indices, across, cursor: null });
+  // the variables; places: indices of the drawn ones; across: index of the horizontal variable, or -1 for the time.
+  constructor(history, section, choices, places, across = -1) {
+    Object.assign(this, { history, section, choices, places, across, cursor: null });
     this.element = document.createElement("div");
     this.element.className = "plot";
     this.canvas = document.createElement("canvas");
@@ -41,7 +41,7 @@ class Plot {
     const select = document.createElement("select");
     select.title = title;
     select.append(new Option(first, ""));
-    this.choices.forEach((choice, index) => select.append(new Option(choice.name, index, false, index === chosen)));
+    this.choices.forEach((choice, place) => select.append(new Option(choice.name, place, false, place === chosen)));
     select.addEventListener("change", () => {
       act(select.value === "" ? -1 : Number(select.value));
       this.writeLegend();
@@ -50,19 +50,19 @@ class Plot {
   }
 
   writeLegend() {
-    const items = this.indices.map((index, i) => {
+    const items = this.places.map((place, i) => {
       const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b");
       mark.style.background = COLORS[i % COLORS.length];
-      item.append(mark, `${this.choices[index].name}${this.choices[index].unit ? ` [${this.choices[index].unit}]` : ""} `, value);
+      item.append(mark, `${this.choices[place].name}${this.choices[place].unit ? ` [${this.choices[place].unit}]` : ""} `, value);
       item.title = "click to remove";
       item.addEventListener("click", () => {
-        this.indices.splice(i, 1);
+        this.places.splice(i, 1);
         this.writeLegend();
       });
       return item;
     });
-    const adding = this.selection("add a variable", "+ variable", -1, (index) => index >= 0 && !this.indices.includes(index) && this.indices.push(index));
-    const across = this.selection("horizontal axis", "against time", this.across, (index) => (this.across = index));
+    const adding = this.selection("add a variable", "+ variable", -1, (place) => place >= 0 && !this.places.includes(place) && this.places.push(place));
+    const across = this.selection("horizontal axis", "against time", this.across, (place) => (this.across = place));
     this.values = items.map((item) => item.lastChild);
     this.legend.replaceChildren(...items, adding, across);
   }
@@ -82,8 +82,8 @@ class Plot {
   }
 
   // Returns the largest magnitude of all curves with the unit of one.
-  magnitudeOf(index, ranges) {
-    const alike = ranges.filter((_, i) => this.choices[this.indices[i]].unit === this.choices[index].unit);
+  magnitudeOf(place, ranges) {
+    const alike = ranges.filter((_, i) => this.choices[this.places[i]].unit === this.choices[place].unit);
     return Math.max(...alike.flat().map(Math.abs));
   }
 
@@ -105,10 +105,10 @@ class Plot {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";
-    const { across } = this, draw = history === this.section ? this.drawPoints : this.drawLine, column = (index, run) => (i) => history.value(i, index, run);
+    const { across } = this, draw = history === this.section ? this.drawPoints : this.drawLine, column = (place, run) => (i) => history.value(i, place, run);
     const horizontal = across < 0 ? (i) => history.time(i) : column(across, 0);
     const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : this.rangeOf(first, last, horizontal);
-    const ranges = this.indices.map((index) => this.rangeOf(first, last, column(index, 0)));
+    const ranges = this.places.map((place) => this.rangeOf(first, last, column(place, 0)));
     const range = ranges.length ? [Math.min(...ranges.map((one) => one[0])), Math.max(...ranges.map((one) => one[1]))] : [0, 1];
     const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => shown(tick));
     const left = 8 + Math.max(20, ...labels.map((label) => pen.measureText(label).width)), bottom = height - 18;
@@ -120,14 +120,14 @@ class Plot {
     pen.rect(left, 0, width - left, bottom);
     pen.clip();
     for (let run = history.runs - 1; run >= 0; run--)
-      this.indices.forEach((index, i) => {
+      this.places.forEach((place, i) => {
         const along = across < 0 ? horizontal : column(across, run);
-        draw.call(this, pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(index, run)), COLORS[i % COLORS.length], run);
+        draw.call(this, pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(place, run)), COLORS[i % COLORS.length], run);
       });
     pen.restore();
-    const at = this.cursor && across < 0 ? history.indexAt(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
+    const at = this.cursor && across < 0 ? history.placeOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
     if (at !== null && at < last) this.drawMarks(pen, at, x(horizontal(at)), y, bottom, ink);
-    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(significant(history.value(at, this.indices[i], 0), this.magnitudeOf(this.indices[i], ranges)), 5) : ""));
+    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(significant(history.value(at, this.places[i], 0), this.magnitudeOf(this.places[i], ranges)), 5) : ""));
   }
 
   drawGrid(pen, { ticks, labels, across, x, y, left, bottom, width, ink, grid }) {
@@ -177,9 +177,9 @@ class Plot {
     pen.moveTo(x, 0);
     pen.lineTo(x, bottom);
     pen.stroke();
-    this.indices.forEach((index, i) => {
+    this.places.forEach((place, i) => {
       pen.beginPath();
-      pen.arc(x, y(this.history.value(at, index, 0)), 3, 0, 7);
+      pen.arc(x, y(this.history.value(at, place, 0)), 3, 0, 7);
       pen.fillStyle = COLORS[i % COLORS.length];
       pen.fill();
     });

@@ -3,20 +3,20 @@
 
 // Returns the presets of modelDescription.xml: name, words, and values as [index of the variable, number].
 function presetsOf(file, description) {
-  const indexOf = new Map(description.variables.map((variable, index) => [variable.name, index]));
+  const placeOf = new Map(description.variables.map((variable, place) => [variable.name, place]));
   return [...file.querySelectorAll("presets > preset")].map((preset) => ({
     name: preset.getAttribute("name"),
     words: preset.getAttribute("description") || preset.getAttribute("name"),
-    values: [...preset.querySelectorAll("at")].map((at) => [indexOf.get(at.getAttribute("name")), Number(at.getAttribute("value"))]),
+    values: [...preset.querySelectorAll("at")].map((at) => [placeOf.get(at.getAttribute("name")), Number(at.getAttribute("value"))]),
   }));
 }
 
 // Sets all controls to the values of a preset, or to their own start values, and restarts.
 function applyPreset({ values }) {
-  const preset = new Map(values);
-  for (const [index, control] of controls) {
-    const value = preset.get(index) ?? control.variable.start;
-    if (value !== control.value) control.choose(value, (chosen) => order("set", { index, value: chosen }));
+  const wished = new Map(values);
+  for (const [place, control] of controls) {
+    const value = wished.get(place) ?? control.variable.start;
+    if (value !== control.value) control.choose(value, (chosen) => order("set", { place, value: chosen }));
   }
   order("reset");
 }

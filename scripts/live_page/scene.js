@@ -22,7 +22,7 @@ function surfaceOf(mesh) {
 }
 
 // Returns the largest distance of its points from the origin.
-function radiusOf({ points }) {
+function reachOf({ points }) {
   let most = 0;
   for (let i = 0; i < points.length; i += 3) most = Math.max(most, Math.hypot(points[i], points[i + 1], points[i + 2]));
   return most;
@@ -32,7 +32,7 @@ class Scene {
   // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters;
   // compiled(formula): a function of a sample and its time.
   constructor(container, things, column, value, compiled) {
-    Object.assign(this, { container, column, value, compiled, labels: [], options: {} });
+    Object.assign(this, { container, column, value, compiled, labels: [], wished: {} });
     this.gravity = things.find((thing) => thing.tag === "gravity");
     this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
     const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
@@ -47,7 +47,7 @@ class Scene {
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
     this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
-    this.rotations = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
+    this.turns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
     this.lines = this.lineElements.map((line) => new DrawnLine(this, line, compiled));
     this.isDescribed = this.lineElements.some((line) => !line.guessed);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -60,30 +60,30 @@ class Scene {
 
   position(sample, i, target = new THREE.Vector3()) {
     if (i === undefined) return target.set(0, 0, 0);
-    const [x, y, z] = this.columns[i].map((index) => (index < 0 ? 0 : sample[index]));
+    const [x, y, z] = this.columns[i].map((place) => (place < 0 ? 0 : sample[place]));
     return target.set(x, y, z);
   }
 
   // Returns the rotation matrix of a thing, or of the frame that contains it.
-  rotation(sample, i, target = new THREE.Matrix4()) {
+  turn(sample, i, target = new THREE.Matrix4()) {
     if (i === undefined) return target.identity();
-    const angle = this.angles[i], rotations = this.rotations[i];
+    const angle = this.angles[i], turns = this.turns[i];
     if (angle >= 0) return target.makeRotationZ(sample[angle]);
-    if (rotations.every((index) => index < 0)) return this.rotation(sample, this.byName.get(this.things[i].in), target);
-    const r = rotations.map((index) => (index < 0 ? 0 : sample[index]));
+    if (turns.every((place) => place < 0)) return this.turn(sample, this.byName.get(this.things[i].in), target);
+    const r = turns.map((place) => (place < 0 ? 0 : sample[place]));
     return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
   }
 
   // Returns the position of a joint on its body.
   jointPosition(sample, joint, target) {
     const i = this.byName.get(joint.of);
-    target.set(joint.point[0], joint.point[1], 0).applyMatrix4(this.rotation(sample, i));
+    target.set(joint.place[0], joint.place[1], 0).applyMatrix4(this.turn(sample, i));
     return target.add(this.position(sample, i));
   }
 
   // Evaluates the positions of joints for the present parameters.
   evaluate() {
-    for (const holder of this.holders) if (holder.tag === "joint") holder.point = [holder.x, holder.y].map((formula) => this.value(formula));
+    for (const holder of this.holders) if (holder.tag === "joint") holder.place = [holder.x, holder.y].map((formula) => this.value(formula));
   }
 
   // Adapts joints and sizes of bodies to changed parameters.
@@ -115,9 +115,9 @@ class Scene {
     const still = [2, 1, 0].find((axis) => {
       if (ends.some((end) => Math.abs(end.getComponent(axis)) > 1e-9)) return false;
       const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
-      const rotatesAbout = (sample, rotations) => rotations[0] < 0 || Math.abs(sample[rotations[4 * axis]] - 1) < 1e-9;
+      const turnsAbout = (sample, turns) => turns[0] < 0 || Math.abs(sample[turns[4 * axis]] - 1) < 1e-9;
       return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`])) &&
-        this.rotations.every((rotations) => samples.every((sample) => rotatesAbout(sample, rotations)));
+        this.turns.every((turns) => samples.every((sample) => turnsAbout(sample, turns)));
     });
     return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
   }
@@ -127,7 +127,7 @@ class Scene {
     this.evaluate();
     this.plane = this.findPlane(samples, times);
     this.up = this.upwards();
-    this.reaches = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, extent: this.reachOfShape(shape) }));
+    this.reaches = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, reach: this.reachOfShape(shape) }));
     const point = new THREE.Vector3();
     this.box = this.viewOf(samples, times);
     const size = this.box.getSize(point).length();
@@ -189,7 +189,7 @@ class Scene {
 
   // Moves the camera with the system.
   follow(sample, time) {
-    if (this.followed.length === 0 || !this.options.follow) return;
+    if (this.followed.length === 0 || !this.wished.follow) return;
     const travel = this.travelOf(this.boxAt(sample, time)), step = travel.clone().sub(this.travelled);
     for (const moved of [this.camera.position, this.controls.target, this.grid.position, this.centre]) moved.add(step);
     this.frameBox.translate(step);
@@ -334,15 +334,15 @@ class Scene {
   // Returns the radius about the origin of its object within which a shape lies.
   reachOfShape(shape) {
     const measure = (name) => this.value(shape[name] || "0"), away = Math.hypot(...AXES.map(measure));
-    if (shape.type === "mesh") return away + radiusOf(this.meshes.get(shape.mesh));
+    if (shape.type === "mesh") return away + reachOf(this.meshes.get(shape.mesh));
     return away + Math.max(Math.hypot(...["sizeX", "sizeY", "sizeZ"].map(measure)) / 2, measure("radius") + measure("length") / 2);
   }
 
   // Expands a box by the shapes; a shape is within a ball about its object.
   expandByShapes(box, sample) {
     const point = new THREE.Vector3(), ball = new THREE.Box3();
-    for (const { shape, extent } of this.reaches) {
-      const size = new THREE.Vector3(2 * extent, 2 * extent, 2 * extent);
+    for (const { shape, reach } of this.reaches) {
+      const size = new THREE.Vector3(2 * reach, 2 * reach, 2 * reach);
       if (this.plane) size.setComponent([0, 1, 2].find((axis) => !this.plane.includes(axis)), 0);
       box.union(ball.setFromCenterAndSize(this.position(sample, this.byName.get(shape.in), point), size));
     }
@@ -377,7 +377,7 @@ class Scene {
     return { holder, mesh, knob };
   }
 
-  moveRods(sample) {
+  placeRods(sample) {
     const from = new THREE.Vector3(), to = new THREE.Vector3(), way = new THREE.Vector3(), y = new THREE.Vector3(0, 1, 0);
     for (const { holder, mesh, knob } of this.rods) {
       if (holder.tag === "joint") {
@@ -428,10 +428,10 @@ class Scene {
     });
   }
 
-  updateTrails(history, at) {
+  placeTrails(history, at) {
     const point = new THREE.Vector3(), count = Math.min(TRAIL, at + 1);
     for (const { where, line } of this.trails) {
-      line.visible = Boolean(this.options.trails);
+      line.visible = Boolean(this.wished.trails);
       if (!line.visible) continue;
       const attribute = line.geometry.attributes.position;
       for (let k = 0; k < count; k++) {
@@ -479,14 +479,14 @@ class Scene {
     this.controls.target.copy(centre);
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
-    this.allowRotation(!this.plane || this.options.turning);
+    this.allowTurning(!this.plane || this.wished.turning);
     this.centre = centre;
     this.light.position.copy(outwards).addScaledVector(up, 0.8).add(new THREE.Vector3(0.3, 0.2, 0.1));
     this.outwards = outwards;
     this.controls.update();
   }
 
-  allowRotation(isAllowed) {
+  allowTurning(isAllowed) {
     this.controls.enableRotate = isAllowed;
     this.controls.mouseButtons.LEFT = isAllowed ? THREE.MOUSE.ROTATE : THREE.MOUSE.PAN;
     this.controls.touches.ONE = isAllowed ? THREE.TOUCH.ROTATE : THREE.TOUCH.PAN;
@@ -499,8 +499,8 @@ class Scene {
     const aspect = width / height;
     if (this.plane) {
       const upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
-      const extent = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
-      const half = Math.max(extent(upAxis), extent(across) / aspect) + 0.06 * this.radius;
+      const reach = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
+      const half = Math.max(reach(upAxis), reach(across) / aspect) + 0.06 * this.radius;
       Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     } else {
       this.camera.aspect = aspect;
@@ -531,11 +531,11 @@ class Scene {
     return [((x + 1) * this.container.clientWidth) / 2, ((1 - y) * this.container.clientHeight) / 2];
   }
 
-  moveLabels(sample) {
+  placeLabels(sample) {
     const point = new THREE.Vector3(), width = this.container.clientWidth, height = this.container.clientHeight, taken = [];
     this.labels.forEach((label, i) => {
-      label.style.display = this.options.names ? "" : "none";
-      if (!this.options.names) return;
+      label.style.display = this.wished.names ? "" : "none";
+      if (!this.wished.names) return;
       this.position(sample, i, point).project(this.camera);
       const x = ((point.x + 1) * width) / 2 + 8;
       let y = ((1 - point.y) * height) / 2 - 18;
@@ -545,20 +545,20 @@ class Scene {
     });
   }
 
-  moveThings(objects, sample) {
-    const rotation = new THREE.Matrix4(), point = new THREE.Vector3();
+  placeThings(objects, sample) {
+    const turn = new THREE.Matrix4(), point = new THREE.Vector3();
     objects.forEach((object, i) => {
-      this.rotation(sample, i, rotation);
-      object.matrix.copy(rotation).setPosition(this.position(sample, i, point));
+      this.turn(sample, i, turn);
+      object.matrix.copy(turn).setPosition(this.position(sample, i, point));
       object.matrixWorldNeedsUpdate = true;
     });
   }
 
-  moveGhost(sample) {
+  placeGhost(sample) {
     if (!sample && !this.ghosts) return;
     this.ghosts = this.ghosts || this.things.map((_, i) => this.ghostOf(i));
     for (const ghost of this.ghosts) ghost.visible = Boolean(sample);
-    if (sample) this.moveThings(this.ghosts, sample);
+    if (sample) this.placeThings(this.ghosts, sample);
   }
 
   ghostOf(i) {
@@ -582,15 +582,15 @@ class Scene {
     const runs = history.samples[at], time = history.time(at);
     this.follow(runs[0], time);
     if (this.plane) this.widen(runs[0], time);
-    this.moveThings(this.objects, runs[0]);
-    this.moveGhost(runs[1]);
-    this.moveRods(runs[0]);
-    for (const line of this.lines) line.index(runs[0], time);
-    this.arrows.index(history, at);
-    this.updateTrails(history, at);
+    this.placeThings(this.objects, runs[0]);
+    this.placeGhost(runs[1]);
+    this.placeRods(runs[0]);
+    for (const line of this.lines) line.place(runs[0], time);
+    this.arrows.place(history, at);
+    this.placeTrails(history, at);
     this.controls.update();
     this.renderer.render(this.world, this.camera);
-    this.moveLabels(runs[0]);
+    this.placeLabels(runs[0]);
     this.arrows.label();
   }
 }

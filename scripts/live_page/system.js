@@ -12,8 +12,8 @@ function startOf(file, name) {
 // Returns the file of the system with the present values, and the names of changed variables that the file does not contain.
 function systemNow() {
   const file = new DOMParser().parseFromString(data.system, "text/xml"), missing = [];
-  for (const [index, control] of settings()) {
-    const { name, type } = description.variables[index], found = startOf(file, name);
+  for (const [place, control] of settings()) {
+    const { name, type } = description.variables[place], found = startOf(file, name);
     if (found) found[0].setAttribute(found[1], type === "Boolean" ? String(control.value !== 0) : String(control.value));
     else missing.push(name);
   }

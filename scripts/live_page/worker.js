@@ -8,17 +8,17 @@ const SAVED = 600; // saved states at most, for steps back
 const PREVIEW = 150; // ms for the simulation that determines the size of the view
 
 let description, pulls, wasmOf; // wasmOf(isPulled): returns the functions of a new module
-let shipped, pulled = null, active; // the FMU as shipped, the one whose bodies can be pulled, and the one that runs
+let shipped, pulled = null, side; // the FMU as shipped, the one whose bodies can be pulled, and the one that runs
 let values = [new Map(), new Map()]; // settings of each FMU, by the index of the variable
 let time = 0, speed = 1, playing = false, debt = 0, before = 0;
 let period = 0; // s between points of the section; 0 for none
 let ghost = null; // the second FMU while it does not run
 
-const report = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
+const tell = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
-function reject(problem, content = {}) {
-  if (!(problem instanceof FmuError)) throw problem;
-  report("rejected", { words: problem.message, ...content });
+function refuse(problem, content = {}) {
+  if (!(problem instanceof Refusal)) throw problem;
+  tell("refused", { words: problem.message, ...content });
 }
 
 // Returns the length of the next step: at most the FMU's step size, at least 30 steps per second of wall-clock time, and ending at a period's end.
@@ -32,42 +32,42 @@ function stepLength() {
 const isAtPeriod = () => period > 0 && Math.abs(time / period - Math.round(time / period)) < 1e-9;
 
 function save() {
-  if (active.saved.length === SAVED) active.free.push(active.saved.shift()[1]);
-  const states = active.free.pop() || [];
-  active.saved.push([time, active.fmus.map((fmu, i) => fmu.save(states[i]))]);
+  if (side.saved.length === SAVED) side.free.push(side.saved.shift()[1]);
+  const places = side.free.pop() || [];
+  side.saved.push([time, side.fmus.map((fmu, i) => fmu.save(places[i]))]);
 }
 
 function goBack() {
-  if (active.saved.length === 0) return false;
-  const [then, states] = active.saved.pop();
-  active.fmus.forEach((fmu, i) => fmu.restore(states[i]));
-  active.free.push(states);
+  if (side.saved.length === 0) return false;
+  const [then, places] = side.saved.pop();
+  side.fmus.forEach((fmu, i) => fmu.restore(places[i]));
+  side.free.push(places);
   time = then;
   return true;
 }
 
 function advance(length) {
-  for (const fmu of active.fmus) fmu.step(time, length);
+  for (const fmu of side.fmus) fmu.step(time, length);
   time += length;
 }
 
-const sample = () => active.fmus.map((fmu) => fmu.read(active.references));
+const sample = () => side.fmus.map((fmu) => fmu.read(side.references));
 
 // Returns the time, the values, and the number of events so far.
-const row = () => [time, sample(), active.fmus[0].events()];
+const row = () => [time, sample(), side.fmus[0].events()];
 
-function reportRows(rows, isFresh, name = "samples") {
+function tellOf(rows, isFresh, name = "samples") {
   const [times, values, events] = [0, 1, 2].map((part) => rows.map((one) => one[part]));
-  report(name, { times, rows: values, events, isFresh });
+  tell(name, { times, rows: values, events, isFresh });
 }
 
-function reportNow(isFresh = false) {
-  reportRows([row()], isFresh);
+function tellNow(isFresh = false) {
+  tellOf([row()], isFresh);
 }
 
 function pause() {
   playing = false;
-  report("paused");
+  tell("paused");
 }
 
 function tick() {
@@ -88,14 +88,14 @@ function tick() {
     }
   } catch (problem) {
     goBack();
-    reject(problem);
+    refuse(problem);
     pause();
-    reportNow(true);
+    tellNow(true);
     return;
   }
-  if (rows.length > 0) reportRows(rows);
-  if (section.length > 0) reportRows(section, false, "section");
-  report("pace", { reached: time - from, isBehind: debt >= length });
+  if (rows.length > 0) tellOf(rows);
+  if (section.length > 0) tellOf(section, false, "section");
+  tell("pace", { reached: time - from, isBehind: debt >= length });
   debt = Math.min(debt, length);
   setTimeout(tick, Math.max(0, TICK - (performance.now() - start)));
 }
@@ -110,29 +110,29 @@ function preview() {
       times.push(time);
     }
   } catch (problem) {
-    if (!(problem instanceof FmuError)) throw problem;
+    if (!(problem instanceof Refusal)) throw problem;
   }
-  report("preview", { rows, times });
+  tell("preview", { rows, times });
 }
 
 function startAnew() {
-  active.forgetSaved();
-  active = shipped;
+  side.forgetSaved();
+  side = shipped;
   debt = 0;
   time = description.startTime;
-  active.fmus.forEach((fmu, i) => fmu.start(values[i]));
+  side.fmus.forEach((fmu, i) => fmu.start(values[i]));
 }
 
 // Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.
-function continuePulled() {
-  if (active !== shipped) return;
-  const variables = description.variables.map((variable, index) => ({ ...variable, reference: pulls.references[index] }));
-  pulled ||= new FmuInstances(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
+function goOnPulled() {
+  if (side !== shipped) return;
+  const variables = description.variables.map((variable, place) => ({ ...variable, reference: pulls.references[place] }));
+  pulled ||= new Side(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
   while (pulled.fmus.length < shipped.fmus.length) pulled.add();
   pulled.fmus.length = shipped.fmus.length;
   pulled.fmus.forEach((fmu, i) => fmu.start([...values[i], ...shipped.statesOf(shipped.fmus[i])], time));
   shipped.forgetSaved();
-  active = pulled;
+  side = pulled;
 }
 
 // Returns the functions of an FMU's module.
@@ -146,12 +146,12 @@ const orders = {
   begin(message) {
     ({ description, pulls } = message);
     wasmOf = message.laboratory ? (isPulled) => derivedIn(message.laboratory, isPulled) : (isPulled) => instanceOf(message.modules[Number(isPulled)]);
-    active = shipped = new FmuInstances(wasmOf(false), description, message.shown);
+    side = shipped = new Side(wasmOf(false), description, message.shown);
     shipped.add();
     orders.reset(message);
     preview();
     orders.reset({});
-    report("ready");
+    tell("ready");
   },
   play() {
     if (playing) return;
@@ -172,43 +172,43 @@ const orders = {
       advance(stepLength());
     } catch (problem) {
       goBack();
-      reject(problem);
+      refuse(problem);
     }
-    reportNow();
+    tellNow();
   },
   back() {
-    if (goBack()) reportNow(true);
+    if (goBack()) tellNow(true);
   },
   // Sets a value, which applies now and after the next start; start values and fixed parameters apply after the next start only.
-  set({ index, value }) {
-    const variable = description.variables[index], isLater = variable.role === "start" || variable.isFixed;
-    const { fmus, kept } = active, earlier = fmus.map((_, i) => values[i].get(index) ?? variable.start);
-    fmus.forEach((_, i) => values[i].set(index, value));
+  set({ place, value }) {
+    const variable = description.variables[place], isLater = variable.role === "start" || variable.isFixed;
+    const { fmus, kept } = side, earlier = fmus.map((_, i) => values[i].get(place) ?? variable.start);
+    fmus.forEach((_, i) => values[i].set(place, value));
     if (isLater) return;
     fmus.forEach((fmu, i) => (kept[i] = fmu.save(kept[i])));
     try {
-      for (const fmu of fmus) fmu.set(index, value);
+      for (const fmu of fmus) fmu.set(place, value);
       sample(); // the FMU may reject the value only when it is evaluated
-      report("accepted", { about: index });
+      tell("accepted", { about: place });
     } catch (problem) {
-      reject(problem, { about: index, value, previous: earlier[0] });
+      refuse(problem, { about: place, value, held: earlier[0] });
       fmus.forEach((fmu, i) => {
-        values[i].set(index, earlier[i]);
+        values[i].set(place, earlier[i]);
         fmu.restore(kept[i]);
       });
     }
-    if (!playing) reportNow(true);
+    if (!playing) tellNow(true);
   },
   // Restarts with all settings.
   reset({ set = [] }) {
-    for (const [index, value] of set) values[0].set(index, value);
+    for (const [place, value] of set) values[0].set(place, value);
     try {
       startAnew();
-      reportNow(true);
-      report("accepted");
+      tellNow(true);
+      tell("accepted");
     } catch (problem) {
       pause();
-      reject(problem);
+      refuse(problem);
     }
   },
   ghost({ differences }) {
@@ -225,22 +225,22 @@ const orders = {
   // pointer: its position, the grasped point in the body's frame, and the damping time; a stiffness of 0 releases the body.
   pull({ body, pointer, stiffness }) {
     try {
-      if (stiffness > 0) continuePulled();
-      if (active === shipped) return;
-      for (const fmu of active.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
+      if (stiffness > 0) goOnPulled();
+      if (side === shipped) return;
+      for (const fmu of side.fmus) fmu.setReals([...pulls.pointer, pulls.bodies[body]], [...pointer, stiffness]);
     } catch (problem) {
-      reject(problem);
+      refuse(problem);
     }
   },
   // Steps to a time as fast as possible, with the FMU's step size.
   run({ until }) {
     const steps = Math.round((until - time) / description.stepSize), start = performance.now(), from = time;
     for (let i = 0; i < steps; i++) {
-      for (const fmu of active.fmus) fmu.step(from + i * description.stepSize, description.stepSize);
+      for (const fmu of side.fmus) fmu.step(from + i * description.stepSize, description.stepSize);
       time = from + (i + 1) * description.stepSize;
     }
-    report("ran", { seconds: (performance.now() - start) / 1000, time, values: sample()[0] });
-    reportNow(true);
+    tell("ran", { seconds: (performance.now() - start) / 1000, time, values: sample()[0] });
+    tellNow(true);
   },
 };
 

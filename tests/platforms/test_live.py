@@ -177,7 +177,7 @@ def test_lengths_change(browser, page_file):
             page.get_by_role("spinbutton", name=name, exact=True).fill(value)
             page.get_by_role("spinbutton", name=name, exact=True).press("Enter")
         page.click("#reset")
-        page.wait_for_function("live.scene.holders.some((joint) => joint.point && Math.abs(joint.point[0]) === 0.35)")
+        page.wait_for_function("live.scene.holders.some((joint) => joint.place && Math.abs(joint.place[0]) === 0.35)")
         page.click("#step")
         found = page.evaluate(joints)
         assert len(found) == 4

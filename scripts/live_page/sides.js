@@ -1,14 +1,14 @@
 // Instances of the FMU as shipped, or of the one whose bodies can be pulled, which continues from the other's state. Runs in the worker.
 "use strict";
 
-class FmuInstances {
+class Side {
   // wasm: functions of FMI and of driver.c; description: with the references of this FMU; shown: indices of the shown variables.
   constructor(wasm, description, shown) {
     this.wasm = wasm;
     this.description = description;
     this.shown = shown;
-    this.references = shown.map((index) => description.variables[index].reference);
-    this.states = description.variables.flatMap(({ role, type }, index) => (role === "start" && type === "Real" ? [index] : []));
+    this.references = shown.map((place) => description.variables[place].reference);
+    this.states = description.variables.flatMap(({ role, type }, place) => (role === "start" && type === "Real" ? [place] : []));
     this.fmus = []; // the FMU, and its ghost if there is one
     this.kept = []; // a state of each FMU before the last setting
     this.saved = []; // [time, a state of each FMU], to step back
@@ -20,8 +20,8 @@ class FmuInstances {
   }
 
   statesOf(fmu) {
-    const found = fmu.read(this.states.map((index) => this.description.variables[index].reference));
-    return this.states.map((index, i) => [index, found[i]]);
+    const found = fmu.read(this.states.map((place) => this.description.variables[place].reference));
+    return this.states.map((place, i) => [place, found[i]]);
   }
 
   forgetSaved() {

@@ -6,14 +6,14 @@ const LIFT = 0.1; // elongation of the spring under the system's weight, relativ
 const SWINGS = 10; // oscillations of the system's mass on the spring during the experiment, without gravity
 const DAMPING = 0.5; // damping time of the spring, times its angular frequency
 
-let grabbed = null; // { i, body, local, plane, target } while a body is pulled
+let held = null; // { i, body, local, plane, target } while a body is pulled
 let sent = ""; // the last order to the worker
 let thread = null; // line that shows the spring
 
 const rayAt = (event) => {
   const box = scene.renderer.domElement.getBoundingClientRect(), ray = new THREE.Raycaster();
-  const position = new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
-  ray.setFromCamera(position, scene.camera);
+  const place = new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+  ray.setFromCamera(place, scene.camera);
   return ray;
 };
 
@@ -45,10 +45,10 @@ function localOf(point, i, sample) {
   const { tag, inertia } = scene.things[i], local = point.clone().sub(scene.position(sample, i));
   if (tag !== "body") return new THREE.Vector3();
   if (scene.angles[i] < 0 && inertia !== undefined) return new THREE.Vector3();
-  return local.applyMatrix4(new THREE.Matrix4().getInverse(scene.rotation(sample, i)));
+  return local.applyMatrix4(new THREE.Matrix4().getInverse(scene.turn(sample, i)));
 }
 
-const grabbedPoint = (sample) => grabbed.local.clone().applyMatrix4(scene.rotation(sample, grabbed.i)).add(scene.position(sample, grabbed.i));
+const heldPoint = (sample) => held.local.clone().applyMatrix4(scene.turn(sample, held.i)).add(scene.position(sample, held.i));
 
 // Returns the spring, [stiffness in N/m, damping time in s]: the system's weight stretches it by LIFT, or SWINGS defines its frequency.
 function springOf() {
@@ -63,16 +63,16 @@ function grasp(event) {
   const sample = history.samples[history.length - 1][0], hit = hitAt(event, sample);
   if (!hit) return;
   const [i, point] = hit, normal = scene.camera.getWorldDirection(new THREE.Vector3());
-  grabbed = { i, body: scene.things[i].name, local: localOf(point, i, sample), plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point), target: point };
+  held = { i, body: scene.things[i].name, local: localOf(point, i, sample), plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point), target: point };
   scene.controls.enabled = false;
   scene.renderer.domElement.setPointerCapture(event.pointerId);
   if (!playing) play();
 }
 
 function letGo() {
-  if (!grabbed) return;
-  order("pull", { body: grabbed.body, pointer: [0, 0, 0, 0, 0, 0, 0], stiffness: 0 });
-  grabbed = null;
+  if (!held) return;
+  order("pull", { body: held.body, pointer: [0, 0, 0, 0, 0, 0, 0], stiffness: 0 });
+  held = null;
   sent = "";
   live.pulled = null;
   thread.visible = false;
@@ -80,15 +80,15 @@ function letGo() {
 }
 
 // Updates the pull once a frame, since bodies move while the pointer rests.
-function updatePull() {
-  if (!grabbed) return;
-  const [stiffness, time] = springOf(), pointer = [...grabbed.target.toArray(), ...grabbed.local.toArray(), time];
-  live.pulled = { body: grabbed.body, pointer, stiffness };
+function pullOn() {
+  if (!held) return;
+  const [stiffness, time] = springOf(), pointer = [...held.target.toArray(), ...held.local.toArray(), time];
+  live.pulled = { body: held.body, pointer, stiffness };
   const words = JSON.stringify(live.pulled);
   if (words !== sent) order("pull", live.pulled);
   sent = words;
   const sample = history.samples[history.length - 1][0];
-  thread.geometry.setFromPoints([grabbedPoint(sample), grabbed.target]);
+  thread.geometry.setFromPoints([heldPoint(sample), held.target]);
   thread.visible = true;
 }
 
@@ -100,6 +100,6 @@ function addPulling() {
   scene.world.add(thread);
   canvas.title = "drag a body to pull it";
   canvas.addEventListener("pointerdown", grasp, true);
-  canvas.addEventListener("pointermove", (event) => grabbed && rayAt(event).ray.intersectPlane(grabbed.plane, grabbed.target));
+  canvas.addEventListener("pointermove", (event) => held && rayAt(event).ray.intersectPlane(held.plane, held.target));
   for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(name, letGo);
 }
