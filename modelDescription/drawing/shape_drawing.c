@@ -23,10 +23,10 @@ static void set_pose(const struct Model *model, const struct ContactShape *shape
   const struct Pose *pose = &model->mechanism.frames[shape->frame].pose;
   const struct Body *body = shape->particle != NO_PARTICLE ? &model->mechanism.bodies[shape->particle] : NULL;
   double angle = body != NULL && body->has_angle ? values[body->angle.node] : 0.0;
-  const double turned[3][3] = {{cos(angle), -sin(angle), 0.0}, {sin(angle), cos(angle), 0.0}, {0.0, 0.0, 1.0}};
+  const double in_plane[3][3] = {{cos(angle), -sin(angle), 0.0}, {sin(angle), cos(angle), 0.0}, {0.0, 0.0, 1.0}};
   for (int i = 0; i < 3; i++) {
     origin[i] = values[body != NULL ? body->position[i].node : pose->origin.along[i]];
-    for (int j = 0; j < 3; j++) rotation[i][j] = body != NULL ? turned[i][j] : values[pose->rotation.row[i].along[j]];
+    for (int j = 0; j < 3; j++) rotation[i][j] = body != NULL ? in_plane[i][j] : values[pose->rotation.row[i].along[j]];
   }
 }
 

@@ -96,12 +96,12 @@ class _Search:
         found = [*self.point.read(self.point.derivatives), *(np.array([*at[self.places], *self.point.read(self.outputs)]) - self.wanted)]
         return np.concatenate([at, values[count:]]), np.array(found)
 
-    def go_on(self, values, move):
+    def move_by(self, values, move):
         """Return the values and the residuals after a move that keeps contacts closed and frictions sticking, where they can."""
         count, target = len(self.point.states), values + move
         if self.point.indicator_count:
-            held = self.point.held(values[:count], target[:count])
-            target[:count] = target[:count] if held is None else held
+            projected = self.point.projected(values[:count], target[:count])
+            target[:count] = target[:count] if projected is None else projected
         return self.go_to(target)
 
     def linearize(self, values):
@@ -164,7 +164,7 @@ class _Search:
         """Return the values after the longest part of the step that decreases the error, and the residual there; None if no part does."""
         for halving in range(HALVINGS):
             try:
-                reached, found = self.go_on(values, step / 2**halving)
+                reached, found = self.move_by(values, step / 2**halving)
             except FMICallException:  # there is no such position
                 self.point.messages.clear()
                 continue
@@ -219,9 +219,9 @@ class _Search:
 
     def touched(self, values, move):
         """Return the values and the residual after a move. If initialization has removed a penetration, a tiny second move closes the contact."""
-        found = self.go_on(values, move)
+        found = self.move_by(values, move)
         corrected = np.max(np.abs(found[0] - values - move) / self.size)
-        return self.go_on(found[0], TOUCH / self.reach * move) if corrected > self.reach / 2 else found
+        return self.move_by(found[0], TOUCH / self.reach * move) if corrected > self.reach / 2 else found
 
     def why(self, values, off):
         """Return the message about accelerations and rates that are not 0."""

@@ -29,7 +29,7 @@ static bool has_value_for(const struct Preset *preset, const char *name) {
   return false;
 }
 
-static void check_value(struct Reader *reader, xmlNodePtr node, const struct Variable *variable, double value) {
+static void check_preset_value(struct Reader *reader, xmlNodePtr node, const struct Variable *variable, double value) {
   if (value < variable->minimum || value > variable->maximum)
     report_at(reader, node, "'%s': %g is outside min and max; expected a value between them", variable->name, value);
   else if (variable->type == TYPE_INTEGER && value != floor(value))
@@ -53,7 +53,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *pr
   else if (has_value_for(preset, name))
     report_at(reader, node, "the preset names '%s' twice; expected one value", name);
   else {
-    check_value(reader, node, variable, value);
+    check_preset_value(reader, node, variable, value);
     preset->values = make_room(preset->values, preset->count, sizeof *preset->values);
     preset->values[preset->count++] = (struct PresetValue){name, value};
   }
