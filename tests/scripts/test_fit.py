@@ -38,12 +38,21 @@ LEAST = """<system name="Least"><parameter name="p" start="1" unit="N" min="0"/>
 DISK = """<system name="Disk"><parameter name="T" start="2" unit="N.m"/><coordinate name="phi" velocity="w" unit="rad"/><kinetic>w^2/2</kinetic><force coordinate="phi">T</force></system>"""
 RUBBED = """<system name="Rubbed"><parameter name="F" start="1" unit="N" min="0"/><parameter name="d" start="0.2" unit="N.s2/m2" min="0"/><input name="u" unit="N"/>
   <coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><friction name="rub" coordinate="x" force="F"/><force coordinate="x">u - d*v*abs(v)</force></system>"""
+ROOT = """<system name="Root"><parameter name="k" start="6"/><parameter name="r" start="4"/><coordinate name="x" velocity="v" velocityStart="1"/>
+  <particle mass="1" x="x"/><force coordinate="x">k*sqrt(r - x) - 4*x</force></system>"""
 RELEASED = WALLED.replace('"Walled"', '"Released"').replace('unit="m"/><particle', 'unit="m" start="-0.7*l"/><particle')
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("fitted", {"Sum": SUM, "Least": LEAST, "Disk": DISK, "Rubbed": RUBBED, "Noted": NOTED, "Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF})
+    build_systems("fitted", {"Sum": SUM, "Least": LEAST, "Disk": DISK, "Rubbed": RUBBED, "Noted": NOTED, "Released": RELEASED, "Off": OFF, "Two": TWO, "Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Late": LATE, "Walled": WALLED, "Worked": WORKED, "Stiff": STIFF, "Root": ROOT})
+
+
+def test_a_fit_whose_first_motion_fails(lagrange_fmu):
+    """x reaches r, beyond which the root does not exist: the message has the time, and nothing was found so far."""
+    data = np.array([(t, 0.3 * np.sin(2 * t)) for t in np.linspace(0, 3, 31)], dtype=[("time", float), ("x", float)])
+    with pytest.raises(lagrange_fmu.Problem, match="the motion from the values to begin with cannot be computed"):
+        lagrange_fmu.fit(fmu.archive("Root"), data, ["k", "r"], {"r": 0.1, "k": 6})
 
 
 def test_derivatives_of_an_oscillation(lagrange_fmu):

@@ -142,14 +142,14 @@ class _Search:
         try:
             found = least_squares(self.residuals_at, begin, self.slopes_at, bounds=limits, x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-12, loss=loss)
         except KeyboardInterrupt:
-            why = f"stopped after {self.count} motions; the values are the best so far"
+            if self.best is None:
+                raise
+            return f"stopped after {self.count} motions; the values are the best so far"
         except Problem as problem:
-            why = f"ended after {self.count} motions, and the values are the best so far, since no derivatives are found: {problem}"
-        else:
-            return None if found.status > 0 else f"ended after {self.count} motions without convergence; the values are the best so far"
-        if self.best is None:
-            raise
-        return why
+            if self.best is None:
+                raise
+            return f"ended after {self.count} motions, and the values are the best so far, since no derivatives are found: {problem}"
+        return None if found.status > 0 else f"ended after {self.count} motions without convergence; the values are the best so far"
 
 
 def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):

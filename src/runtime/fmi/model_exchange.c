@@ -120,12 +120,15 @@ bool exchange_is_event_due(struct Instance *instance) {
   return lagrangian.event_laws->is_due(instance) || (times != NULL && times->is_due(instance));
 }
 
+/*
+ * Importers update the discrete states in each event mode (FMI 2.0.4, section 3.2.2; FMI 3.0.2, section 2.3.5). Some do
+ * not after the initialization (pathsim 0.27), which changes nothing unless an event is due.
+ */
 enum Status exchange_leave_event_mode(struct Instance *instance) {
   struct FmuState *fmu_state = instance->fmu_state;
   bool is_exchange = instance->kind == KIND_MODEL_EXCHANGE;
-  if (fmu_state->update == UPDATE_MISSING)
-    return reject_call(instance, "expected an update of the discrete states before it, in each event mode");
-  if (is_exchange && fmu_state->update == UPDATE_BEFORE_CHANGE && exchange_is_event_due(instance))
+  bool lacks_update = fmu_state->update == UPDATE_MISSING || (is_exchange && fmu_state->update == UPDATE_BEFORE_CHANGE);
+  if (lacks_update && exchange_is_event_due(instance))
     return reject_call(instance, "an event is due; expected an update of the discrete states before it");
   fmu_state->phase = is_exchange ? PHASE_CONTINUOUS_TIME : PHASE_STEP_COMPLETE;
   return STATUS_DONE;

@@ -5,20 +5,27 @@
 
 #include "base/memory.h"
 
+/* Returns the variables of a kind that can be set before the start; NULL for other kinds. */
+static const struct VariableList *settable_variables(const struct Model *model, enum SymbolKind kind) {
+  switch (kind) {
+  case PARAMETER: return &model->parameters;
+  case INPUT: return &model->inputs;
+  case COORDINATE: return &model->coordinates;
+  case VELOCITY: return &model->velocities;
+  case STATE: return &model->states;
+  default: return NULL;
+  }
+}
+
 /* Returns the variable that a name denotes if it can be set before the start; NULL otherwise. */
 static const struct Variable *settable_variable(const struct Reader *reader, const char *name) {
   struct Model *model = reader->model;
   const struct Quantity *quantity = scope_find(reader->scope, name);
   if (quantity == NULL || model->graph->vertices[quantity->node].operation != SYMBOL) return NULL;
   const struct Symbol *symbol = graph_symbol_of(model->graph, quantity->node);
-  const struct VariableList *lists[] = {[PARAMETER] = &model->parameters,
-                                        [INPUT] = &model->inputs,
-                                        [COORDINATE] = &model->coordinates,
-                                        [VELOCITY] = &model->velocities,
-                                        [STATE] = &model->states};
-  size_t kind = (size_t)symbol->kind;
-  if (kind >= sizeof lists / sizeof *lists || lists[kind] == NULL) return NULL;
-  const struct Variable *variable = &lists[kind]->items[symbol->index];
+  const struct VariableList *list = settable_variables(model, symbol->kind);
+  if (list == NULL) return NULL;
+  const struct Variable *variable = &list->items[symbol->index];
   /* A calculated parameter that equals another one has the symbol of that one. */
   return strcmp(variable->name, name) == 0 ? variable : NULL;
 }
