@@ -48,6 +48,7 @@ READ = {
         "Gear with losses": "fmu/howto/gear-with-losses.md",
         "Brake": "fmu/howto/brake.md",
         "Rope": "fmu/howto/rope.md",
+        "Tanks": "fmu/howto/tanks.md",
         "One-way clutch": "fmu/howto/one-way-clutch.md",
         "Tyre": "fmu/howto/tyre.md",
         "Import into FMPy": "fmu/howto/import-into-fmpy.md",

@@ -287,7 +287,7 @@ PLACES = {
     "along": '<friction name="F" velocity="{}*v" force="1"/>',
     "gap": '<contact name="G" gap="{} + 5"/>',
     "restitution": '<contact name="G" gap="x + 10" restitution="{}"/>',
-    "when": '<event when="{}"><set velocity="v">-v</set></event>',
+    "when": '<event when="{} - 0.2"><set velocity="v">-v</set></event>',
     "condition": '<event when="{} &gt; 0.5"><set velocity="v">-v</set></event>',
     "set": '<event when="x - 1"><set velocity="v">{}</set></event>',
     "mode": '<event when="x - 1"><set mode="m">{}</set></event>',

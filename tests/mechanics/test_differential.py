@@ -204,7 +204,7 @@ def test_reference_starts_at_a_knot(gap, restitution, direction, tmp_path):
 def test_reference_agrees_with_taylor_series(tmp_path):
     """The reference agrees with FLINT's series at 30 digits on smooth systems without narrow forces."""
     compared = 0
-    for number in range(200):
+    for number in range(400):
         system = generate(SEED, number)
         # Motion supports neither kinks nor changed parameters, and its atan2 has one branch.
         if not system.families <= SMOOTH | {f for f in system.families if f.startswith("skeleton")}:

@@ -190,7 +190,7 @@ def random_values(case, random, names):
     values = {symbol: random.uniform(0.3, 2) for symbol in system.arguments}
     for i, (q, v) in enumerate(zip(system.q, system.v)):
         values[q], values[v] = random.uniform(-2, 2, 2)
-        if i in case.held and q.name not in names:
+        if i in case.prescribed and q.name not in names:
             values[q] = values[v] = 0.0
     return values
 

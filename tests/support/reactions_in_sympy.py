@@ -15,28 +15,28 @@ from mechanics import System, kinetic, time, velocity
 @dataclass
 class ConstrainedSystem:
     """
-    System whose coordinates `constrained_system` (by index) have prescribed accelerations; those of displacements are 0, as are their values. forces: the
+    System whose coordinates `prescribed` (by index) have these accelerations; those of displacements are 0, as are their values. forces: the
     names of the multipliers and the sign of each in M a = Q + ... - J^T F.
     """
 
     system: System
-    constrained_system: dict
+    prescribed: dict
     forces: dict
     outputs: dict = field(default_factory=dict)
 
     def __post_init__(self):
-        values = [*self.constrained_system.values()]
+        values = [*self.prescribed.values()]
         self.evaluate = self.system.evaluator("numpy")
         self.given = sp.lambdify(self.system.arguments, [sp.sympify(value) for value in values], modules="numpy")
 
     def solve(self, *arguments):
         """Solve [[M, J^T], [J, 0]] [a, F] = [Q + ..., given]; return the accelerations, and the multipliers F by name."""
         mass, terms = self.evaluate(*arguments)
-        n, constrained_system = len(mass), list(self.constrained_system)
-        matrix, right = np.zeros((n + len(constrained_system), n + len(constrained_system))), np.zeros(n + len(constrained_system))
+        n, prescribed = len(mass), list(self.prescribed)
+        matrix, right = np.zeros((n + len(prescribed), n + len(prescribed))), np.zeros(n + len(prescribed))
         matrix[:n, :n] = mass
         right[:n] = [sum(row) for row in terms]
-        for k, (i, given) in enumerate(zip(constrained_system, self.given(*arguments))):
+        for k, (i, given) in enumerate(zip(prescribed, self.given(*arguments))):
             matrix[i, n + k] = matrix[n + k, i] = 1.0
             right[n + k] = given
         solution = np.linalg.solve(matrix, right)
