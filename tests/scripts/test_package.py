@@ -374,10 +374,10 @@ try:
     motor.animate()
 except lagrange_fmu.Problem as problem:
     print(problem)
-""".replace("MOTOR", repr(str(fmu.archive("Motor"))))
+""".replace("MOTOR", repr(str(fmu.archive("SpringDamper"))))
     (tmp_path / "script.py").write_text(script)
     printed = succeed(package.python(folder, "script.py", cwd=tmp_path)).splitlines()
-    assert printed == ["swing.html 2 (10,) 1.0", "Motor has no particles, bodies, frames or points to be drawn; expected some in the system"]
+    assert printed == ["swing.html 2 (10,) 1.0", "SpringDamper has no particles, bodies, frames or points to be drawn; expected some in the system"]
     page = (tmp_path / "swing.html").read_text()
     assert '"recording":{' in page and re.search(r'"start":{[^}]*"theta":1.0[,}]', page)
 

@@ -25,9 +25,9 @@ REFUSED = {
                      "the friction 'F' neither sticks nor slides; expected a stiction of at least the force while it slides, less friction"),
     "WrongSide": ('<constraint name="C">y - 0.5</constraint><friction name="F" coordinate="x" force="0.3*C.force"/><force coordinate="x">4</force>'
                   + WEIGHT.format("y"), "the force of the friction 'F' is -2.943"),
-    # exp(2000) overflows at the start, and so does the rate of exp(-exp(2000)) = 0.
-    "Overflowing": ('<contact name="g" gap="y - 0.5 - 0.39*exp(-exp(-(time - 0.2)/1e-4))"/>' + WEIGHT.format("y"),
-                    r"the gap of the contact 'g' has no finite rate, as where exp\(x\) overflows above x = 709; expected a gap that is finite"),
+    # exp(2000) overflows at the start, so that exp(2000)*exp(-exp(2000)) has no value in doubles.
+    "Overflowing": ('<contact name="g" gap="y - 0.5 - 0.39*exp(-(time - 0.2)/1e-4)*exp(-exp(-(time - 0.2)/1e-4))"/>' + WEIGHT.format("y"),
+                    r"the gap of the contact 'g' has no finite value, as where exp\(x\) overflows above x = 709; expected a gap that is finite"),
     "TornApart": ('<constraint name="C">y - 0.5*x</constraint><event when="time &gt; 1"><set coordinate="x">2</set></event>',
                   "an event sets coordinates that violate the constraint 'C'"),
     "Sunk": ('<contact name="g" gap="x"/><event when="time &gt; 1"><set coordinate="x">-1</set></event>', "the contact 'g' is penetrated at an event"),
