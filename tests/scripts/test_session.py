@@ -208,7 +208,7 @@ def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
         ({"tolerance": "fine"}, "the tolerance is 'fine'; expected a number between 0 and 1"),
         ({"fmi": 3}, "is built already"),
     ):
-        with pytest.raises(lagrange_fmu.Problem, match=message if "start_values" not in words else "'start_values' is not a variable"):
+        with pytest.raises(lagrange_fmu.Problem, match=message if "start_values" not in words else "'start_values' parameter is positional only"):
             lagrange_fmu.start(archive("PushedInSession"), **words)
     with pytest.raises(lagrange_fmu.Problem, match="there is no file"):
         lagrange_fmu.start(tmp_path / "nothing.fmu")
