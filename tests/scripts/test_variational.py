@@ -79,8 +79,8 @@ def motion_through_events(name, of, times, start, monkeypatch, ways):
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.sensitivity import Motion
 
-    by, go_on = SWITCHED[name][1], Motion.continue_to
-    monkeypatch.setattr(EventMotion, "go_on", lambda self, begin, *words: ways.append(begin) or go_on(self, begin, *words))
+    by, continue_to = SWITCHED[name][1], Motion.continue_to
+    monkeypatch.setattr(EventMotion, "continue_to", lambda self, begin, *words: ways.append(begin) or continue_to(self, begin, *words))
     with opened(archive_of(BUILD / "variational_switched", name), start) as point, opened(archive_of(BUILD / f"variational_{name}", name, 3), start, by=by, stops_at_events=True) as point.in_series:
         return EventMotion(point, of, by, 1e-11).over(np.array(times))
 
