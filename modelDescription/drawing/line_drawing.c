@@ -8,12 +8,13 @@
 struct Way {
   struct Spot from, to;
   double right, up; /* unit vector to its right */
+  double length;    /* in m */
 };
 
 static struct Way way_between(struct Spot from, struct Spot to) {
   double right = to.right - from.right, up = to.up - from.up, length = hypot(right, up);
-  if (!(length > 0.0)) return (struct Way){from, to, 1.0, 0.0};
-  return (struct Way){from, to, up / length, -right / length};
+  if (!(length > 0.0)) return (struct Way){from, to, 1.0, 0.0, 0.0};
+  return (struct Way){from, to, up / length, -right / length, length};
 }
 
 static struct Spot spot_at(const struct Way *way, double share, double aside) {
@@ -93,11 +94,11 @@ static void append_circle(struct Drawing *drawing, const struct View *view, cons
 
 static void append_hatched(struct Drawing *drawing, const struct Way *way, double size) {
   enum { HATCHES = 12 };
-  double depth = 0.05 * size, length = hypot(way->to.right - way->from.right, way->to.up - way->from.up);
-  int count = (int)fmin(fmax(length / depth / 1.5, 3.0), HATCHES);
+  double depth = 0.05 * size;
+  int count = (int)fmin(fmax(way->length / depth / 1.5, 3.0), HATCHES);
   for (int i = 1; i <= count; i++)
     append_between(drawing, GROUND, way, (double[]){(double)i / count, 0.0},
-                   (double[]){(double)i / count - fmin(depth / length, 1.0 / count), depth});
+                   (double[]){(double)i / count - fmin(depth / way->length, 1.0 / count), depth});
   append_line(drawing, GROUND, way->from, way->to);
 }
 
@@ -112,8 +113,7 @@ static void append_support(struct Drawing *drawing, struct Spot spot, double rad
 }
 
 static void append_arrow(struct Drawing *drawing, const struct Way *way, double size) {
-  double length = hypot(way->to.right - way->from.right, way->to.up - way->from.up);
-  double share = length > 0.0 ? 1.0 - fmin(0.08 * size / length, 0.5) : 1.0, aside = 0.03 * size;
+  double share = way->length > 0.0 ? 1.0 - fmin(0.08 * size / way->length, 0.5) : 1.0, aside = 0.03 * size;
   append_line(drawing, LINK, way->from, way->to);
   append_shape(drawing, LINK, false, (struct Spot[]){spot_at(way, share, aside), way->to, spot_at(way, share, -aside)},
                3);

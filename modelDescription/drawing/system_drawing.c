@@ -295,6 +295,11 @@ static void append_planes(struct Drawing *drawing, const struct Sight *sight, co
   }
 }
 
+static void append_lines(struct Drawing *drawing, const struct Sight *sight, const struct Model *model, double size) {
+  for (size_t i = 0; i < model->drawing.count; i++)
+    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size);
+}
+
 /* Draws what the author describes: lines, and shapes on them. Returns false if there is nothing to see. */
 static bool draw_lines(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
   struct Drawing bodies = {.count = 0};
@@ -306,8 +311,7 @@ static bool draw_lines(struct Drawing *drawing, const struct Sight *sight, const
   struct Rectangle all = rectangle_of(&extent);
   if (!is_finite(&all)) return false;
   append_planes(drawing, sight, model, size_of(&all));
-  for (size_t i = 0; i < model->drawing.count; i++)
-    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size_of(&all));
+  append_lines(drawing, sight, model, size_of(&all));
   append_drawing(drawing, &bodies);
   return true;
 }
@@ -321,8 +325,7 @@ static bool draw_guesses(struct Drawing *drawing, const struct Sight *sight, con
   if (sight->samples.thing_count <= 1 || !is_finite(&all)) return false;
   append_surfaces(&seen_things, sight, size_of(&all));
   append_axes(drawing, sight, size_of(&all));
-  for (size_t i = 0; i < model->drawing.count; i++)
-    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size_of(&all));
+  append_lines(drawing, sight, model, size_of(&all));
   append_drawing(drawing, &seen_things);
   return true;
 }

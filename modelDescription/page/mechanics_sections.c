@@ -86,10 +86,9 @@ static void write_constraints(struct Page *page) {
   if (count > model->switches.contact_count + model->switches.friction_count)
     page_paragraph(
         page, "A constraint's force λ, its multiplier, stands on the left of the equations of motion, times the "
-              "derivatives of "
-              "the constraint by the coordinates, or by the velocities if it has any: it is a tension where the "
-              "constraint is a "
-              "distance less a length. After each step of the solver the state is projected onto the constraints.");
+              "derivatives of the constraint by the coordinates, or by the velocities if it has any: it is a tension "
+              "where the constraint is a distance less a length. After each step of the solver the state is projected "
+              "onto the constraints.");
   if (model->switches.contact_count > 0)
     page_paragraph(page, "The force λ of a closed contact pushes; that of an open one is 0.");
 }

@@ -75,21 +75,31 @@ char *page_with_multipliers(const struct Page *page, const char *text) {
   return close_text(&result);
 }
 
+/* Returns an equation as MathML; NULL if it is too long. */
+static char *typeset_equation(const struct Page *page, const char *text) {
+  return mathml_of_equation(page_with_multipliers(page, text));
+}
+
+/* Writes an equation that is given as MathML. */
+static void write_formula(const struct Page *page, const char *math) {
+  xmlTextWriterStartElement(page->writer, BAD_CAST "p");
+  write_attribute(page->writer, "class", "formula");
+  xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
+  xmlTextWriterEndElement(page->writer);
+}
+
 static void write_equation(const struct Page *page, const char *label, const char *left, const char *right) {
   if (page->lines != NULL) {
     fprintf(page->lines, "equation\t%s\t%s\t%s\n", label != NULL ? label : "", left, right);
     return;
   }
   char *text = format_text("%s = %s", left, right);
-  char *math = mathml_of_equation(page_with_multipliers(page, text));
+  char *math = typeset_equation(page, text);
   xmlTextWriterStartElement(page->writer, BAD_CAST "div");
   write_attribute(page->writer, "class", math != NULL ? "equation" : "long equation");
   if (label != NULL) page_element(page, "span", label);
   if (math != NULL) {
-    xmlTextWriterStartElement(page->writer, BAD_CAST "p");
-    write_attribute(page->writer, "class", "formula");
-    xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
-    xmlTextWriterEndElement(page->writer);
+    write_formula(page, math);
     write_text(page, "as text", text);
   } else {
     char *summary = strlen(left) > 40 ? copy_text("a long equation; click to see it")
@@ -124,16 +134,14 @@ void page_step(const struct Page *page, const char *heading) {
 
 void page_step_texts(const struct Page *page, const char *left, const char *right) {
   char *text = format_text("%s = %s", left, right);
-  char *math = strlen(text) <= STEP_LENGTH_LIMIT ? mathml_of_equation(page_with_multipliers(page, text)) : NULL;
-  if (page->lines != NULL)
-    fprintf(page->lines, "line\t%s\t%s\n", left, strlen(text) <= STEP_LENGTH_LIMIT ? right : "...");
-  else if (math == NULL) page_element(page, "p", format_text("%s is too long to be shown.", left));
-  else {
-    xmlTextWriterStartElement(page->writer, BAD_CAST "p");
-    write_attribute(page->writer, "class", "formula");
-    xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
-    xmlTextWriterEndElement(page->writer);
+  bool is_short = strlen(text) <= STEP_LENGTH_LIMIT;
+  if (page->lines != NULL) {
+    fprintf(page->lines, "line\t%s\t%s\n", left, is_short ? right : "...");
+    return;
   }
+  char *math = is_short ? typeset_equation(page, text) : NULL;
+  if (math != NULL) write_formula(page, math);
+  else page_element(page, "p", format_text("%s is too long to be shown.", left));
 }
 
 void page_step_equation(const struct Page *page, const char *left, Node right) {

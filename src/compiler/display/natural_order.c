@@ -212,16 +212,18 @@ static struct Terms coefficients_of(const struct Atoms *atoms, const struct Term
   return found;
 }
 
-/* Returns the sum of pieces that are not collected further, and true in *is_single if it is one piece. */
-static char *plain_sum(const struct Atoms *atoms, const struct Terms *terms, const char *const *texts,
-                       struct Piece *single) {
+static struct Pieces *create_pieces(const struct Atoms *atoms, const char *const *texts) {
   struct Pieces *pieces = allocate(1, sizeof *pieces);
   pieces->atoms = atoms;
   pieces->texts = texts;
+  return pieces;
+}
+
+/* Returns the sum of the pieces and of further terms, which are collected by parameters; releases the pieces. */
+static char *sum_with_terms(struct Pieces *pieces, const struct Terms *terms) {
   collect_parameters(pieces, terms);
-  sort_pieces(atoms, pieces->items, pieces->count);
+  sort_pieces(pieces->atoms, pieces->items, pieces->count);
   char *text = joined_text(pieces->items, pieces->count);
-  *single = pieces->count == 1 ? pieces->items[0] : (struct Piece){.text = NULL};
   release(pieces);
   return text;
 }
@@ -229,7 +231,7 @@ static char *plain_sum(const struct Atoms *atoms, const struct Terms *terms, con
 /* Returns the terms of one acceleration as a piece. */
 static struct Piece collected_acceleration(const struct Atoms *atoms, struct Terms *coefficients, int acceleration,
                                            const char *const *texts) {
-  struct Piece single, whole = {.class = OF_ACCELERATION};
+  struct Piece whole = {.class = OF_ACCELERATION};
   struct Term common = take_common_atoms(coefficients->items, coefficients->count);
   bool is_negative = true;
   for (size_t i = 0; i < coefficients->count; i++) is_negative &= coefficients->items[i].coefficient < 0.0;
@@ -237,7 +239,7 @@ static struct Piece collected_acceleration(const struct Atoms *atoms, struct Ter
   common.exponents[acceleration] = 1.0;
   double number = common_number(coefficients->items, coefficients->count);
   for (size_t i = 0; i < coefficients->count; i++) coefficients->items[i].coefficient /= number;
-  char *text = plain_sum(atoms, coefficients, texts, &single);
+  char *text = sum_with_terms(create_pieces(atoms, texts), coefficients);
   whole.text = product_text(atoms, number, &common, texts, text);
   whole.term.exponents[acceleration] = 1.0;
   whole.is_negative = is_negative;
@@ -245,11 +247,9 @@ static struct Piece collected_acceleration(const struct Atoms *atoms, struct Ter
 }
 
 char *sum_in_natural_order(const struct Atoms *atoms, const struct Terms *terms, const char *const *texts) {
-  struct Pieces *pieces = allocate(1, sizeof *pieces);
+  struct Pieces *pieces = create_pieces(atoms, texts);
   bool done[TERM_ROOM] = {false};
   struct Terms rest = {allocate(terms->count, sizeof *rest.items), 0};
-  pieces->atoms = atoms;
-  pieces->texts = texts;
   for (size_t i = 0; i < terms->count; i++) {
     int acceleration = acceleration_of(atoms, &terms->items[i]);
     if (done[i]) continue;
@@ -263,10 +263,7 @@ char *sum_in_natural_order(const struct Atoms *atoms, const struct Terms *terms,
     else rest.items[rest.count++] = terms->items[i];
     release(coefficients.items);
   }
-  collect_parameters(pieces, &rest);
-  sort_pieces(atoms, pieces->items, pieces->count);
-  char *text = joined_text(pieces->items, pieces->count);
+  char *text = sum_with_terms(pieces, &rest);
   release(rest.items);
-  release(pieces);
   return text;
 }

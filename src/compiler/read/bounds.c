@@ -8,7 +8,7 @@
 
 static const struct Bounds everything = {-INFINITY, INFINITY};
 
-static const double half_turn = 1.57079632679489662; /* pi/2 rad */
+static const double quarter_turn = 1.57079632679489662; /* pi/2 rad */
 
 static double larger(double a, double b) {
   return a > b ? a : b;
@@ -81,9 +81,9 @@ static struct Bounds of_function(enum Operation operation, struct Bounds a) {
   case SINE:
   case COSINE: return (struct Bounds){-1.0, 1.0};
   case TANH: return (struct Bounds){tanh(a.low), tanh(a.high)};
-  case ARCSINE: return (struct Bounds){-half_turn, half_turn};
+  case ARCSINE: return (struct Bounds){-quarter_turn, quarter_turn};
   case ARCTANGENT: return (struct Bounds){atan(a.low), atan(a.high)};
-  case ARCCOSINE: return (struct Bounds){0.0, 2.0 * half_turn};
+  case ARCCOSINE: return (struct Bounds){0.0, 2.0 * quarter_turn};
   case COSH: return (struct Bounds){1.0, INFINITY};
   case EXPONENTIAL: return (struct Bounds){exp(a.low), exp(a.high)};
   case ABSOLUTE: return magnitude(a);
@@ -145,5 +145,7 @@ struct Bounds bounds_of(const struct Model *model, Node node, const struct Bound
     found[i] = of_vertex(model, cone->nodes[i], indicators, found);
     if (isnan(found[i].low) || isnan(found[i].high)) found[i] = everything;
   }
-  return found[cone_slot(cone, node)];
+  struct Bounds bounds = found[cone_slot(cone, node)];
+  release(found);
+  return bounds;
 }
