@@ -32,7 +32,7 @@ function goTo({ name, line }) {
   const starts = [0, ...[...$("source").value.matchAll(/\n/g)].map((end) => end.index + 1)], at = starts[line - 1] ?? 0;
   $("source").focus();
   $("source").setSelectionRange(at, (starts[line] ?? $("source").value.length + 1) - 1);
-  $("source").scrollTop = Math.max(0, (line - 5) * 19);
+  $("source").scrollTop = Math.max(0, (line - 5) * LINE);
 }
 
 function tell(messages) {

@@ -4,7 +4,7 @@
 class EnergyBar {
   // columns: those of the kinetic and of the potential energy among the variables of the history.
   constructor(element, history, columns) {
-    Object.assign(this, { element, history, columns, from: null, low: Infinity, most: 0 });
+    Object.assign(this, { element, history, columns, from: 0, low: Infinity, most: 0 });
     this.parts = ["kinetic", "potential"].map((name) => {
       const part = document.createElement("i");
       part.className = name;
@@ -18,7 +18,7 @@ class EnergyBar {
   // Draws the energies of a sample. The potential energy counts from its lowest value so far.
   draw(at) {
     const { history, columns: [kinetic, potential] } = this;
-    if (this.from === null || history.length < this.from) [this.from, this.low, this.most] = [0, Infinity, 0]; // another run
+    if (history.length < this.from) [this.from, this.low, this.most] = [0, Infinity, 0]; // another run
     for (; this.from < history.length; this.from++) this.low = Math.min(this.low, history.value(this.from, potential));
     const energies = [history.value(at, kinetic), history.value(at, potential) - this.low];
     this.most = Math.max(this.most, energies[0] + energies[1], Number.MIN_VALUE);

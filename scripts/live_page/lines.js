@@ -149,17 +149,25 @@ class DrawnLine {
     this.headLength = head;
   }
 
+  // Returns the axis x of the group, at a right angle to its axis y; that of a ground in space points downwards.
+  side(y) {
+    const { scene } = this, up = new THREE.Vector3(...scene.up);
+    if (this.kind === "ground" && !scene.plane) return y.clone().multiplyScalar(y.dot(up)).sub(up).normalize();
+    const isFacing = !this.line.axis && scene.plane && scene.outwards; // towards the camera
+    const normal = isFacing ? scene.outwards : new THREE.Vector3().setComponent(scene.normalAxis(this.line), 1);
+    for (const other of [normal, new THREE.Vector3(1, 0, 0)]) {
+      const x = new THREE.Vector3().crossVectors(y, other);
+      if (x.length() >= 1e-6) return x.normalize();
+    }
+    return new THREE.Vector3(0, 0, 1);
+  }
+
   place(sample, time) {
     const [from, to] = this.at(sample, time), { scene, group } = this;
     const way = this.isPoint ? new THREE.Vector3(...scene.up) : to.clone().sub(from), length = this.isPoint ? 1 : way.length();
     group.visible = Number.isFinite(length) && Number.isFinite(from.length()) && length > 1e-9 * scene.radius;
     if (!group.visible) return;
-    const y = way.normalize(), normal = new THREE.Vector3().setComponent(scene.normalAxis(this.line), 1);
-    if (!this.line.axis && scene.outwards) normal.copy(scene.plane ? scene.outwards : normal);
-    let x = new THREE.Vector3().crossVectors(y, normal);
-    if (x.length() < 1e-6) x = new THREE.Vector3().crossVectors(y, new THREE.Vector3(1, 0, 0)).length() < 1e-6 ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3().crossVectors(y, new THREE.Vector3(1, 0, 0));
-    if (this.kind === "ground" && !scene.plane) x.set(...scene.up).multiplyScalar(-1).addScaledVector(y, y.dot(new THREE.Vector3(...scene.up)));
-    x.normalize();
+    const y = way.normalize(), x = this.side(y);
     group.matrix.makeBasis(x, y, new THREE.Vector3().crossVectors(x, y));
     if (this.isRound) group.matrix.scale(new THREE.Vector3(length, length, length));
     group.matrix.setPosition(from);

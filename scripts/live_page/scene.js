@@ -104,9 +104,14 @@ class Scene {
     return this.plane ? (this.plane.includes(1) ? [0, 1, 0] : [0, 0, 1]) : [0, 0, 1];
   }
 
+  // The index of the axis that is normal to the plane of a planar system.
+  get planeNormal() {
+    return [0, 1, 2].find((axis) => !this.plane.includes(axis));
+  }
+
   // Returns the index of the axis that is normal to a round line.
   normalAxis(line) {
-    return line.axis ? AXES.indexOf(line.axis) : this.plane ? [0, 1, 2].find((axis) => !this.plane.includes(axis)) : 2;
+    return line.axis ? AXES.indexOf(line.axis) : this.plane ? this.planeNormal : 2;
   }
 
   // Returns the two axes of the plane in which all things move in these samples; null if there is no such plane.
@@ -330,7 +335,6 @@ class Scene {
     return part;
   }
 
-  // Returns the largest extent of shapes from the origins of their frames.
   // Returns the radius about the origin of its object within which a shape lies.
   reachOfShape(shape) {
     const measure = (name) => this.value(shape[name] || "0"), away = Math.hypot(...AXES.map(measure));
@@ -343,7 +347,7 @@ class Scene {
     const point = new THREE.Vector3(), ball = new THREE.Box3();
     for (const { shape, reach } of this.reaches) {
       const size = new THREE.Vector3(2 * reach, 2 * reach, 2 * reach);
-      if (this.plane) size.setComponent([0, 1, 2].find((axis) => !this.plane.includes(axis)), 0);
+      if (this.plane) size.setComponent(this.planeNormal, 0);
       box.union(ball.setFromCenterAndSize(this.position(sample, this.byName.get(shape.in), point), size));
     }
   }
@@ -449,7 +453,7 @@ class Scene {
     const grid = new THREE.GridHelper(2 * size, 20, ...color), up = new THREE.Vector3(...this.up);
     const centre = this.box.getCenter(new THREE.Vector3());
     if (this.plane) {
-      const axis = [0, 1, 2].find((one) => !this.plane.includes(one)), normal = new THREE.Vector3().setComponent(axis, 1);
+      const axis = this.planeNormal, normal = new THREE.Vector3().setComponent(axis, 1);
       grid.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), normal);
       grid.position.setComponent(axis, (axis === 1 ? 1 : -1) * 0.5 * this.radius);
     } else {
@@ -532,13 +536,12 @@ class Scene {
   }
 
   placeLabels(sample) {
-    const point = new THREE.Vector3(), width = this.container.clientWidth, height = this.container.clientHeight, taken = [];
+    const point = new THREE.Vector3(), taken = [];
     this.labels.forEach((label, i) => {
       label.style.display = this.wished.names ? "" : "none";
       if (!this.wished.names) return;
-      this.position(sample, i, point).project(this.camera);
-      const x = ((point.x + 1) * width) / 2 + 8;
-      let y = ((1 - point.y) * height) / 2 - 18;
+      const [right, down] = this.pixels(this.position(sample, i, point)), x = right + 8;
+      let y = down - 18;
       while (taken.some((other) => Math.abs(other[0] - x) < 50 && Math.abs(other[1] - y) < 13)) y += 13;
       taken.push([x, y]);
       label.style.transform = `translate(${x}px, ${y}px)`;

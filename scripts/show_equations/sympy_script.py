@@ -95,20 +95,18 @@ def names_in(text):
 
 
 def in_order(definitions):
-    """Return definitions such that each stands behind those that it uses."""
-    ordered, known = [], {left for left, _ in definitions}
-    done = set()
+    """Return definitions, texts by name, as a list of pairs in which each stands behind those that it uses."""
+    ordered, done = [], set()
 
-    def visit(left, right):
+    def visit(left):
         if left not in done:
             done.add(left)
-            for name in names_in(right):
-                if name in known:
-                    visit(name, dict(definitions)[name])
-            ordered.append((left, right))
+            for name in filter(definitions.__contains__, names_in(definitions[left])):
+                visit(name)
+            ordered.append((left, definitions[left]))
 
-    for left, right in definitions:
-        visit(left, right)
+    for left in definitions:
+        visit(left)
     return ordered
 
 
@@ -125,7 +123,7 @@ class Script:
         self.rates = self.entries("States")
         self.energies = self.entries("Energies", "Power of the non-conservative forces")
         self.outputs = self.entries("Outputs")
-        self.definitions = [(entry.left, entry.right) for entry in self.entries("Calculated parameters", "Definitions")]
+        self.definitions = {entry.left: entry.right for entry in self.entries("Calculated parameters", "Definitions")}
         self.velocities = [variable.name for variable in listing.variables["velocity"]]
 
     def entries(self, *headings):
@@ -136,7 +134,7 @@ class Script:
         return ast.unparse(Translator(expression, self.names).visit(expression.tree))
 
     def declare(self, name, comment=""):
-        if name not in dict(self.definitions) and name not in self.names.of:
+        if name not in self.definitions and name not in self.names.of:
             self.lines.append(f'{self.names.add(name)} = sp.Symbol("{name}")' + (f"  # {comment}" if comment else ""))
             self.declared.append(name)
 
@@ -154,7 +152,7 @@ class Script:
         for name in [*(f"der({velocity})" for velocity in self.velocities), *self.listing.multipliers, *(mode for _, mode in self.listing.switches.values())]:
             self.declare(name)
         texts = [text for entry in [*self.motion, *self.constraints] for text in (entry.left, entry.right)]
-        texts += [entry.right for entry in [*self.rates, *self.energies, *self.outputs]] + [right for _, right in self.definitions]
+        texts += [entry.right for entry in [*self.rates, *self.energies, *self.outputs]] + [*self.definitions.values()]
         for text in texts:
             for name in names_in(text) if not is_cut(text) else ():
                 self.declare(name)
