@@ -14,7 +14,7 @@ enum { COORDINATE_LIMIT = 5, BODY_LIMIT = 6 };
 /* Most coordinates for which the accelerations are solved for in fractions. */
 enum { SOLVED_LIMIT = 3 };
 
-/* What the steps have in common; arrays have one element for each coordinate. */
+/* Data that all steps use; arrays have one element for each coordinate. */
 struct Derivation {
   struct Page *page;
   const struct Model *model;

@@ -21,8 +21,8 @@ struct FileLines {
 };
 
 /*
- * Where messages about a file go, and how many errors there are. Readers of included files have their own file and
- * origin.
+ * The destination of the messages about a file, and the number of errors. Readers of included files have their own file
+ * and origin.
  */
 struct Diagnostics {
   const char *file;        /* the file being read, as named by the user */

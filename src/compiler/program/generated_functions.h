@@ -40,7 +40,7 @@ enum FunctionName {
   FUNCTION_COUNT
 };
 
-/* What a function returns: nothing; 0 or 1 + a singular coordinate; a number. */
+/* The result of a generated function: none; 0 or 1 + a singular coordinate; a number. */
 enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
 
 /* Where a function reads or leaves the accelerations: its workspace, the array that it fills, or an argument. */

@@ -7,13 +7,13 @@
 /*
  * Opens and closes contacts at rest according to the solution for their forces; sets *again if any changed. Warns once
  * if the solution was not shown to be the only one. Returns NULL, or, after logging contact and friction, the reason
- * why the motion cannot go on.
+ * why the motion cannot continue.
  */
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again);
 
 /*
  * Logs a contact that closes whatever its impulse, and one that opposes it: prescribed motions crush a body between
- * them. Returns the reason why the motion cannot go on.
+ * them. Returns the reason why the motion cannot continue.
  */
 const char *contact_forces_report_crushed(struct Resolution *resolution, size_t contact);
 

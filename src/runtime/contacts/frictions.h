@@ -15,7 +15,7 @@ const char *frictions_check(struct Resolution *resolution);
  */
 bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained);
 
-/* Logs a friction without a consistent mode; returns the reason why the motion cannot go on. */
+/* Logs a friction without a consistent mode; returns the reason why the motion cannot continue. */
 const char *frictions_report_inconsistent(const struct Resolution *resolution, size_t friction);
 
 /* Logs what is missing, such as the accelerations, with the name of the friction that switched most often. */

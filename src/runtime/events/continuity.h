@@ -7,7 +7,7 @@
 
 #include "events/resolution.h"
 
-/* Projects the state that the solver has left. Returns NULL, or the reason why the motion cannot go on. */
+/* Projects the state that the solver has left. Returns NULL, or the reason why the motion cannot continue. */
 const char *continuity_begin(struct Resolution *resolution);
 
 /* Stores the energies, and the time since the indicator was 0, before a branch switches. */

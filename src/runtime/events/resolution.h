@@ -51,7 +51,7 @@ struct Resolution {
   } last;
 };
 
-/* Returns the status of messages if the motion cannot go on: an error at the start, else a discarded step. */
+/* Returns the status of messages if the motion cannot continue: an error at the start, else a discarded step. */
 static inline enum Status resolution_status(const struct Resolution *resolution) {
   return resolution->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
 }
@@ -62,7 +62,7 @@ struct ContactImpulses;
 struct ContactLaws {
   /*
    * Handles one impact, contacts that come to rest, or one that opens; sets *again if there was any. Returns NULL, or
-   * the reason why the motion cannot go on.
+   * the reason why the motion cannot continue.
    */
   const char *(*act)(struct Resolution *resolution, bool *again);
   /*

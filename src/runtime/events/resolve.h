@@ -7,7 +7,7 @@
 /*
  * Brings the modes into agreement with the state at a time. Impacts and events may change the state. indicator: the one
  * whose sign changed, for AT_EVENT. Sets *changed if anything changed. Returns NULL, or the reason why the motion
- * cannot go on, after logging the cause.
+ * cannot continue, after logging the cause.
  */
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed);

@@ -35,10 +35,10 @@
 #include "instance/time_laws.h"
 
 /*
- * Windows that a search may examine. An approximate search (BEFORE_IT) gives up earlier and leaves them to the exact
+ * Intervals that a search may examine. An approximate search (BEFORE_IT) gives up earlier and leaves them to the exact
  * one.
  */
-enum { INTERVAL_LIMIT = 5000, FEW_WINDOWS = 24 };
+enum { INTERVAL_LIMIT = 5000, FEW_INTERVALS = 24 };
 
 /* Halvings of an interval; steps of the Illinois method; of Newton's method on polynomials; evaluations at its zero. */
 enum { DEPTH_LIMIT = 48, REFINEMENT_LIMIT = 200, NEWTON_STEPS = 4, NARROWING_LIMIT = 8 };
@@ -386,7 +386,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
   search.is_exact = exactness == TO_ROUNDING;
-  search.intervals = search.is_exact ? INTERVAL_LIMIT : FEW_WINDOWS;
+  search.intervals = search.is_exact ? INTERVAL_LIMIT : FEW_INTERVALS;
   bool knows_error_bound = false;
   sample_interval(&search, from, to, samples);
   *time = first_sample(instance, from, to, indicator);

@@ -36,7 +36,7 @@ struct EventLaws {
   size_t (*work_count)(void);
   /*
    * Brings the modes into agreement with the state to which an importer has integrated. Impacts and events may change
-   * the state. Returns NULL, or the reason why the motion cannot go on, after logging the cause.
+   * the state. Returns NULL, or the reason why the motion cannot continue, after logging the cause.
    */
   const char *(*resolve)(struct Instance *instance);
   /* Sets the modes from start values, while these may be set: all contacts are open, all frictions slide. */
@@ -52,7 +52,7 @@ struct EventLaws {
   bool (*resolve_change)(struct Instance *instance, double time);
   /*
    * Finds modes and state after the event that ended a step, or after a parameter, input or state was set. Returns
-   * NULL, or the reason why the motion cannot go on.
+   * NULL, or the reason why the motion cannot continue.
    */
   const char *(*update)(struct Instance *instance);
   /* Handles the next event in the solver's last step. Returns NULL, or the reason why the motion ends there. */
@@ -60,7 +60,7 @@ struct EventLaws {
   /* Checks the laws at the end of a communication step. Returns NULL, or the violated one, after logging the cause. */
   const char *(*check)(struct Instance *instance, double time);
   /*
-   * Handles a solver that cannot go on: the zero of an indicator that it cannot reach may be near. Returns NULL after
+   * Handles a solver that cannot continue: the zero of an indicator that it cannot reach may be near. Returns NULL after
    * passing one, problem if there is none, or the reason why the motion ends there.
    */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,

@@ -119,7 +119,7 @@ static bool resolve_together(struct Resolution *resolution) {
 
 /*
  * Finds the slip directions of frictions that begin to slide; sets *again if any turns, or sticks because it
- * accelerates along none. Returns NULL, or the reason why the motion cannot go on.
+ * accelerates along none. Returns NULL, or the reason why the motion cannot continue.
  */
 static const char *act_on_slips(struct Resolution *resolution, bool *again) {
   bool slips = false;

@@ -81,7 +81,7 @@ struct Course {
   int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
   bool is_reported;                /* the warning was logged */
   int resting;                     /* consecutive solver steps too short to change the time */
-  bool ends_at_event;              /* the motion cannot go on after an event */
+  bool ends_at_event;              /* the motion cannot continue after an event */
 };
 
 /* Returns the operations in the communication step. */

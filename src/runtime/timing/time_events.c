@@ -4,9 +4,9 @@
  * Between events an affine branch is f(t) = a + b t. Newton's method t - f(t) / b gives its zero from any t in one step.
  * Near the zero f(t) is an exact difference of close numbers, so a second step gives the double next to -a / b.
  *
- * Of other branches, such as sin(3 t) - 1/2, the first zero is found window by window, as in search.c: the coefficients
- * of the Chebyshev polynomial bound f over a window. Windows begin short, and grow twofold while f is resolved. A pulse
- * that falls between the nodes of a window, as of exp(-1e6 (t - 5)^2), can be missed.
+ * The first zero of other branches, such as sin(3 t) - 1/2, is searched in one interval after another, as in search.c:
+ * the coefficients of the Chebyshev polynomial bound f over an interval. Intervals begin short, and are doubled while f
+ * is resolved. A pulse between the nodes of an interval, as of exp(-1e6 (t - 5)^2), can be missed.
  */
 #include "timing/time_events.h"
 
@@ -21,11 +21,11 @@
 /* Newton steps: one to the zero, and two that remove its rounding error. */
 enum { ZERO_STEPS = 3 };
 
-/* Windows in a search for a zero, which then takes about a millisecond: each has 9 evaluations. */
-enum { WINDOW_LIMIT = 400 };
+/* Intervals in a search for a zero, which then takes about a millisecond: each has 9 evaluations. */
+enum { TIME_INTERVAL_LIMIT = 400 };
 
-/* Length of the first window, in s or relative to the time. */
-static const double first_window = 1e-3;
+/* Length of the first interval, in s or relative to the time. */
+static const double first_length = 1e-3;
 
 /* Rounding error of a value, relative to its size and its change since time 0: a few operations. */
 static const double error_of_value = 16.0 * DBL_EPSILON;
@@ -91,7 +91,7 @@ static double bisect_fall(struct Resolution *resolution, size_t branch, double b
 }
 
 /* Judges whether a branch falls below 0 in an interval. */
-static enum Verdict judge_window(struct Resolution *resolution, size_t branch, double from, double to) {
+static enum Verdict judge_interval(struct Resolution *resolution, size_t branch, double from, double to) {
   double f[CHEBYSHEV_NODES], largest = 0.0;
   for (int node = 0; node < CHEBYSHEV_NODES; node++) {
     f[node] = value_in_mode(resolution, branch, chebyshev_time(from, to, node));
@@ -102,19 +102,19 @@ static enum Verdict judge_window(struct Resolution *resolution, size_t branch, d
 }
 
 /*
- * Returns the first fall of a curved branch below 0 in an interval; INFINITY for none. A search of WINDOW_LIMIT windows
+ * Returns the first fall of a curved branch below 0 in an interval; INFINITY for none. A search of TIME_INTERVAL_LIMIT intervals
  * without a zero returns its end: the importer handles an event without effect there, and the search continues.
  */
 static double next_fall(struct Resolution *resolution, size_t branch, double from, double end) {
-  double window = first_window * fmax(1.0, fabs(from));
+  double length = first_length * fmax(1.0, fabs(from));
   if (mode_of(resolution, resolution->switches->branches[branch].mode) == 0.0) return INFINITY;
-  for (int i = 0; i < WINDOW_LIMIT && from < end; i++) {
-    double to = fmin(end, from + window);
-    enum Verdict verdict = judge_window(resolution, branch, from, to);
+  for (int i = 0; i < TIME_INTERVAL_LIMIT && from < end; i++) {
+    double to = fmin(end, from + length);
+    enum Verdict verdict = judge_interval(resolution, branch, from, to);
     if (verdict == FALLS) return bisect_fall(resolution, branch, from, to);
     bool is_shortest = to - from <= 8.0 * rounding_of_time(to);
     if (verdict == STAYS || is_shortest) from = to;
-    window *= verdict == STAYS ? 2.0 : is_shortest ? 1.0 : 0.5;
+    length *= verdict == STAYS ? 2.0 : is_shortest ? 1.0 : 0.5;
   }
   return from < end ? from : INFINITY;
 }
