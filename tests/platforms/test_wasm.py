@@ -137,11 +137,11 @@ def test_model_exchange():
     info = ours.update_discrete_states()
     assert not info.__dict__["new-discrete-states-needed"] and not info.__dict__["terminate-simulation"]
     theirs.updateDiscreteStates()
-    assert ours.enter_continuous_time_mode() == "ok"
-    theirs.enterContinuousTimeMode()
     count = ours.get_number_of_continuous_states()
     assert count == description_of(name).numberOfContinuousStates
     assert ours.get_number_of_event_indicators() == description_of(name).numberOfEventIndicators
+    assert ours.enter_continuous_time_mode() == "ok"
+    theirs.enterContinuousTimeMode()
     state = np.linspace(0.3, 0.7, count)
     assert ours.set_time(0.5) == "ok" and ours.set_continuous_states(list(state)) == "ok"
     theirs.setTime(0.5)

@@ -289,3 +289,9 @@ def test_who_waits_for_sundials(solver, is_built, source, ready):
 def test_build_shows_its_usage(words, status):
     result = subprocess.run([ROOT / "scripts" / "build", *words], capture_output=True, text=True)
     assert result.returncode == status and result.stdout.startswith("usage: scripts/build FOLDER")
+
+
+def test_names_of_test_files():
+    """pytest imports each file of tests by its name alone, so that no two may share one."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert len(names) == len(set(names)), [name for name in set(names) if names.count(name) > 1]
