@@ -1,17 +1,17 @@
 // Arrows with values: constraint forces along rods and at joints, and velocities of things.
 "use strict";
 
-const FASTEST = 12; // with more things their velocities have no arrows
+const MOST_VELOCITIES = 12; // with more things their velocities have no arrows
 
 class Arrows {
   constructor(scene) {
     Object.assign(this, { scene, labels: [], forces: [], largest: { forces: 0, velocities: 0 } });
-    for (const holder of scene.holders) {
-      if (holder.tag === "rod" && holder.force) this.addForce([holder.force], { rod: holder });
-      if (holder.tag === "joint" && holder.force1) this.addForce([holder.force1, holder.force2], { joint: holder });
+    for (const connection of scene.connections) {
+      if (connection.tag === "rod" && connection.force) this.addForce([connection.force], { rod: connection });
+      if (connection.tag === "joint" && connection.force1) this.addForce([connection.force1, connection.force2], { joint: connection });
     }
     const moving = scene.things.map((_, i) => i).filter((i) => scene.things[i].tag !== "frame" && scene.columns[i].some((column) => column >= 0));
-    this.velocities = moving.length > FASTEST ? [] : moving.map((i) => ({ i, arrow: this.arrow(0x2ca05a) }));
+    this.velocities = moving.length > MOST_VELOCITIES ? [] : moving.map((i) => ({ i, arrow: this.arrow(0x2ca05a) }));
   }
 
   arrow(color) {
@@ -37,35 +37,35 @@ class Arrows {
     return [from, force.multiplyScalar(sample[columns[0]] * Number(rod.factor))];
   }
 
-  // Returns where a thing is, and its mean velocity since the sample before.
+  // Returns where a thing is, and its mean velocity since the previous sample.
   velocity(history, at, { i }) {
-    const now = this.scene.position(history.samples[at][0], i);
-    if (at === 0) return [now, new THREE.Vector3()];
-    const step = history.time(at) - history.time(at - 1), before = this.scene.position(history.samples[at - 1][0], i);
-    return [now, now.clone().sub(before).multiplyScalar(step > 0 ? 1 / step : 0)];
+    const position = this.scene.position(history.samples[at][0], i);
+    if (at === 0) return [position, new THREE.Vector3()];
+    const step = history.time(at) - history.time(at - 1), previous = this.scene.position(history.samples[at - 1][0], i);
+    return [position, position.clone().sub(previous).multiplyScalar(step > 0 ? 1 / step : 0)];
   }
 
   // Points an arrow; its length is in proportion to the largest vector of its kind so far.
-  point(arrow, kind, unit, [from, vector]) {
+  aim(arrow, kind, unit, [from, vector]) {
     const { scene, largest } = this, size = vector.length();
     largest[kind] = Math.max(largest[kind] * 0.999, size);
-    arrow.visible = Boolean(scene.wished[kind]) && size > 1e-3 * largest[kind];
+    arrow.visible = Boolean(scene.options[kind]) && size > 1e-3 * largest[kind];
     if (!arrow.visible) return;
     const length = ((kind === "forces" ? 0.7 : 0.4) * scene.radius * size) / largest[kind];
     arrow.position.copy(from);
     arrow.setDirection(vector.normalize());
     arrow.setLength(length, Math.min(0.35 * length, 0.08 * scene.radius), Math.min(0.2 * length, 0.05 * scene.radius));
-    this.values.push([`${shown(size, 3)} ${unit}`, from.clone().addScaledVector(vector, length)]);
+    this.values.push([`${formatted(size, 3)} ${unit}`, from.clone().addScaledVector(vector, length)]);
   }
 
-  place(history, at) {
+  update(history, at) {
     this.values = [];
-    for (const one of this.forces) this.point(one.arrow, "forces", "N", this.force(history.samples[at][0], one));
-    for (const one of this.velocities) this.point(one.arrow, "velocities", "m/s", this.velocity(history, at, one));
+    for (const force of this.forces) this.aim(force.arrow, "forces", "N", this.force(history.samples[at][0], force));
+    for (const velocity of this.velocities) this.aim(velocity.arrow, "velocities", "m/s", this.velocity(history, at, velocity));
   }
 
   // Writes the values at the tips, after the camera has moved.
-  label() {
+  placeLabels() {
     const { scene } = this;
     while (this.labels.length < this.values.length) this.labels.push(scene.newLabel(""));
     this.labels.forEach((label, k) => {

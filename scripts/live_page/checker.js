@@ -3,16 +3,16 @@
 
 let laboratory; // bytes of laboratory.wasm
 
-function answer({ files, file, number }) {
-  const made = new Laboratory(laboratory, files), start = performance.now(), isRight = made.derive(file, false);
+function answerTo({ files, file, number }) {
+  const system = new Laboratory(laboratory, files), start = performance.now(), isValid = system.derive(file, false);
   const milliseconds = performance.now() - start;
-  if (!isRight) return { number, said: made.said };
-  const description = made.textOf(made.wasm.model_description()), equations = made.textOf(made.wasm.documentation());
-  const pulled = new Laboratory(laboratory, files), canBePulled = pulled.derive(file, true);
-  return { number, said: made.said, milliseconds, result: { modelDescription: description, equations, pulled: canBePulled ? pulled.textOf(pulled.wasm.model_description()) : null } };
+  if (!isValid) return { number, messages: system.messages };
+  const description = system.textOf(system.wasm.model_description()), equations = system.textOf(system.wasm.documentation());
+  const pulled = new Laboratory(laboratory, files), isPullable = pulled.derive(file, true);
+  return { number, messages: system.messages, milliseconds, result: { modelDescription: description, equations, pulled: isPullable ? pulled.textOf(pulled.wasm.model_description()) : null } };
 }
 
 self.onmessage = ({ data }) => {
   if (data.bytes) laboratory = data.bytes;
-  else self.postMessage(answer(data));
+  else self.postMessage(answerTo(data));
 };

@@ -1,21 +1,21 @@
-// Offers words below the caret of a text: while a word is typed, after "<" and "</", or by Ctrl and the space bar.
+// Lists completions below the caret of a text: while a word is typed, after "<" and "</", or by Ctrl and the space bar.
 "use strict";
 
-const LINE = 19; // px, the height of a line in editor.css
+const LINE_HEIGHT = 19; // px, the height of a line in editor.css
 
-// Lets the text area offer the words of the language. Enter or Tab takes one, the arrows choose, Escape closes the list.
-function offerWords(source, list, language) {
-  let offered = { word: "", words: [] }, chosen = 0;
-  const width = widthOfLetters(source);
+// Completes words of the language in a text area. Enter or Tab accepts one, the arrows choose, Escape closes the list. Returns the function that opens the list.
+function addCompletion(source, list, language) {
+  let shown = { word: "", completions: [] }, chosen = 0;
+  const width = widthOfLetter(source);
 
   function close() {
-    offered = { word: "", words: [] };
+    shown = { word: "", completions: [] };
     list.hidden = true;
     source.removeAttribute("aria-activedescendant");
   }
 
   function draw() {
-    list.replaceChildren(...offered.words.map(({ label, note }, i) => {
+    list.replaceChildren(...shown.completions.map(({ label, note }, i) => {
       const item = document.createElement("li"), name = document.createElement("b"), text = document.createElement("span");
       [name.textContent, text.textContent] = [label, note];
       item.append(name, text);
@@ -24,7 +24,7 @@ function offerWords(source, list, language) {
       item.setAttribute("aria-selected", i === chosen);
       item.addEventListener("pointerdown", (event) => {
         event.preventDefault(); // the text keeps the focus
-        take(i);
+        accept(i);
       });
       return item;
     }));
@@ -32,57 +32,57 @@ function offerWords(source, list, language) {
     source.setAttribute("aria-activedescendant", `word${chosen}`);
   }
 
-  function place() {
+  function moveToCaret() {
     const lines = source.value.slice(0, source.selectionStart).split("\n"), style = getComputedStyle(source);
-    const x = parseFloat(style.paddingLeft) + width * (lines.at(-1).length - offered.word.length) - source.scrollLeft;
-    const y = parseFloat(style.paddingTop) + LINE * lines.length - source.scrollTop;
+    const x = parseFloat(style.paddingLeft) + width * (lines.at(-1).length - shown.word.length) - source.scrollLeft;
+    const y = parseFloat(style.paddingTop) + LINE_HEIGHT * lines.length - source.scrollTop;
     list.style.left = `${Math.max(0, Math.min(x, source.clientWidth - list.offsetWidth))}px`;
-    list.style.top = y + list.offsetHeight > source.clientHeight ? `${Math.max(0, y - LINE - list.offsetHeight)}px` : `${y}px`;
+    list.style.top = y + list.offsetHeight > source.clientHeight ? `${Math.max(0, y - LINE_HEIGHT - list.offsetHeight)}px` : `${y}px`;
   }
 
-  function offer(isWished) {
-    const at = source.selectionStart, found = at === source.selectionEnd ? wordsAt(source.value, at, language) : { word: "", words: [] };
-    const isBegun = found.word || /<\/?$/.test(source.value.slice(0, at)) || isWished;
-    if (!isBegun || found.words.length === 0) {
+  function complete(isRequested) {
+    const at = source.selectionStart, found = at === source.selectionEnd ? completionsAt(source.value, at, language) : { word: "", completions: [] };
+    const isBegun = found.word || /<\/?$/.test(source.value.slice(0, at)) || isRequested;
+    if (!isBegun || found.completions.length === 0) {
       close();
       return;
     }
-    [offered, chosen] = [found, 0];
+    [shown, chosen] = [found, 0];
     list.hidden = false;
     draw();
-    place();
+    moveToCaret();
   }
 
-  function take(i) {
-    const { text } = offered.words[i], begin = source.selectionStart - offered.word.length, caret = text.indexOf("|");
+  function accept(i) {
+    const { text } = shown.completions[i], begin = source.selectionStart - shown.word.length, caret = text.indexOf("|");
     source.setSelectionRange(begin, source.selectionStart);
     document.execCommand("insertText", false, text.replace("|", ""));
     close();
     if (caret >= 0) source.setSelectionRange(begin + caret, begin + caret);
   }
 
-  function pressed(event) {
-    const count = offered.words.length;
-    if (event.key === " " && event.ctrlKey) offer(true);
+  function onKey(event) {
+    const count = shown.completions.length;
+    if (event.key === " " && event.ctrlKey) complete(true);
     else if (count === 0 || event.ctrlKey || event.metaKey) return;
     else if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       chosen = (chosen + (event.key === "ArrowDown" ? 1 : count - 1)) % count;
       draw();
-    } else if (event.key === "Enter" || event.key === "Tab") take(chosen);
+    } else if (event.key === "Enter" || event.key === "Tab") accept(chosen);
     else if (event.key === "Escape") close();
     else return;
     event.preventDefault();
     event.stopImmediatePropagation();
   }
 
-  source.addEventListener("keydown", pressed);
-  source.addEventListener("input", (event) => event.inputType?.startsWith("insert") && event.data !== null && event.data.length === 1 ? offer(false) : close());
+  source.addEventListener("keydown", onKey);
+  source.addEventListener("input", (event) => event.inputType?.startsWith("insert") && event.data !== null && event.data.length === 1 ? complete(false) : close());
   for (const event of ["blur", "scroll", "click"]) source.addEventListener(event, close);
-  return offer;
+  return complete;
 }
 
 // Returns the width of a letter of the text in px.
-function widthOfLetters(source) {
+function widthOfLetter(source) {
   const context = document.createElement("canvas").getContext("2d");
   context.font = getComputedStyle(source).font;
   return context.measureText("m").width;

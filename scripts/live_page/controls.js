@@ -12,8 +12,8 @@ function rangeOf({ start, min, max, unit }) {
 }
 
 class Control {
-  // variable: name, unit, description, start, min, max, type; act(value) is called for each new value.
-  constructor(variable, act) {
+  // variable: name, unit, description, start, min, max, type; onChange(value) is called for each new value.
+  constructor(variable, onChange) {
     this.variable = variable;
     this.value = variable.start;
     [this.low, this.high, this.isLogarithmic] = rangeOf(variable);
@@ -28,14 +28,14 @@ class Control {
     this.number.setAttribute("aria-label", variable.name);
     this.slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 1000, step: 1 });
     this.slider.setAttribute("aria-label", variable.name);
-    this.words = document.createElement("div");
-    this.words.className = "words";
+    this.message = document.createElement("div");
+    this.message.className = "message";
     const description = Object.assign(document.createElement("span"), { className: "description", textContent: variable.description ?? "" });
-    this.element.append(name, this.number, description, this.slider, this.words);
+    this.element.append(name, this.number, description, this.slider, this.message);
     this.show();
-    this.slider.addEventListener("input", () => this.choose(this.valueAt(this.slider.value / 1000), act));
-    this.number.addEventListener("change", () => Number.isFinite(this.number.valueAsNumber) && this.choose(this.number.valueAsNumber, act));
-    this.slider.addEventListener("dblclick", () => this.choose(variable.start, act));
+    this.slider.addEventListener("input", () => this.choose(this.valueAt(this.slider.value / 1000), onChange));
+    this.number.addEventListener("change", () => Number.isFinite(this.number.valueAsNumber) && this.choose(this.number.valueAsNumber, onChange));
+    this.slider.addEventListener("dblclick", () => this.choose(variable.start, onChange));
   }
 
   valueAt(share) {
@@ -44,10 +44,10 @@ class Control {
     return Number(value.toPrecision(3));
   }
 
-  choose(value, act) {
+  choose(value, onChange) {
     this.value = value;
     this.show();
-    act(value);
+    onChange(value);
   }
 
   show() {
@@ -58,15 +58,15 @@ class Control {
   }
 
   // Shows that a value was rejected, and the value in effect, unless another was chosen in the meantime.
-  refuse(words, value, held) {
-    if (this.value === value) this.value = held;
+  reject(message, value, previous) {
+    if (this.value === value) this.value = previous;
     this.show();
-    this.say(words);
+    this.showMessage(message);
   }
 
   // Shows a message until the next value is accepted.
-  say(words) {
-    this.words.textContent = words;
+  showMessage(message) {
+    this.message.textContent = message;
   }
 }
 

@@ -73,8 +73,8 @@ function pullsOf(file, description) {
 
 // Returns the elements of <scene>, see modelDescription/scene.h: their attributes, and the tag.
 function sceneOf(file) {
-  const places = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
-  return [...file.querySelectorAll(places.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
+  const selectors = ["VendorAnnotations > Tool[name='lagrange-fmu'] > scene > *", "Annotations > Annotation[type='lagrange-fmu'] > scene > *"];
+  return [...file.querySelectorAll(selectors.join(","))].map((element) => ({ tag: element.tagName, ...attributesOf(element) }));
 }
 
 // Returns the names in the formulas of a line's ends.
@@ -91,13 +91,13 @@ function variablesOfScene(scene) {
 }
 
 // Returns the indices of the variables that can be plotted or that the scene needs; only those with these names, if names are given.
-function shownPlaces(description, scene, names) {
+function indicesToShow(description, scene, names) {
   const ofScene = variablesOfScene(scene);
   const isShown = ({ name, type, isMoving, isDiscrete }) => type === "Real" && (isMoving || (isDiscrete && ofScene.has(name)));
-  const places = [...description.variables.keys()].filter((place) => isShown(description.variables[place]));
-  const tells = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
-  const few = places.length > MANY ? places.filter((place) => tells(description.variables[place])) : places;
-  return names ? few.filter((place) => names.includes(description.variables[place].name)) : few;
+  const indices = [...description.variables.keys()].filter((index) => isShown(description.variables[index]));
+  const isImportant = ({ name, isOutput }) => isOutput || ofScene.has(name) || name.includes("Energy") || name.includes("Work");
+  const selected = indices.length > MANY ? indices.filter((index) => isImportant(description.variables[index])) : indices;
+  return names ? selected.filter((index) => names.includes(description.variables[index].name)) : selected;
 }
 
 // Returns the initial plots: coordinates of the first unit, the first velocity against the first coordinate, and energies.
@@ -109,8 +109,8 @@ function firstPlots(variables) {
   const first = [coordinates, states, outputs].find((some) => some.length > 0) ?? [];
   const sameUnit = first.filter((k) => variables[k].unit === variables[first[0]].unit).slice(0, 6);
   const energies = ["kineticEnergy", "potentialEnergy", "totalEnergy", "energy"].map((name) => variables.findIndex((variable) => variable.name === name)).filter((k) => k >= 0);
-  const plots = [{ places: sameUnit, across: -1 }];
-  if (coordinates.length > 0 && velocities.length > 0) plots.push({ places: [velocities[0]], across: coordinates[0] });
-  if (energies.length > 0) plots.push({ places: energies, across: -1 });
+  const plots = [{ columns: sameUnit, abscissa: -1 }];
+  if (coordinates.length > 0 && velocities.length > 0) plots.push({ columns: [velocities[0]], abscissa: coordinates[0] });
+  if (energies.length > 0) plots.push({ columns: energies, abscissa: -1 });
   return plots;
 }

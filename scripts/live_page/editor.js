@@ -2,14 +2,14 @@
 "use strict";
 
 const PAUSE = 300; // ms without a key after which the text is derived
-const SLOW = 15; // s after which a derivation is given up
-const snapshot = `<!doctype html>\n${document.documentElement.outerHTML}`; // the unchanged page, a template for saved pages
+const TIMEOUT = 15; // s after which a derivation is aborted
+const template = `<!doctype html>\n${document.documentElement.outerHTML}`; // the unchanged page, a template for saved pages
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const bench = (window.bench = { run, runs: 0 }); // for tests and the browser's console
 let files = { ...data.files }, file = data.file, opened = data.file;
 let checker = null, number = 0, derived = null; // the worker, the number of the last request to it, and the last successful result
-let wishesToRun = true, plays = false, timer = null, slow = null;
+let isRunRequested = true, startsPlaying = false, timer = null, timeout = null;
 
 // Returns the normalized form of a path in lagc's messages, as it is in `files`.
 function nameOf(path) {
@@ -21,10 +21,10 @@ function nameOf(path) {
   return parts.join("/");
 }
 
-// Parses a message of lagc: file, line (0 without), isWarning and words.
+// Parses a message of lagc: file, line (0 without), isWarning and text.
 function messageOf(line) {
   const found = /^(.*?):(?:(\d+):)? (warning: )?(.*)$/.exec(line), name = nameOf(found?.[1] ?? "");
-  return name in files ? { name, line: Number(found[2] ?? 0), isWarning: Boolean(found[3]), words: found[4] } : { name: file, line: 0, isWarning: false, words: line };
+  return name in files ? { name, line: Number(found[2] ?? 0), isWarning: Boolean(found[3]), text: found[4] } : { name: file, line: 0, isWarning: false, text: line };
 }
 
 function goTo({ name, line }) {
@@ -32,20 +32,20 @@ function goTo({ name, line }) {
   const starts = [0, ...[...$("source").value.matchAll(/\n/g)].map((end) => end.index + 1)], at = starts[line - 1] ?? 0;
   $("source").focus();
   $("source").setSelectionRange(at, (starts[line] ?? $("source").value.length + 1) - 1);
-  $("source").scrollTop = Math.max(0, (line - 5) * LINE);
+  $("source").scrollTop = Math.max(0, (line - 5) * LINE_HEIGHT);
 }
 
-function tell(messages) {
+function showMessages(messages) {
   const items = messages.map((message) => {
     const button = document.createElement("button"), item = document.createElement("li");
-    const place = `${message.name === file ? "" : `${message.name}, `}${message.line > 0 ? `line ${message.line}: ` : ""}`;
-    button.textContent = `${place}${message.isWarning ? "warning: " : ""}${message.words}`;
+    const position = `${message.name === file ? "" : `${message.name}, `}${message.line > 0 ? `line ${message.line}: ` : ""}`;
+    button.textContent = `${position}${message.isWarning ? "warning: " : ""}${message.text}`;
     button.classList.toggle("warning", message.isWarning);
     button.addEventListener("click", () => goTo(message));
     item.append(button);
     return item;
   });
-  $("said").replaceChildren(...items);
+  $("messages").replaceChildren(...items);
   showLines(new Set(messages.filter(({ name, isWarning }) => name === opened && !isWarning).map(({ line }) => line)));
 }
 
@@ -53,73 +53,73 @@ function showLines(wrong = new Set()) {
   const count = $("source").value.split("\n").length;
   const marks = Array.from({ length: count }, (_, i) => (wrong.has(i + 1) ? `<span class="wrong">${i + 1}</span>` : i + 1));
   $("lines").innerHTML = `${marks.join("\n")}\n`;
-  $("colors").innerHTML = `${coloured($("source").value)}\n`;
-  follow();
+  $("colors").innerHTML = `${highlighted($("source").value)}\n`;
+  scrollTogether();
 }
 
 // Scrolls the line numbers and the colors with the text.
-function follow() {
+function scrollTogether() {
   $("lines").scrollTop = $("colors").scrollTop = $("source").scrollTop;
   $("colors").scrollLeft = $("source").scrollLeft;
 }
 
 // Begins a new element in a line of its own, below the caret's line or before the end of the system.
-function insertElement(offer) {
+function insertElement(complete) {
   const source = $("source"), { value } = source, last = value.lastIndexOf("</"), line = value.indexOf("\n", source.selectionStart);
   const at = line < 0 || line >= last ? Math.max(0, value.lastIndexOf("\n", last)) : line;
   source.focus();
   source.setSelectionRange(at, at);
   document.execCommand("insertText", false, "\n  <");
-  offer(true);
+  complete(true);
 }
 
-function showState(words, kind = "") {
-  $("state").textContent = words;
+function showState(text, kind = "") {
+  $("state").textContent = text;
   $("state").className = kind;
 }
 
-function answer({ data: { number: answered, said, result, milliseconds } }) {
-  clearTimeout(slow);
+function receive({ data: { number: answered, messages: text, result, milliseconds } }) {
+  clearTimeout(timeout);
   if (answered !== number) return;
-  const messages = said.split("\n").filter((line) => line).map(messageOf), errors = messages.filter(({ isWarning }) => !isWarning).length;
-  tell(messages);
+  const messages = text.split("\n").filter((line) => line).map(messageOf), errors = messages.filter(({ isWarning }) => !isWarning).length;
+  showMessages(messages);
   derived = result ?? null;
-  showState(result ? `derived in ${Math.round(milliseconds)} ms` : `${errors} ${errors === 1 ? "error" : "errors"}`, result ? "right" : "wrong");
-  if (result && wishesToRun) show();
+  showState(result ? `derived in ${Math.round(milliseconds)} ms` : `${errors} ${errors === 1 ? "error" : "errors"}`, result ? "valid" : "wrong");
+  if (result && isRunRequested) show();
 }
 
 async function startChecker() {
   const source = new TextDecoder().decode(await unpacked(data.checker));
   checker?.terminate();
   checker = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
-  checker.onmessage = answer;
+  checker.onmessage = receive;
   checker.postMessage({ bytes: window.laboratoryBytes });
 }
 
 function check() {
   number++;
   clearTimeout(timer);
-  clearTimeout(slow);
+  clearTimeout(timeout);
   showState("deriving …");
   checker.postMessage({ files, file, number });
-  slow = setTimeout(() => {
-    showState(`not derived within ${SLOW} s`, "wrong");
+  timeout = setTimeout(() => {
+    showState(`not derived within ${TIMEOUT} s`, "wrong");
     startChecker();
-  }, 1000 * SLOW);
+  }, 1000 * TIMEOUT);
 }
 
 // Shows the page of the system that was derived last.
 function show() {
-  wishesToRun = false;
+  isRunRequested = false;
   const { modelDescription, equations, pulled } = derived;
-  const inner = { ...data.common, plays, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file } };
+  const inner = { ...data.common, startsPlaying, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file } };
   $("page").srcdoc = pageText.replace("@DATA@", () => JSON.stringify(inner).replaceAll("<", "\\u003c"));
   bench.runs++;
-  plays = true; // after a change the system runs at once
+  startsPlaying = true; // after a change the system runs at once
 }
 
 function run() {
-  wishesToRun = true;
+  isRunRequested = true;
   check();
 }
 
@@ -130,7 +130,7 @@ function openFile(name) {
   showLines();
 }
 
-function offerFiles() {
+function listFiles() {
   $("files").replaceChildren(...Object.keys(files).map((name) => new Option(name, name)));
   $("files").hidden = Object.keys(files).length < 2;
   openFile(file);
@@ -145,10 +145,10 @@ function save(name, content, type) {
 // Returns this page with the present files.
 function pageNow() {
   const now = JSON.stringify({ ...data, files, file }).replaceAll("<", "\\u003c");
-  return snapshot.replace(/(<script id="data" type="application\/json">)[^]*?(<\/script>)/, (all, begin, end) => begin + now + end);
+  return template.replace(/(<script id="data" type="application\/json">)[^]*?(<\/script>)/, (all, begin, end) => begin + now + end);
 }
 
-function typed() {
+function onInput() {
   files = { ...files, [opened]: $("source").value };
   showLines();
   clearTimeout(timer);
@@ -156,9 +156,9 @@ function typed() {
 }
 
 // Types two spaces for Tab, and repeats the indentation after Enter. Tab after Escape leaves the text.
-function typeSpaces(event) {
-  const source = $("source"), before = source.value.slice(0, source.selectionStart), mayLeave = escaped;
-  escaped = event.key === "Escape";
+function indent(event) {
+  const source = $("source"), before = source.value.slice(0, source.selectionStart), mayLeave = isAfterEscape;
+  isAfterEscape = event.key === "Escape";
   if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) run();
   else if (event.key === "Tab" && !event.shiftKey && !mayLeave) document.execCommand("insertText", false, "  ");
   else if (event.key === "Enter") document.execCommand("insertText", false, `\n${/[ \t]*(?=[^\n]*$)/.exec(before.slice(before.lastIndexOf("\n") + 1))[0]}`);
@@ -166,7 +166,7 @@ function typeSpaces(event) {
   event.preventDefault();
 }
 
-function offerExamples() {
+function listExamples() {
   const names = Object.keys(data.examples ?? {});
   $("examples").hidden = names.length === 0;
   $("examples").replaceChildren(new Option("another system …", ""), ...names.map((name) => new Option(name, name)));
@@ -181,17 +181,17 @@ function openExample(name) {
   if (!chosen) return false;
   ({ file } = chosen);
   files = { ...chosen.files };
-  offerFiles();
+  listFiles();
   return true;
 }
 
 function addActions() {
   $("run").addEventListener("click", run);
-  $("source").addEventListener("input", typed);
-  const offer = offerWords($("source"), $("words"), language);
-  $("insert").addEventListener("click", () => insertElement(offer));
-  $("source").addEventListener("keydown", typeSpaces);
-  $("source").addEventListener("scroll", follow);
+  $("source").addEventListener("input", onInput);
+  const complete = addCompletion($("source"), $("completions"), language);
+  $("insert").addEventListener("click", () => insertElement(complete));
+  $("source").addEventListener("keydown", indent);
+  $("source").addEventListener("scroll", scrollTogether);
   $("files").addEventListener("change", () => openFile($("files").value));
   $("saveFile").addEventListener("click", () => save(opened.split("/").pop(), files[opened], "text/xml"));
   $("savePage").addEventListener("click", () => save(`${file.split("/").at(-2) ?? "system"}.html`, pageNow(), "text/html"));
@@ -203,14 +203,14 @@ function addActions() {
 }
 
 let pageText, language;
-let escaped = false; // the last key was Escape
+let isAfterEscape = false; // true if the last key was Escape
 
 async function begin() {
   pageText = new TextDecoder().decode(await unpacked(data.page));
   window.laboratoryBytes = await unpacked(data.laboratory);
   language = JSON.parse(new TextDecoder().decode(await unpacked(data.language)));
-  offerExamples();
-  if (!openExample(decodeURIComponent(location.hash.slice(1)))) offerFiles();
+  listExamples();
+  if (!openExample(decodeURIComponent(location.hash.slice(1)))) listFiles();
   addActions();
   await startChecker();
   run();

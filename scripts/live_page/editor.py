@@ -12,7 +12,7 @@ from .schema import Schema, documentation, enumerated
 
 HERE = Path(__file__).resolve().parent
 LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, and in the tree
-STYLE, SCRIPTS = "editor.css", ("unpacking.js", "words.js", "completion.js", "editor.js")
+STYLE, SCRIPTS = "editor.css", ("unpacking.js", "syntax.js", "completion.js", "editor.js")
 SCHEMAS = (HERE / "system.xsd", HERE.parent.parent / "fmu" / "system.xsd")  # in the wheel, and in the tree
 MESHES = (".stl", ".obj")
 CHECKER = ("laboratory.js", "checker.js")
@@ -57,8 +57,8 @@ def language():
 
     def kind(parents, declaration):
         sentence, attributes, contents, has_text = schema.frame(declaration)
-        named = {a.get("name"): {"text": documentation(a).replace("`", ""), "isNeeded": a.get("use") == "required", "values": enumerated(a)} for a in attributes}
-        return {"in": parents, "text": sentence.replace("`", ""), "attributes": named, "holds": contents, "hasText": has_text}
+        named = {a.get("name"): {"text": documentation(a).replace("`", ""), "isRequired": a.get("use") == "required", "values": enumerated(a)} for a in attributes}
+        return {"in": parents, "text": sentence.replace("`", ""), "attributes": named, "contains": contents, "hasText": has_text}
 
     return {name: [kind(*pair) for pair in schema.kinds(name)] for name in schema.elements}
 

@@ -6,16 +6,16 @@ const [OK, WARNING] = [0, 1];
 class Memory {
   constructor(wasm) {
     this.wasm = wasm;
-    this.room = 0;
+    this.size = 0;
   }
 
   // Returns the address of a buffer of at least this many bytes, which the next call reuses.
-  place(bytes) {
-    if (bytes > this.room) {
-      this.room = 2 * bytes;
-      this.at = this.wasm.allocate(this.room);
+  reserve(bytes) {
+    if (bytes > this.size) {
+      this.size = 2 * bytes;
+      this.address = this.wasm.allocate(this.size);
     }
-    return this.at;
+    return this.address;
   }
 
   text(pointer) {
@@ -25,7 +25,7 @@ class Memory {
 }
 
 // An error that the FMU reports, with its message.
-class Refusal extends Error {}
+class FmuError extends Error {}
 
 class Fmu {
   // description: guid, startTime and variables, each with type, reference.
@@ -33,23 +33,23 @@ class Fmu {
     this.wasm = wasm;
     this.memory = new Memory(wasm);
     this.description = description;
-    const guid = new TextEncoder().encode(`${description.guid}\0`), place = this.memory.place(guid.length);
-    new Uint8Array(wasm.memory.buffer).set(guid, place);
-    this.instance = wasm.instantiate(place);
-    if (!this.instance) throw new Refusal(this.said());
+    const guid = new TextEncoder().encode(`${description.guid}\0`), address = this.memory.reserve(guid.length);
+    new Uint8Array(wasm.memory.buffer).set(guid, address);
+    this.instance = wasm.instantiate(address);
+    if (!this.instance) throw new FmuError(this.takeMessages());
     this.isNew = true;
   }
 
   // Returns and clears the FMU's messages, without the names of FMI functions, which mean nothing to readers of the page.
-  said() {
-    const words = this.memory.text(this.wasm.messages()).trim().replace(/^fmi2\w+: /gm, "");
+  takeMessages() {
+    const text = this.memory.text(this.wasm.messages()).trim().replace(/^fmi2\w+: /gm, "");
     this.wasm.forgetMessages();
-    return words;
+    return text;
   }
 
   check(status) {
-    const words = this.said();
-    if (status > WARNING) throw new Refusal(words || `the FMU answered with the status ${status}`);
+    const text = this.takeMessages();
+    if (status > WARNING) throw new FmuError(text || `the FMU returned the status ${status}`);
   }
 
   // Resets and initializes with values, [index of the variable, value] each.
@@ -57,57 +57,57 @@ class Fmu {
     if (!this.isNew) this.check(this.wasm.fmi2Reset(this.instance));
     this.isNew = false;
     this.check(this.wasm.fmi2SetupExperiment(this.instance, 0, 0, time, 0, 0));
-    for (const [place, value] of values) this.set(place, value);
+    for (const [index, value] of values) this.set(index, value);
     this.check(this.wasm.fmi2EnterInitializationMode(this.instance));
     this.check(this.wasm.fmi2ExitInitializationMode(this.instance));
   }
 
-  set(place, value) {
-    const variable = this.description.variables[place], at = this.memory.place(16), buffer = this.wasm.memory.buffer;
-    new Uint32Array(buffer, at, 1)[0] = variable.reference;
-    if (variable.type === "Real") new Float64Array(buffer, at + 8, 1)[0] = value;
-    else new Int32Array(buffer, at + 8, 1)[0] = Math.round(value);
-    this.check(this.wasm[`fmi2Set${variable.type}`](this.instance, at, 1, at + 8));
+  set(index, value) {
+    const variable = this.description.variables[index], address = this.memory.reserve(16), buffer = this.wasm.memory.buffer;
+    new Uint32Array(buffer, address, 1)[0] = variable.reference;
+    if (variable.type === "Real") new Float64Array(buffer, address + 8, 1)[0] = value;
+    else new Int32Array(buffer, address + 8, 1)[0] = Math.round(value);
+    this.check(this.wasm[`fmi2Set${variable.type}`](this.instance, address, 1, address + 8));
   }
 
   setReals(references, values) {
-    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
-    new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
-    new Float64Array(this.wasm.memory.buffer, at + offset, count).set(values);
-    this.check(this.wasm.fmi2SetReal(this.instance, at, count, at + offset));
+    const count = references.length, offset = 8 * Math.ceil(count / 2), address = this.memory.reserve(offset + 8 * count);
+    new Uint32Array(this.wasm.memory.buffer, address, count).set(references);
+    new Float64Array(this.wasm.memory.buffer, address + offset, count).set(values);
+    this.check(this.wasm.fmi2SetReal(this.instance, address, count, address + offset));
   }
 
   // Returns the values of the Reals with these references.
   read(references) {
-    const count = references.length, offset = 8 * Math.ceil(count / 2), at = this.memory.place(offset + 8 * count);
-    new Uint32Array(this.wasm.memory.buffer, at, count).set(references);
-    this.check(this.wasm.fmi2GetReal(this.instance, at, count, at + offset));
-    return new Float64Array(this.wasm.memory.buffer, at + offset, count).slice();
+    const count = references.length, offset = 8 * Math.ceil(count / 2), address = this.memory.reserve(offset + 8 * count);
+    new Uint32Array(this.wasm.memory.buffer, address, count).set(references);
+    this.check(this.wasm.fmi2GetReal(this.instance, address, count, address + offset));
+    return new Float64Array(this.wasm.memory.buffer, address + offset, count).slice();
   }
 
   // Returns the number of events so far; 0 if the system has none.
   events() {
     this.counter ??= this.description.variables.find(({ name, type }) => name === "events" && type === "Integer") ?? 0;
     if (!this.counter) return 0;
-    const at = this.memory.place(16);
-    new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = this.counter.reference;
-    this.check(this.wasm.fmi2GetInteger(this.instance, at, 1, at + 8));
-    return new Int32Array(this.wasm.memory.buffer, at + 8, 1)[0];
+    const address = this.memory.reserve(16);
+    new Uint32Array(this.wasm.memory.buffer, address, 1)[0] = this.counter.reference;
+    this.check(this.wasm.fmi2GetInteger(this.instance, address, 1, address + 8));
+    return new Int32Array(this.wasm.memory.buffer, address + 8, 1)[0];
   }
 
   step(time, length) {
     this.check(this.wasm.fmi2DoStep(this.instance, time, length, 0));
   }
 
-  // Saves the FMU state and returns its address; reuses the memory of the state `place`, if it is given.
-  save(place = 0) {
-    const at = this.memory.place(8);
-    new Uint32Array(this.wasm.memory.buffer, at, 1)[0] = place;
-    this.check(this.wasm.fmi2GetFMUstate(this.instance, at));
-    return new Uint32Array(this.wasm.memory.buffer, at, 1)[0];
+  // Saves the FMU state and returns its address; reuses the memory of `state`, if it is given.
+  save(state = 0) {
+    const address = this.memory.reserve(8);
+    new Uint32Array(this.wasm.memory.buffer, address, 1)[0] = state;
+    this.check(this.wasm.fmi2GetFMUstate(this.instance, address));
+    return new Uint32Array(this.wasm.memory.buffer, address, 1)[0];
   }
 
-  restore(place) {
-    this.check(this.wasm.fmi2SetFMUstate(this.instance, place));
+  restore(state) {
+    this.check(this.wasm.fmi2SetFMUstate(this.instance, state));
   }
 }

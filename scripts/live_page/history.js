@@ -1,12 +1,12 @@
 // Samples of all shown variables, of which the oldest are dropped first.
 "use strict";
 
-const NUMBERS = 4e6; // kept at most, 32 MB
+const NUMBERS = 4e6; // in all samples at most, 32 MB
 
 class History {
   constructor(width) {
     this.width = width;
-    this.most = Math.max(200, Math.min(20000, Math.floor(NUMBERS / (width + 1))));
+    this.capacity = Math.max(200, Math.min(20000, Math.floor(NUMBERS / (width + 1))));
     this.clear();
   }
 
@@ -22,15 +22,15 @@ class History {
     this.times.push(time);
     this.samples.push(runs);
     this.events.push(events);
-    if (this.times.length > 1.2 * this.most) {
-      this.times.splice(0, this.times.length - this.most);
-      this.samples.splice(0, this.samples.length - this.most);
-      this.events.splice(0, this.events.length - this.most);
+    if (this.times.length > 1.2 * this.capacity) {
+      this.times.splice(0, this.times.length - this.capacity);
+      this.samples.splice(0, this.samples.length - this.capacity);
+      this.events.splice(0, this.events.length - this.capacity);
     }
   }
 
   // Removes the samples from this time on.
-  cut(time) {
+  truncate(time) {
     let length = this.times.length;
     while (length > 0 && this.times[length - 1] >= time - 1e-12 * Math.abs(time)) length--;
     this.times.length = this.samples.length = this.events.length = length;
@@ -44,13 +44,13 @@ class History {
     return this.times[i];
   }
 
-  value(i, place, run) {
+  value(i, column, run) {
     const runs = this.samples[i];
-    return (runs[run] || runs[0])[place];
+    return (runs[run] || runs[0])[column];
   }
 
   // Returns the index of the last sample that is not after a time.
-  placeOf(time, first = 0, last = this.length) {
+  indexOf(time, first = 0, last = this.length) {
     let low = first, high = last - 1;
     while (low < high) {
       const middle = (low + high + 1) >> 1;

@@ -4,7 +4,7 @@
 const [SUCCESS, BAD_DESCRIPTOR, INVALID, NO_ENTRY] = [0, 8, 28, 44];
 const [DIRECTORY, REGULAR_FILE] = [3, 4];
 const ROOT = 3; // descriptor of the folder of all files
-const [FROM_START, FROM_PRESENT] = [0, 1];
+const [FROM_START, FROM_CURRENT] = [0, 1];
 
 // An instance of the module, which derives one system, once.
 class Laboratory {
@@ -12,17 +12,17 @@ class Laboratory {
   constructor(bytes, files) {
     this.files = new Map(Object.entries(files).map(([name, text]) => [name, new TextEncoder().encode(text)]));
     this.opened = new Map(); // { content, at } by descriptor; at: the read position
-    this.said = "";
-    this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), { wasi_snapshot_preview1: this.system() }).exports;
+    this.messages = "";
+    this.wasm = new WebAssembly.Instance(new WebAssembly.Module(bytes), { wasi_snapshot_preview1: this.imports() }).exports;
     this.wasm._initialize();
   }
 
-  // Derives the system of a file; true on success. lagc's messages are in `said`.
+  // Derives the system of a file; true on success. lagc's messages are in `messages`.
   derive(name, isPulled) {
     try {
       return this.wasm.derive(this.textIn(`/${name}`), Number(isPulled)) === 0;
     } catch (problem) {
-      this.said += this.said ? "" : `${name}: the system is too large to be derived here (${problem.message})\n`;
+      this.messages += this.messages ? "" : `${name}: the system is too large to be derived here (${problem.message})\n`;
       return false;
     }
   }
@@ -34,9 +34,9 @@ class Laboratory {
 
   // Returns the address of a copy of the text in the module's memory, which is never freed.
   textIn(text) {
-    const bytes = new TextEncoder().encode(`${text}\0`), place = this.wasm.allocate(bytes.length);
-    new Uint8Array(this.wasm.memory.buffer).set(bytes, place);
-    return place;
+    const bytes = new TextEncoder().encode(`${text}\0`), address = this.wasm.allocate(bytes.length);
+    new Uint8Array(this.wasm.memory.buffer).set(bytes, address);
+    return address;
   }
 
   view() {
@@ -44,9 +44,9 @@ class Laboratory {
   }
 
   // Returns the normalized path at an address, as it is in `files`.
-  nameAt(place, length) {
+  nameAt(address, length) {
     const parts = [];
-    for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, place, length)).split("/")) {
+    for (const part of new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, address, length)).split("/")) {
       if (part === "..") parts.pop();
       else if (part !== "" && part !== ".") parts.push(part);
     }
@@ -58,23 +58,23 @@ class Laboratory {
   }
 
   // Yields the buffers of a list of iovec.
-  *pieces(list, count) {
+  *buffers(list, count) {
     const view = this.view();
     for (let i = 0; i < count; i++) yield new Uint8Array(this.wasm.memory.buffer, view.getUint32(list + 8 * i, true), view.getUint32(list + 8 * i + 4, true));
   }
 
   write(descriptor, list, count, written) {
     let length = 0;
-    for (const piece of this.pieces(list, count)) {
-      this.said += new TextDecoder().decode(piece);
-      length += piece.length;
+    for (const buffer of this.buffers(list, count)) {
+      this.messages += new TextDecoder().decode(buffer);
+      length += buffer.length;
     }
     this.view().setUint32(written, length, true);
     return SUCCESS;
   }
 
-  open(folder, flags, place, length, further, rights, inherited, how, result) {
-    const content = this.files.get(this.nameAt(place, length));
+  open(folder, lookupFlags, path, length, openFlags, rights, inheritedRights, descriptorFlags, result) {
+    const content = this.files.get(this.nameAt(path, length));
     if (!content) return NO_ENTRY;
     let descriptor = ROOT + 1;
     while (this.opened.has(descriptor)) descriptor++;
@@ -87,9 +87,9 @@ class Laboratory {
     const file = this.opened.get(descriptor);
     if (!file) return BAD_DESCRIPTOR;
     const from = file.at;
-    for (const piece of this.pieces(list, count)) {
-      const part = file.content.subarray(file.at, file.at + piece.length);
-      piece.set(part);
+    for (const buffer of this.buffers(list, count)) {
+      const part = file.content.subarray(file.at, file.at + buffer.length);
+      buffer.set(part);
       file.at += part.length;
     }
     this.view().setUint32(result, file.at - from, true);
@@ -99,37 +99,37 @@ class Laboratory {
   seek(descriptor, offset, whence, result) {
     const file = this.opened.get(descriptor);
     if (!file) return BAD_DESCRIPTOR;
-    file.at = Number(offset) + (whence === FROM_START ? 0 : whence === FROM_PRESENT ? file.at : file.content.length);
+    file.at = Number(offset) + (whence === FROM_START ? 0 : whence === FROM_CURRENT ? file.at : file.content.length);
     this.view().setBigUint64(result, BigInt(file.at), true);
     return SUCCESS;
   }
 
-  tellOfDescriptor(descriptor, place) {
+  statDescriptor(descriptor, address) {
     if (descriptor > ROOT && !this.opened.has(descriptor)) return BAD_DESCRIPTOR;
-    new Uint8Array(this.wasm.memory.buffer).fill(0, place, place + 24);
-    this.view().setUint8(place, descriptor === ROOT ? DIRECTORY : REGULAR_FILE);
-    for (const rights of [8, 16]) this.view().setBigUint64(place + rights, (1n << 29n) - 1n, true);
+    new Uint8Array(this.wasm.memory.buffer).fill(0, address, address + 24);
+    this.view().setUint8(address, descriptor === ROOT ? DIRECTORY : REGULAR_FILE);
+    for (const rights of [8, 16]) this.view().setBigUint64(address + rights, (1n << 29n) - 1n, true);
     return SUCCESS;
   }
 
-  tellOfFile(folder, flags, path, length, place) {
+  statFile(folder, flags, path, length, address) {
     const name = this.nameAt(path, length), content = this.files.get(name);
     if (!content && !this.isFolder(name)) return NO_ENTRY;
-    new Uint8Array(this.wasm.memory.buffer).fill(0, place, place + 64);
-    this.view().setUint8(place + 16, content ? REGULAR_FILE : DIRECTORY);
-    this.view().setBigUint64(place + 32, BigInt(content ? content.length : 0), true);
+    new Uint8Array(this.wasm.memory.buffer).fill(0, address, address + 64);
+    this.view().setUint8(address + 16, content ? REGULAR_FILE : DIRECTORY);
+    this.view().setBigUint64(address + 32, BigInt(content ? content.length : 0), true);
     return SUCCESS;
   }
 
-  tellOfFolder(descriptor, place) {
+  describeFolder(descriptor, address) {
     if (descriptor !== ROOT) return BAD_DESCRIPTOR;
-    this.view().setUint8(place, 0);
-    this.view().setUint32(place + 4, 1, true); // the length of "/"
+    this.view().setUint8(address, 0);
+    this.view().setUint32(address + 4, 1, true); // the length of "/"
     return SUCCESS;
   }
 
-  nameFolder(descriptor, place) {
-    new Uint8Array(this.wasm.memory.buffer)[place] = "/".charCodeAt(0);
+  nameFolder(descriptor, address) {
+    new Uint8Array(this.wasm.memory.buffer)[address] = "/".charCodeAt(0);
     return SUCCESS;
   }
 
@@ -140,24 +140,24 @@ class Laboratory {
   }
 
   // Returns the functions of WASI that the module imports.
-  system() {
+  imports() {
     return {
-      clock_time_get: (clock, precision, place) => (this.view().setBigUint64(place, 0n, true), SUCCESS),
+      clock_time_get: (clock, precision, address) => (this.view().setBigUint64(address, 0n, true), SUCCESS),
       environ_get: () => SUCCESS,
-      environ_sizes_get: (...places) => this.noEnvironment(...places),
+      environ_sizes_get: (...addresses) => this.noEnvironment(...addresses),
       fd_close: (descriptor) => (this.opened.delete(descriptor) ? SUCCESS : BAD_DESCRIPTOR),
-      fd_fdstat_get: (...about) => this.tellOfDescriptor(...about),
+      fd_fdstat_get: (...parameters) => this.statDescriptor(...parameters),
       fd_fdstat_set_flags: () => SUCCESS,
-      fd_prestat_dir_name: (...about) => this.nameFolder(...about),
-      fd_prestat_get: (...about) => this.tellOfFolder(...about),
-      fd_read: (...about) => this.read(...about),
-      fd_seek: (...about) => this.seek(...about),
-      fd_write: (...about) => this.write(...about),
-      path_filestat_get: (...about) => this.tellOfFile(...about),
-      path_open: (...about) => this.open(...about),
+      fd_prestat_dir_name: (...parameters) => this.nameFolder(...parameters),
+      fd_prestat_get: (...parameters) => this.describeFolder(...parameters),
+      fd_read: (...parameters) => this.read(...parameters),
+      fd_seek: (...parameters) => this.seek(...parameters),
+      fd_write: (...parameters) => this.write(...parameters),
+      path_filestat_get: (...parameters) => this.statFile(...parameters),
+      path_open: (...parameters) => this.open(...parameters),
       path_readlink: () => INVALID, // no file is a symbolic link
       proc_exit: (status) => {
-        throw new Error(`it ended with ${status}`);
+        throw new Error(`the module ended with status ${status}`);
       },
     };
   }
@@ -165,7 +165,7 @@ class Laboratory {
 
 // Derives a system and returns the functions of its module; throws lagc's messages on failure.
 function derivedIn({ bytes, files, file }, isPulled) {
-  const made = new Laboratory(bytes, files);
-  if (!made.derive(file, isPulled)) throw new Error(made.said);
-  return made.wasm;
+  const system = new Laboratory(bytes, files);
+  if (!system.derive(file, isPulled)) throw new Error(system.messages);
+  return system.wasm;
 }

@@ -48,33 +48,33 @@ class DrawnLine {
     const [from, to] = this.at(sample, time), round = this.isRound ? from.distanceTo(to) : 0, radius = this.kind === "belt" ? this.scene.value(this.line.radius) : round;
     for (const point of this.isRound ? [from] : [from, to]) {
       if (!AXES.every((axis) => Number.isFinite(point[axis]))) continue;
-      const axis = this.scene.normalAxis(this.line), reach = new THREE.Vector3(radius, radius, radius).setComponent(axis, 0);
-      box.expandByPoint(point.clone().add(reach)).expandByPoint(point.clone().sub(reach));
+      const axis = this.scene.normalAxis(this.line), extent = new THREE.Vector3(radius, radius, radius).setComponent(axis, 0);
+      box.expandByPoint(point.clone().add(extent)).expandByPoint(point.clone().sub(extent));
     }
   }
 
   // Builds its parts; length: that at the start.
   build(length, opacity) {
-    const { scene, line } = this, size = scene.radius, given = line.radius ? scene.value(line.radius) : NaN;
+    const { scene, line } = this, size = scene.radius, radius = line.radius ? scene.value(line.radius) : NaN;
     const colors = { pivot: scene.isDark ? 0xe6e9ef : 0x3a4350, ground: scene.isDark ? 0x7a8699 : 0x9aa5b4, arrow: 0xd9342b };
-    const own = line.color && line.color.slice(0, 7), seen = (line.color && line.color.length > 7 ? parseInt(line.color.slice(7), 16) / 255 : 1) * opacity;
-    this.material = scene.material(own || colors[this.kind] || scene.rodMaterial.color.getHex(), { transparent: seen < 1, opacity: seen });
+    const own = line.color && line.color.slice(0, 7), opacityOfLine = (line.color && line.color.length > 7 ? parseInt(line.color.slice(7), 16) / 255 : 1) * opacity;
+    this.material = scene.material(own || colors[this.kind] || scene.rodMaterial.color.getHex(), { transparent: opacityOfLine < 1, opacity: opacityOfLine });
     this.group = new THREE.Group();
     this.group.matrixAutoUpdate = false;
     this.stretched = []; // parts that are as long as the line
-    this.ended = []; // parts at its second end
+    this.atEnd = []; // parts at its second end
     this.length = length || size;
-    const thick = { rod: 0.014, rope: 0.006, spring: 0.035, damper: 0.03, pivot: 0.06 }[this.kind] * size;
-    this[this.kind](given > 0 ? given : thick, size);
+    const defaultRadius = { rod: 0.014, rope: 0.006, spring: 0.035, damper: 0.03, pivot: 0.06 }[this.kind] * size;
+    this[this.kind](radius > 0 ? radius : defaultRadius, size);
     return this.group;
   }
 
-  add(geometry, { isStretched = false, isEnded = false, y = 0, x = 0, z = 0, material = this.material } = {}) {
+  add(geometry, { isStretched = false, isAtEnd = false, y = 0, x = 0, z = 0, material = this.material } = {}) {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.position.set(x, y, z);
     this.group.add(mesh);
     if (isStretched) this.stretched.push(mesh);
-    if (isEnded) this.ended.push(mesh);
+    if (isAtEnd) this.atEnd.push(mesh);
     return mesh;
   }
 
@@ -84,7 +84,7 @@ class DrawnLine {
 
   rod(radius) {
     this.bar(radius);
-    for (const isEnded of [false, true]) this.add(new THREE.SphereBufferGeometry(radius, 16, 12), { isEnded });
+    for (const isAtEnd of [false, true]) this.add(new THREE.SphereBufferGeometry(radius, 16, 12), { isAtEnd });
   }
 
   rope(radius) {
@@ -101,17 +101,17 @@ class DrawnLine {
     Object.assign(housing, { transparent: true, opacity: 0.45 * this.material.opacity });
     this.bar(0.3 * radius);
     this.add(new THREE.CylinderBufferGeometry(radius, radius, 0.5 * this.length, 24), { y: 0.4 * this.length, material: housing });
-    this.add(new THREE.CylinderBufferGeometry(0.9 * radius, 0.9 * radius, 0.06 * this.length, 24).translate(0, -0.4 * this.length, 0), { isEnded: true });
+    this.add(new THREE.CylinderBufferGeometry(0.9 * radius, 0.9 * radius, 0.06 * this.length, 24).translate(0, -0.4 * this.length, 0), { isAtEnd: true });
   }
 
   belt(radius, size) {
     const pulley = Object.assign(this.material.clone(), { transparent: true, opacity: 0.4 * this.material.opacity });
-    for (const isEnded of [false, true]) this.add(new THREE.CylinderBufferGeometry(0.96 * radius, 0.96 * radius, 0.06 * size, 32).rotateX(Math.PI / 2), { isEnded, material: pulley });
+    for (const isAtEnd of [false, true]) this.add(new THREE.CylinderBufferGeometry(0.96 * radius, 0.96 * radius, 0.06 * size, 32).rotateX(Math.PI / 2), { isAtEnd, material: pulley });
     const dark = this.scene.material(this.scene.isDark ? 0xe6e9ef : 0x3a4350);
     for (const side of [-1, 1]) this.bar(0.007 * size, { x: side * radius, material: dark });
-    for (const isEnded of [false, true]) {
-      const turn = isEnded ? 0 : Math.PI;
-      this.add(new THREE.TorusBufferGeometry(radius, 0.007 * size, 8, 32, Math.PI).rotateZ(turn), { isEnded, material: dark });
+    for (const isAtEnd of [false, true]) {
+      const angle = isAtEnd ? 0 : Math.PI;
+      this.add(new THREE.TorusBufferGeometry(radius, 0.007 * size, 8, 32, Math.PI).rotateZ(angle), { isAtEnd, material: dark });
     }
   }
 
@@ -121,11 +121,11 @@ class DrawnLine {
 
   wheel() {
     this.add(new THREE.TorusBufferGeometry(1, 0.07, 10, 48));
-    for (const turn of [0, Math.PI / 2]) this.add(new THREE.CylinderBufferGeometry(0.04, 0.04, 2, 8).rotateZ(turn));
+    for (const angle of [0, Math.PI / 2]) this.add(new THREE.CylinderBufferGeometry(0.04, 0.04, 2, 8).rotateZ(angle));
     this.add(new THREE.SphereBufferGeometry(0.14, 16, 12));
   }
 
-  // Hatched to the right of the way from its first end to the second.
+  // Hatched on the right-hand side, seen from its first end to the second.
   ground(_, size) {
     const depth = 0.05 * size, count = Math.max(HATCHES, Math.min(60, Math.round(this.length / depth)));
     this.add(new THREE.BoxBufferGeometry(0.012 * size, 1, this.scene.plane ? 0.012 * size : 0.5 * size).translate(0.006 * size, 0.5, 0), { isStretched: true });
@@ -150,7 +150,7 @@ class DrawnLine {
   }
 
   // Returns the axis x of the group, at a right angle to its axis y; that of a ground in space points downwards.
-  side(y) {
+  sideAxis(y) {
     const { scene } = this, up = new THREE.Vector3(...scene.up);
     if (this.kind === "ground" && !scene.plane) return y.clone().multiplyScalar(y.dot(up)).sub(up).normalize();
     const isFacing = !this.line.axis && scene.plane && scene.outwards; // towards the camera
@@ -162,22 +162,22 @@ class DrawnLine {
     return new THREE.Vector3(0, 0, 1);
   }
 
-  place(sample, time) {
+  update(sample, time) {
     const [from, to] = this.at(sample, time), { scene, group } = this;
-    const way = this.isPoint ? new THREE.Vector3(...scene.up) : to.clone().sub(from), length = this.isPoint ? 1 : way.length();
+    const direction = this.isPoint ? new THREE.Vector3(...scene.up) : to.clone().sub(from), length = this.isPoint ? 1 : direction.length();
     group.visible = Number.isFinite(length) && Number.isFinite(from.length()) && length > 1e-9 * scene.radius;
     if (!group.visible) return;
-    const y = way.normalize(), x = this.side(y);
+    const y = direction.normalize(), x = this.sideAxis(y);
     group.matrix.makeBasis(x, y, new THREE.Vector3().crossVectors(x, y));
     if (this.isRound) group.matrix.scale(new THREE.Vector3(length, length, length));
     group.matrix.setPosition(from);
     group.matrixWorldNeedsUpdate = true;
     for (const part of this.stretched) part.scale.y = length;
-    for (const part of this.ended) part.position.y = length;
-    if (this.kind === "arrow") this.placeArrow(length);
+    for (const part of this.atEnd) part.position.y = length;
+    if (this.kind === "arrow") this.updateArrow(length);
   }
 
-  placeArrow(length) {
+  updateArrow(length) {
     const scale = Math.min(1, (0.5 * length) / this.headLength);
     this.head.scale.set(scale, scale, scale);
     this.head.position.y = length;

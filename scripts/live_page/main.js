@@ -12,26 +12,26 @@ const file = await parsed(data.modelDescription);
 const description = descriptionOf(file), sceneParts = sceneOf(file);
 for (const variable of description.variables) if (variable.name in (data.start ?? {})) variable.start = data.start[variable.name];
 const pulls = data.pulled && sceneParts.length > 0 ? pullsOf(await parsed(data.pulled), description) : null;
-const shownOnes = shownPlaces(description, sceneParts, recording?.names);
-const shownVariables = shownOnes.map((place) => description.variables[place]);
+const shownIndices = indicesToShow(description, sceneParts, recording?.names);
+const shownVariables = shownIndices.map((index) => description.variables[index]);
 const shownWindow = recording ? recording.duration : Math.min(WINDOW, description.duration);
 const columnOf = new Map(shownVariables.map((variable, column) => [variable.name, column]));
 const history = new History(shownVariables.length);
 const sections = new History(shownVariables.length); // a sample at the end of each period: a Poincaré section
 const controls = new Map(); // by the index of the variable
 const plots = [];
-const live = (window.live = { history, sections, plots, names: shownVariables.map((variable) => variable.name), answers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
+const live = (window.live = { history, sections, plots, names: shownVariables.map((variable) => variable.name), handlers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
 let worker, scene = null, energyBar = null, playing = false, viewed = null, pace = [0, 0];
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
-let resetDue = null; // timer of a delayed reset, which collects several settings
+let resetTimer = null; // timer of a delayed reset, which collects several settings
 
-// Sends an order to the worker; a delayed reset is done before any order but "set".
-function order(name, content = {}) {
+// Sends a command to the worker; a delayed reset is done before any command but "set".
+function send(name, content = {}) {
   if (recording) return;
-  if (resetDue !== null && name !== "set") {
-    clearTimeout(resetDue);
-    resetDue = null;
+  if (resetTimer !== null && name !== "set") {
+    clearTimeout(resetTimer);
+    resetTimer = null;
     if (name !== "reset") worker.postMessage({ name: "reset" });
   }
   worker.postMessage({ name, ...content });
@@ -46,8 +46,8 @@ function inJavaScript(formula, hasSamples) {
     if (/^\d/.test(name)) return name;
     if (name === "time") return "t";
     if (hasSamples && columnOf.has(name)) return `s[${columnOf.get(name)}]`;
-    const place = description.variables.findIndex((variable) => variable.name === name);
-    return place >= 0 ? `p(${place})` : name === "pi" ? "Math.PI" : "NaN";
+    const index = description.variables.findIndex((variable) => variable.name === name);
+    return index >= 0 ? `p(${index})` : name === "pi" ? "Math.PI" : "NaN";
   });
   // JavaScript rejects a sign before a power, and `if` as the name of a function.
   return text.replace(/(^|[(,*/+-])\s*-/g, "$1-1*").replace(/\^/g, "**").replace(/\bif\(/g, "choose(");
@@ -60,7 +60,7 @@ function compiled(formula, hasSamples = true) {
   let evaluate = () => NaN;
   try {
     const called = new Function("s", "t", "p", "choose", ...FUNCTIONS, `return ${inJavaScript(formula, hasSamples)}`);
-    const valueAt = (place) => controls.get(place)?.value ?? description.variables[place].start;
+    const valueAt = (index) => controls.get(index)?.value ?? description.variables[index].start;
     const choose = (condition, first, second) => (condition ? first : second), maths = FUNCTIONS.map((name) => Math[name]);
     evaluate = (sample, time) => {
       try {
@@ -84,12 +84,12 @@ function valueOf(formula) {
 // Returns the ranges of the sliders by name.
 const ranges = () => new Map([...controls.values()].map(({ variable, low, high }) => [variable.name, [low, high]]));
 
-function say(words) {
-  $("words").hidden = !words;
-  $("words").textContent = words;
+function showMessage(message) {
+  $("message").hidden = !message;
+  $("message").textContent = message;
 }
 
-const answers = {
+const handlers = {
   ready() {
     live.ready();
   },
@@ -97,13 +97,13 @@ const answers = {
     buildScene(...(rows.length ? [rows, times] : [history.samples.map((runs) => runs[0]), history.times]));
   },
   samples({ times, rows, events, isFresh }) {
-    if (isFresh) for (const one of [history, sections]) one.cut(times[0]);
-    if (isFresh) sent = "";
+    if (isFresh) for (const one of [history, sections]) one.truncate(times[0]);
+    if (isFresh) lastPull = "";
     if (history.length > 0 && history.runs !== rows[0].length) history.clear();
     times.forEach((time, i) => history.add(time, rows[i], events[i]));
     viewed = null;
-    $("past").max = Math.max(0, history.length - 1);
-    $("past").value = $("past").max;
+    $("timeline").max = Math.max(0, history.length - 1);
+    $("timeline").value = $("timeline").max;
   },
   section({ times, rows }) {
     times.forEach((time, i) => sections.add(time, rows[i]));
@@ -116,15 +116,15 @@ const answers = {
   },
   accepted({ about }) {
     if (scene) scene.adapt();
-    controls.get(about)?.say("");
-    say("");
+    controls.get(about)?.showMessage("");
+    showMessage("");
   },
-  refused({ words, about, value, held }) {
-    if (controls.has(about)) controls.get(about).refuse(words, value, held);
-    else say(words);
+  rejected({ message, about, value, previous }) {
+    if (controls.has(about)) controls.get(about).reject(message, value, previous);
+    else showMessage(message);
   },
-  ran(message) {
-    live.answers.ran(message);
+  finished(message) {
+    live.handlers.finished(message);
   },
 };
 
@@ -132,10 +132,10 @@ const answers = {
 function buildScene(samples, times) {
   if (!scene) return;
   scene.build(samples, times);
-  $("turning").parentElement.hidden = !scene.plane;
+  $("rotation").parentElement.hidden = !scene.plane;
   $("forcesChoice").hidden = scene.arrows.forces.length === 0;
   $("velocitiesChoice").hidden = scene.arrows.velocities.length === 0;
-  $("followChoice").hidden = scene.followed.length === 0;
+  $("followChoice").hidden = scene.followedAxes.length === 0;
 }
 
 function setPlaying(isPlaying) {
@@ -145,92 +145,92 @@ function setPlaying(isPlaying) {
 
 // Steps, steps back, or resets the FMU, or the view of a recording.
 function move(name) {
-  order(name);
+  send(name);
   if (recording) viewFrom({ step: viewed + 1, back: viewed - 1, reset: 0 }[name]);
 }
 
 function play() {
-  if (!playing) order("play");
-  else order("pause");
+  if (!playing) send("play");
+  else send("pause");
   setPlaying(!playing);
 }
 
 const speedOf = () => Number((10 ** Number($("speed").value)).toPrecision(2)) * (recording ? recording.speed : 1);
 
 function setSpeed() {
-  $("speedShown").textContent = `× ${shown(speedOf(), 2)}`;
-  order("speed", { value: speedOf() });
+  $("speedShown").textContent = `× ${formatted(speedOf(), 2)}`;
+  send("speed", { value: speedOf() });
 }
 
 function addControls() {
   const kinds = [["input", "Inputs"], ["parameter", "Parameters"], ["start", "Start values"]];
   for (const [role, title] of kinds) {
-    const found = description.variables.map((variable, place) => [variable, place]).filter(([variable]) => variable.role === role);
+    const found = description.variables.map((variable, index) => [variable, index]).filter(([variable]) => variable.role === role);
     if (found.length === 0) continue;
-    const made = found.map(([variable, place]) => {
-      const control = new Control(variable, (value) => set(place, value));
-      controls.set(place, control);
+    const made = found.map(([variable, index]) => {
+      const control = new Control(variable, (value) => set(index, value));
+      controls.set(index, control);
       return control;
     });
     $("controls").append(section(title, made, role !== "start" || found.length <= 12));
   }
 }
 
-function set(place, value) {
-  order("set", { place, value });
-  const { role, isFixed } = description.variables[place];
-  if ((role !== "start" && !isFixed) || resetDue !== null) return;
+function set(index, value) {
+  send("set", { index, value });
+  const { role, isFixed } = description.variables[index];
+  if ((role !== "start" && !isFixed) || resetTimer !== null) return;
   // Takes effect at the next start; before the first step the FMU is reset at once.
-  if (history.length <= 1) resetDue = setTimeout(() => order("reset"), 50);
+  if (history.length <= 1) resetTimer = setTimeout(() => send("reset"), 50);
 }
 
 function addPlots() {
-  for (const { places, across } of firstPlots(shownVariables)) {
-    const plot = new Plot(history, sections, shownVariables, places, across);
+  for (const { columns, abscissa } of firstPlots(shownVariables)) {
+    const plot = new Plot(history, sections, shownVariables, columns, abscissa);
     plots.push(plot);
     $("plots").append(plot.element);
   }
 }
 
-// The shown time of the recording in s, and the clock of the frame that showed it in ms.
+// The displayed time of the recording in s, and the clock of the frame that showed it in ms.
 const player = { time: 0, before: null };
 
-function playOn(now) {
+function advancePlayer(now) {
   const [first, last] = [history.time(0), history.time(history.length - 1)];
   if (playing && player.before !== null) {
     player.time += ((now - player.before) / 1000) * speedOf();
     if (player.time > last) player.time = first;
-    view(history.placeOf(player.time));
+    view(history.indexOf(player.time));
   }
   player.before = now;
 }
 
 // Shows an earlier sample, or one of the recording.
-function view(place) {
-  viewed = Math.max(0, Math.min(history.length - 1, place));
-  $("past").value = viewed;
+function view(index) {
+  viewed = Math.max(0, Math.min(history.length - 1, index));
+  $("timeline").value = viewed;
 }
 
 // Shows a sample, from which the recording continues.
-function viewFrom(place) {
-  view(place);
+function viewFrom(index) {
+  view(index);
   player.time = history.time(viewed);
 }
 
 function frame(now) {
-  if (recording) playOn(now);
+  if (recording) advancePlayer(now);
   else readGamePads();
   if (history.length > 0) {
     const at = viewed === null ? history.length - 1 : Math.min(viewed, history.length - 1);
     $("clock").textContent = `${history.time(at).toFixed(CLOCK_DIGITS)} s`;
     $("pace").textContent = playing && pace[0] > 0.5 ? "slower than requested" : "";
     if (scene && scene.objects) {
-      if (at === history.length - 1) pullOn();
+      if (at === history.length - 1) updatePull();
       scene.draw(history, at);
     }
     energyBar?.draw(at);
     drawPresented(at);
-    const first = history.placeOf(history.time(history.length - 1) - shownWindow);
+    const first = history.indexOf(history.time(history.length - 1) - shownWindow);
     for (const plot of plots) plot.draw(first, history.length, at);
   }
   requestAnimationFrame(frame);
@@ -243,39 +243,39 @@ function save(name, content, type) {
 }
 
 // Returns the controls whose values differ from those of the FMU.
-const settings = () => [...controls].filter(([place, control]) => control.value !== description.variables[place].start);
+const settings = () => [...controls].filter(([index, control]) => control.value !== description.variables[index].start);
 
 // Starts or ends a second run, whose first start value differs slightly.
 function toggleGhost() {
-  const start = [...controls].find(([place]) => description.variables[place].role === "start");
-  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([place, control]) => [place, control.value + (place === start[0] ? GHOST : 0)]);
-  order("ghost", { differences });
+  const start = [...controls].find(([index]) => description.variables[index].role === "start");
+  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([index, control]) => [index, control.value + (index === start[0] ? GHOST : 0)]);
+  send("ghost", { differences });
 }
 
 function addActions() {
   $("ghost").addEventListener("click", toggleGhost);
-  $("ghost").hidden = ![...controls].some(([place]) => description.variables[place].role === "start");
+  $("ghost").hidden = ![...controls].some(([index]) => description.variables[index].role === "start");
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
   $("period").addEventListener("change", () => {
     sections.clear();
-    order("period", { value: Math.max(0, $("period").valueAsNumber || 0) });
+    send("period", { value: Math.max(0, $("period").valueAsNumber || 0) });
   });
-  $("past").addEventListener("input", () => viewFrom(Number($("past").value)));
+  $("timeline").addEventListener("input", () => viewFrom(Number($("timeline").value)));
   $("fit").addEventListener("click", () => scene && scene.fit());
-  $("turning").addEventListener("change", () => scene && scene.allowTurning((scene.wished.turning = $("turning").checked)));
-  for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.wished[name] = $(name).checked));
+  $("rotation").addEventListener("change", () => scene && scene.allowRotation((scene.options.rotation = $("rotation").checked)));
+  for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.options[name] = $(name).checked));
   $("csv").addEventListener("click", () => save(`${description.name}.csv`, history.csv(live.names), "text/csv"));
   $("picture").addEventListener("click", () => scene && scene.renderer.domElement.toBlob((picture) => save(`${description.name}.png`, picture, "image/png")));
   $("link").addEventListener("click", () => {
-    const words = new URLSearchParams(settings().map(([place, control]) => [description.variables[place].name, control.value]));
-    window.history.replaceState(null, "", `#${words}`);
+    const parameters = new URLSearchParams(settings().map(([index, control]) => [description.variables[index].name, control.value]));
+    window.history.replaceState(null, "", `#${parameters}`);
     if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
   });
   $("licenses").addEventListener("click", () => {
-    $("licenseWords").querySelector("pre").textContent = data.licenses;
-    $("licenseWords").showModal();
+    $("licenseText").querySelector("pre").textContent = data.licenses;
+    $("licenseText").showModal();
   });
   $("present").addEventListener("click", togglePresentation);
   document.addEventListener("fullscreenchange", endPresentation);
@@ -285,39 +285,39 @@ function addActions() {
 // Applies the page's settings, and those of the address after #, name=value&name=value, which have precedence; returns them.
 function settingsAtStart() {
   const given = [...Object.entries(data.settings ?? {}), ...new URLSearchParams(location.hash.slice(1))];
-  const byName = new Map(description.variables.map((variable, place) => [variable.name, place])), found = [];
+  const byName = new Map(description.variables.map((variable, index) => [variable.name, index])), found = [];
   for (const [name, text] of given) {
-    const place = byName.get(name), value = Number(text);
-    if (!controls.has(place) || !Number.isFinite(value)) continue;
-    controls.get(place).choose(value, () => {});
-    found.push([place, value]);
+    const index = byName.get(name), value = Number(text);
+    if (!controls.has(index) || !Number.isFinite(value)) continue;
+    controls.get(index).choose(value, () => {});
+    found.push([index, value]);
   }
   return found;
 }
 
-// For tests: steps to a time as fast as possible; resolves to the time, the shown values and the seconds it took.
+// For tests: steps to a time as fast as possible; resolves to the time, the shown values and the elapsed seconds.
 live.run = (until) =>
   new Promise((done) => {
-    live.answers.ran = done;
-    order("run", { until });
+    live.handlers.finished = done;
+    send("run", { until });
   });
 
 async function playRecording() {
   const numbers = new Float64Array(await unpacked(recording.rows)), width = 1 + recording.names.length;
-  history.most = numbers.length / width;
+  history.capacity = numbers.length / width;
   const columns = live.names.map((name) => 1 + recording.names.indexOf(name));
   const counter = 1 + recording.names.indexOf("events"); // 0 without events
   for (let i = 0; i < numbers.length; i += width) history.add(numbers[i], [Float64Array.from(columns, (column) => numbers[i + column])], counter && numbers[i + counter]);
   buildScene(history.samples.map((runs) => runs[0]), history.times);
-  $("past").max = history.length - 1;
+  $("timeline").max = history.length - 1;
   viewFrom(0);
-  $("pastName").textContent = "Time";
+  $("timelineLabel").textContent = "Time";
   setSpeed();
   setPlaying(true);
 }
 
 // Separates the modules that _interleaved() of page.py has interleaved.
-function apart(bytes) {
+function separated(bytes) {
   const modules = data.lengths.map((length) => new Uint8Array(length));
   let at = 0;
   for (let i = 0; i < data.pieces; i++) {
@@ -333,10 +333,10 @@ function apart(bytes) {
 async function runFmu() {
   const started = new Promise((done) => (live.ready = done));
   worker = new Worker(URL.createObjectURL(new Blob([await unpacked(data.worker)], { type: "text/javascript" })));
-  worker.onmessage = (event) => answers[event.data.name](event.data);
+  worker.onmessage = (event) => handlers[event.data.name](event.data);
   setSpeed();
-  const modules = laboratory ? { laboratory: { ...laboratory, bytes: window.parent.laboratoryBytes } } : { modules: apart(await unpacked(data.wasm)) };
-  worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownOnes, set: settingsAtStart() });
+  const modules = laboratory ? { laboratory: { ...laboratory, bytes: window.parent.laboratoryBytes } } : { modules: separated(await unpacked(data.wasm)) };
+  worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownIndices, set: settingsAtStart() });
   await started;
 }
 
@@ -371,7 +371,7 @@ async function begin() {
     scene = live.scene = new Scene($("scene"), sceneParts, (name) => columnOf.get(name) ?? -1, valueOf, compiled);
     addPulling();
     addEnergyBar();
-    scene.wished = { trails: true, names: false, turning: false, forces: true, velocities: false, follow: true };
+    scene.options = { trails: true, names: false, rotation: false, forces: true, velocities: false, follow: true };
   } else $("view").remove();
   document.body.classList.toggle("plain", sceneParts.length === 0);
   document.body.classList.toggle("recorded", Boolean(recording));
@@ -379,7 +379,7 @@ async function begin() {
   await (recording ? playRecording() : runFmu());
   requestAnimationFrame(frame);
   document.body.dataset.ready = "true";
-  if (data.plays) play();
+  if (data.startsPlaying) play();
 }
 
 live.started = begin();

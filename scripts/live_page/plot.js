@@ -13,19 +13,19 @@ function ticksOf(low, high, count) {
   return ticks;
 }
 
-// Returns a value without what is rounding beside a magnitude, or in any unit.
+// Returns a value, or 0 if it is a rounding error relative to the magnitude, or in any unit.
 const significant = (value, magnitude) => (Math.abs(value) <= Math.max(1e-9 * magnitude, ROUNDING) ? 0 : value);
 
-function shown(value, digits = 4) {
+function formatted(value, digits = 4) {
   if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) return value.toExponential(Math.max(0, digits - 2)).replace("e+", "e");
   return String(Number(value.toPrecision(digits)));
 }
 
 class Plot {
   // history: a History; section: a History that is drawn as points, if it has any and the plot is not against time; choices: names and units of
-  // the variables; places: indices of the drawn ones; across: index of the horizontal variable, or -1 for the time.
-  constructor(history, section, choices, places, across = -1) {
-    Object.assign(this, { history, section, choices, places, across, cursor: null });
+  // the variables; columns: indices of the drawn ones; abscissa: index of the horizontal variable, or -1 for the time.
+  constructor(history, section, choices, columns, abscissa = -1) {
+    Object.assign(this, { history, section, choices, columns, abscissa, cursor: null });
     this.element = document.createElement("div");
     this.element.className = "plot";
     this.canvas = document.createElement("canvas");
@@ -37,59 +37,59 @@ class Plot {
     this.writeLegend();
   }
 
-  selection(title, first, chosen, act) {
+  selection(title, first, chosen, onChange) {
     const select = document.createElement("select");
     select.title = title;
     select.append(new Option(first, ""));
-    this.choices.forEach((choice, place) => select.append(new Option(choice.name, place, false, place === chosen)));
+    this.choices.forEach((choice, column) => select.append(new Option(choice.name, column, false, column === chosen)));
     select.addEventListener("change", () => {
-      act(select.value === "" ? -1 : Number(select.value));
+      onChange(select.value === "" ? -1 : Number(select.value));
       this.writeLegend();
     });
     return select;
   }
 
   writeLegend() {
-    const items = this.places.map((place, i) => {
+    const items = this.columns.map((column, i) => {
       const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b");
       mark.style.background = COLORS[i % COLORS.length];
-      item.append(mark, `${this.choices[place].name}${this.choices[place].unit ? ` [${this.choices[place].unit}]` : ""} `, value);
+      item.append(mark, `${this.choices[column].name}${this.choices[column].unit ? ` [${this.choices[column].unit}]` : ""} `, value);
       item.title = "click to remove";
       item.addEventListener("click", () => {
-        this.places.splice(i, 1);
+        this.columns.splice(i, 1);
         this.writeLegend();
       });
       return item;
     });
-    const adding = this.selection("add a variable", "+ variable", -1, (place) => place >= 0 && !this.places.includes(place) && this.places.push(place));
-    const across = this.selection("horizontal axis", "against time", this.across, (place) => (this.across = place));
+    const adding = this.selection("add a variable", "+ variable", -1, (column) => column >= 0 && !this.columns.includes(column) && this.columns.push(column));
+    const abscissa = this.selection("horizontal axis", "against time", this.abscissa, (column) => (this.abscissa = column));
     this.values = items.map((item) => item.lastChild);
-    this.legend.replaceChildren(...items, adding, across);
+    this.legend.replaceChildren(...items, adding, abscissa);
   }
 
-  rangeOf(first, last, column) {
+  rangeOf(first, last, valueAt) {
     let low = Infinity, high = -Infinity;
     for (let i = first; i < last; i++) {
-      const value = column(i);
+      const value = valueAt(i);
       if (value < low) low = value;
       if (value > high) high = value;
     }
     if (!(high >= low)) return [0, 1];
     const magnitude = Math.max(Math.abs(low), Math.abs(high));
     if (magnitude <= ROUNDING) return [-1, 1];
-    const room = high - low > 1e-12 * magnitude ? (high - low) * 0.06 : 0.1 * magnitude;
-    return [low - room, high + room];
+    const margin = high - low > 1e-12 * magnitude ? (high - low) * 0.06 : 0.1 * magnitude;
+    return [low - margin, high + margin];
   }
 
-  // Returns the largest magnitude of all curves with the unit of one.
-  magnitudeOf(place, ranges) {
-    const alike = ranges.filter((_, i) => this.choices[this.places[i]].unit === this.choices[place].unit);
-    return Math.max(...alike.flat().map(Math.abs));
+  // Returns the largest magnitude of all curves that have the unit of this column.
+  magnitudeOf(column, ranges) {
+    const sameUnit = ranges.filter((_, i) => this.choices[this.columns[i]].unit === this.choices[column].unit);
+    return Math.max(...sameUnit.flat().map(Math.abs));
   }
 
   // Draws the samples from first to last with a mark at one of them, or all points of the section.
   draw(first, last, marked) {
-    const isSection = this.across >= 0 && this.section.length > 0;
+    const isSection = this.abscissa >= 0 && this.section.length > 0;
     if (isSection) this.drawSamples(this.section, 0, this.section.length, null);
     else this.drawSamples(this.history, first, last, marked);
   }
@@ -105,43 +105,43 @@ class Plot {
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";
-    const { across } = this, draw = history === this.section ? this.drawPoints : this.drawLine, column = (place, run) => (i) => history.value(i, place, run);
-    const horizontal = across < 0 ? (i) => history.time(i) : column(across, 0);
-    const span = across < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : this.rangeOf(first, last, horizontal);
-    const ranges = this.places.map((place) => this.rangeOf(first, last, column(place, 0)));
+    const { abscissa } = this, draw = history === this.section ? this.drawPoints : this.drawLine, values = (column, run) => (i) => history.value(i, column, run);
+    const horizontal = abscissa < 0 ? (i) => history.time(i) : values(abscissa, 0);
+    const span = abscissa < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : this.rangeOf(first, last, horizontal);
+    const ranges = this.columns.map((column) => this.rangeOf(first, last, values(column, 0)));
     const range = ranges.length ? [Math.min(...ranges.map((one) => one[0])), Math.max(...ranges.map((one) => one[1]))] : [0, 1];
-    const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => shown(tick));
+    const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => formatted(tick));
     const left = 8 + Math.max(20, ...labels.map((label) => pen.measureText(label).width)), bottom = height - 18;
     const x = (value) => left + ((value - span[0]) / (span[1] - span[0])) * (width - left - 8);
     const y = (value) => bottom - ((value - range[0]) / (range[1] - range[0])) * (bottom - 6);
-    this.drawGrid(pen, { ticks, labels, across: ticksOf(...span, Math.max(2, width / 80)), x, y, left, bottom, width, ink, grid });
+    this.drawGrid(pen, { ticks, labels, columnTicks: ticksOf(...span, Math.max(2, width / 80)), x, y, left, bottom, width, ink, grid });
     pen.save();
     pen.beginPath();
     pen.rect(left, 0, width - left, bottom);
     pen.clip();
     for (let run = history.runs - 1; run >= 0; run--)
-      this.places.forEach((place, i) => {
-        const along = across < 0 ? horizontal : column(across, run);
-        draw.call(this, pen, first, last, (k) => x(along(k)), ((value) => (k) => y(value(k)))(column(place, run)), COLORS[i % COLORS.length], run);
+      this.columns.forEach((column, i) => {
+        const abscissaAt = abscissa < 0 ? horizontal : values(abscissa, run);
+        draw.call(this, pen, first, last, (k) => x(abscissaAt(k)), ((value) => (k) => y(value(k)))(values(column, run)), COLORS[i % COLORS.length], run);
       });
     pen.restore();
-    const at = this.cursor && across < 0 ? history.placeOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
+    const at = this.cursor && abscissa < 0 ? history.indexOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
     if (at !== null && at < last) this.drawMarks(pen, at, x(horizontal(at)), y, bottom, ink);
-    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? shown(significant(history.value(at, this.places[i], 0), this.magnitudeOf(this.places[i], ranges)), 5) : ""));
+    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? formatted(significant(history.value(at, this.columns[i], 0), this.magnitudeOf(this.columns[i], ranges)), 5) : ""));
   }
 
-  drawGrid(pen, { ticks, labels, across, x, y, left, bottom, width, ink, grid }) {
+  drawGrid(pen, { ticks, labels, columnTicks, x, y, left, bottom, width, ink, grid }) {
     pen.lineWidth = 1;
     pen.strokeStyle = grid;
     pen.fillStyle = ink;
     pen.beginPath();
     for (const tick of ticks) pen.moveTo(left, y(tick)), pen.lineTo(width, y(tick));
-    for (const tick of across) pen.moveTo(x(tick), 0), pen.lineTo(x(tick), bottom);
+    for (const tick of columnTicks) pen.moveTo(x(tick), 0), pen.lineTo(x(tick), bottom);
     pen.stroke();
     pen.textAlign = "right";
     ticks.forEach((tick, i) => pen.fillText(labels[i], left - 4, y(tick) + 4));
     pen.textAlign = "center";
-    for (const tick of across) if (x(tick) > left + 8 && x(tick) < width - 12) pen.fillText(shown(tick), x(tick), bottom + 14);
+    for (const tick of columnTicks) if (x(tick) > left + 8 && x(tick) < width - 12) pen.fillText(formatted(tick), x(tick), bottom + 14);
   }
 
   // True if a curve jumps between two samples: an event is between them, and the curve changes by much more than beside them.
@@ -177,9 +177,9 @@ class Plot {
     pen.moveTo(x, 0);
     pen.lineTo(x, bottom);
     pen.stroke();
-    this.places.forEach((place, i) => {
+    this.columns.forEach((column, i) => {
       pen.beginPath();
-      pen.arc(x, y(this.history.value(at, place, 0)), 3, 0, 7);
+      pen.arc(x, y(this.history.value(at, column, 0)), 3, 0, 7);
       pen.fillStyle = COLORS[i % COLORS.length];
       pen.fill();
     });

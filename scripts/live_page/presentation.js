@@ -1,15 +1,15 @@
 // Presentation for a class: the scene beside the equations and the present values, in large type on the whole screen (key F).
 "use strict";
 
-const SHOWN_AT_MOST = 10; // values beside the scene
+const MOST_SHOWN = 10; // values beside the scene
 
 // Returns the columns of the values that are shown: outputs and energies that the system adds, else the first states.
 function presentedColumns(variables) {
   const columns = [...variables.keys()], states = columns.filter((k) => variables[k].role === "start"), outputs = columns.filter((k) => variables[k].isOutput && !states.includes(k));
-  return [...states, ...outputs].slice(0, SHOWN_AT_MOST);
+  return [...states, ...outputs].slice(0, MOST_SHOWN);
 }
 
-let presented = []; // the rows of the table, with the columns of their variables
+let presentedRows = []; // the rows of the table, with the columns of their variables
 
 function rowOf(column) {
   const row = document.createElement("tr"), { name, unit } = shownVariables[column];
@@ -19,11 +19,11 @@ function rowOf(column) {
 
 // Shows the values of a sample while the page is presented.
 function drawPresented(at) {
-  if (document.body.classList.contains("presented")) for (const { column, row } of presented) row.children[1].textContent = steady(history.value(at, column));
+  if (document.body.classList.contains("presented")) for (const { column, row } of presentedRows) row.children[1].textContent = fixedWidth(history.value(at, column));
 }
 
 // Returns a number of a fixed width, so that it does not jump while it changes.
-function steady(value) {
+function fixedWidth(value) {
   const text = Math.abs(value) < 1e-12 ? "0.000" : Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3 ? value.toExponential(2) : value.toFixed(Math.max(0, 3 - Math.max(0, Math.floor(Math.log10(Math.abs(value))))));
   return value < 0 ? text.replace("-", "−") : ` ${text}`;
 }
@@ -59,8 +59,8 @@ async function fillPresentation() {
   const panel = $("presentation");
   if (panel.childElementCount > 0) return;
   const table = document.createElement("table");
-  presented = presentedColumns(shownVariables).map(rowOf);
-  table.append(...presented.map(({ row }) => row));
+  presentedRows = presentedColumns(shownVariables).map(rowOf);
+  table.append(...presentedRows.map(({ row }) => row));
   panel.append(table);
   if (!data.equations) return;
   const frame = Object.assign(document.createElement("iframe"), { title: "equations", srcdoc: await textOf(data.equations) });

@@ -2,9 +2,9 @@
 "use strict";
 
 const AXES = ["x", "y", "z"];
-const TRAIL = 240; // samples of a trail
-const FAR = 5; // of its own size: a system that travels further is followed by the view
-const TRAILS = 8; // with more moving things only the last one has a trail
+const TRAIL_LENGTH = 240; // samples of a trail
+const FAR = 5; // times its own size: a system that travels further is followed by the view
+const MOST_TRAILS = 8; // with more moving things only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.
 const isPlanarBody = (thing) => thing.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in thing);
@@ -22,7 +22,7 @@ function surfaceOf(mesh) {
 }
 
 // Returns the largest distance of its points from the origin.
-function reachOf({ points }) {
+function radiusOf({ points }) {
   let most = 0;
   for (let i = 0; i < points.length; i += 3) most = Math.max(most, Math.hypot(points[i], points[i + 1], points[i + 2]));
   return most;
@@ -32,14 +32,14 @@ class Scene {
   // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters;
   // compiled(formula): a function of a sample and its time.
   constructor(container, things, column, value, compiled) {
-    Object.assign(this, { container, column, value, compiled, labels: [], wished: {} });
+    Object.assign(this, { container, column, value, compiled, labels: [], options: {} });
     this.gravity = things.find((thing) => thing.tag === "gravity");
     this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
     const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
     // A joint between two bodies in the plane is drawn for both.
     const others = things.filter((thing) => thing.tag === "joint" && isPlanar(thing.with));
-    this.holders = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
-    this.holders.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
+    this.connections = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
+    this.connections.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
     this.shapes = things.filter((thing) => thing.tag === "shape");
     this.meshes = new Map(things.filter((thing) => thing.tag === "mesh").map((mesh) => [mesh.id, surfaceOf(mesh)]));
     this.surfaces = things.filter((thing) => thing.tag === "surface");
@@ -47,7 +47,7 @@ class Scene {
     this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
     this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
     this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
-    this.turns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
+    this.rotationColumns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
     this.lines = this.lineElements.map((line) => new DrawnLine(this, line, compiled));
     this.isDescribed = this.lineElements.some((line) => !line.guessed);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -60,30 +60,30 @@ class Scene {
 
   position(sample, i, target = new THREE.Vector3()) {
     if (i === undefined) return target.set(0, 0, 0);
-    const [x, y, z] = this.columns[i].map((place) => (place < 0 ? 0 : sample[place]));
+    const [x, y, z] = this.columns[i].map((column) => (column < 0 ? 0 : sample[column]));
     return target.set(x, y, z);
   }
 
   // Returns the rotation matrix of a thing, or of the frame that contains it.
-  turn(sample, i, target = new THREE.Matrix4()) {
+  rotation(sample, i, target = new THREE.Matrix4()) {
     if (i === undefined) return target.identity();
-    const angle = this.angles[i], turns = this.turns[i];
+    const angle = this.angles[i], columns = this.rotationColumns[i];
     if (angle >= 0) return target.makeRotationZ(sample[angle]);
-    if (turns.every((place) => place < 0)) return this.turn(sample, this.byName.get(this.things[i].in), target);
-    const r = turns.map((place) => (place < 0 ? 0 : sample[place]));
+    if (columns.every((column) => column < 0)) return this.rotation(sample, this.byName.get(this.things[i].in), target);
+    const r = columns.map((column) => (column < 0 ? 0 : sample[column]));
     return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
   }
 
   // Returns the position of a joint on its body.
   jointPosition(sample, joint, target) {
     const i = this.byName.get(joint.of);
-    target.set(joint.place[0], joint.place[1], 0).applyMatrix4(this.turn(sample, i));
+    target.set(joint.position[0], joint.position[1], 0).applyMatrix4(this.rotation(sample, i));
     return target.add(this.position(sample, i));
   }
 
   // Evaluates the positions of joints for the present parameters.
   evaluate() {
-    for (const holder of this.holders) if (holder.tag === "joint") holder.place = [holder.x, holder.y].map((formula) => this.value(formula));
+    for (const connection of this.connections) if (connection.tag === "joint") connection.position = [connection.x, connection.y].map((formula) => this.value(formula));
   }
 
   // Adapts joints and sizes of bodies to changed parameters.
@@ -97,10 +97,10 @@ class Scene {
     });
   }
 
-  upwards() {
-    const along = this.gravity ? AXES.map((axis) => -this.value(this.gravity[axis] || "0")) : [0, 0, 0];
-    const largest = Math.max(...along.map(Math.abs));
-    if (largest > 0) return along.map((a) => (Math.abs(a) === largest ? Math.sign(a) : 0));
+  upDirection() {
+    const opposite = this.gravity ? AXES.map((axis) => -this.value(this.gravity[axis] || "0")) : [0, 0, 0];
+    const largest = Math.max(...opposite.map(Math.abs));
+    if (largest > 0) return opposite.map((a) => (Math.abs(a) === largest ? Math.sign(a) : 0));
     return this.plane ? (this.plane.includes(1) ? [0, 1, 0] : [0, 0, 1]) : [0, 0, 1];
   }
 
@@ -117,27 +117,27 @@ class Scene {
   // Returns the two axes of the plane in which all things move in these samples; null if there is no such plane.
   findPlane(samples, times) {
     const ends = samples.flatMap((sample, k) => this.lines.flatMap((line) => line.at(sample, times[k])));
-    const still = [2, 1, 0].find((axis) => {
+    const normal = [2, 1, 0].find((axis) => {
       if (ends.some((end) => Math.abs(end.getComponent(axis)) > 1e-9)) return false;
       const isFlat = samples.every((sample) => this.columns.every((columns) => columns[axis] < 0 || Math.abs(sample[columns[axis]]) < 1e-9));
-      const turnsAbout = (sample, turns) => turns[0] < 0 || Math.abs(sample[turns[4 * axis]] - 1) < 1e-9;
+      const rotatesAbout = (sample, columns) => columns[0] < 0 || Math.abs(sample[columns[4 * axis]] - 1) < 1e-9;
       return isFlat && this.surfaces.every((surface) => !Number(surface[`n${AXES[axis]}`])) &&
-        this.turns.every((turns) => samples.every((sample) => turnsAbout(sample, turns)));
+        this.rotationColumns.every((columns) => samples.every((sample) => rotatesAbout(sample, columns)));
     });
-    return still === undefined ? null : [0, 1, 2].filter((axis) => axis !== still);
+    return normal === undefined ? null : [0, 1, 2].filter((axis) => axis !== normal);
   }
 
   // Builds all objects, with a size of the view for all these samples and their times.
   build(samples, times) {
     this.evaluate();
     this.plane = this.findPlane(samples, times);
-    this.up = this.upwards();
-    this.reaches = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, reach: this.reachOfShape(shape) }));
+    this.up = this.upDirection();
+    this.shapeRadii = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, radius: this.boundingRadius(shape) }));
     const point = new THREE.Vector3();
     this.box = this.viewOf(samples, times);
     const size = this.box.getSize(point).length();
-    const isHeldByBase = this.holders.some((holder) => holder.tag === "rod" && !holder.from);
-    const isNear = !this.isDescribed && (isHeldByBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
+    const isFixedToBase = this.connections.some((connection) => connection.tag === "rod" && !connection.from);
+    const isNear = !this.isDescribed && (isFixedToBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
     if (isNear) this.box.expandByPoint(point.set(0, 0, 0));
     this.span = this.box.getSize(point).length() || 1;
     this.solids = this.things.map((thing) => this.solidOf(thing));
@@ -151,8 +151,8 @@ class Scene {
     this.addGround();
     this.objects = this.things.map((thing, i) => this.addThing(thing, i));
     const isGuessed = !this.isDescribed;
-    this.rods = isGuessed ? this.holders.map((holder) => this.addRod(holder)) : [];
-    this.addStillShapes();
+    this.rods = isGuessed ? this.connections.map((connection) => this.addRod(connection)) : [];
+    this.addFixedShapes();
     if (isGuessed) this.addSurfaces();
     this.addLines(samples[0], times[0]);
     this.arrows = new Arrows(this);
@@ -161,13 +161,13 @@ class Scene {
     this.resize();
   }
 
-  // Returns the box of all that is seen at a time.
+  // Returns the bounding box of all objects at a time.
   boxAt(sample, time) {
     const box = new THREE.Box3(), point = new THREE.Vector3();
     this.things.forEach((_, i) => box.expandByPoint(this.position(sample, i, point)));
     for (const line of this.lines) line.expand(box, sample, time);
     this.expandByShapes(box, sample);
-    for (const holder of this.holders) if (holder.tag === "joint") box.expandByPoint(this.jointPosition(sample, holder, point));
+    for (const connection of this.connections) if (connection.tag === "joint") box.expandByPoint(this.jointPosition(sample, connection, point));
     return box;
   }
 
@@ -176,10 +176,10 @@ class Scene {
     const boxes = samples.map((sample, k) => this.boxAt(sample, times[k])), all = new THREE.Box3(), point = new THREE.Vector3();
     for (const box of boxes) all.union(box);
     const own = Math.max(...boxes.map((box) => box.getSize(point).length())), extent = all.getSize(new THREE.Vector3());
-    this.followed = [0, 1, 2].filter((axis) => own > 0 && extent.getComponent(axis) > FAR * own);
+    this.followedAxes = [0, 1, 2].filter((axis) => own > 0 && extent.getComponent(axis) > FAR * own);
     this.start = boxes[0].getCenter(new THREE.Vector3());
     this.travelled = new THREE.Vector3();
-    if (this.followed.length === 0) return all;
+    if (this.followedAxes.length === 0) return all;
     const view = new THREE.Box3();
     for (const box of boxes) view.union(box.translate(this.travelOf(box).negate()));
     return view;
@@ -188,13 +188,13 @@ class Scene {
   // Returns how far the centre of a box is from that at the start, along the axes that the view follows.
   travelOf(box) {
     const travel = new THREE.Vector3();
-    for (const axis of this.followed) travel.setComponent(axis, (box.min.getComponent(axis) + box.max.getComponent(axis)) / 2 - this.start.getComponent(axis));
+    for (const axis of this.followedAxes) travel.setComponent(axis, (box.min.getComponent(axis) + box.max.getComponent(axis)) / 2 - this.start.getComponent(axis));
     return travel;
   }
 
   // Moves the camera with the system.
   follow(sample, time) {
-    if (this.followed.length === 0 || !this.wished.follow) return;
+    if (this.followedAxes.length === 0 || !this.options.follow) return;
     const travel = this.travelOf(this.boxAt(sample, time)), step = travel.clone().sub(this.travelled);
     for (const moved of [this.camera.position, this.controls.target, this.grid.position, this.centre]) moved.add(step);
     this.frameBox.translate(step);
@@ -234,18 +234,18 @@ class Scene {
 
   // True for a body that rods represent: from joint to joint, or from the origin of its frame to its own position.
   isLink(thing) {
-    return this.isJointed(thing.name) || this.holders.some(({ tag, from, to }) => tag === "rod" && from === thing.in && to === thing.name);
+    return this.isJointed(thing.name) || this.connections.some(({ tag, from, to }) => tag === "rod" && from === thing.in && to === thing.name);
   }
 
   isJointed(name) {
-    return this.holders.some((holder) => holder.tag === "joint" && holder.of === name);
+    return this.connections.some((connection) => connection.tag === "joint" && connection.of === name);
   }
 
   // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for things that are drawn otherwise.
   ballRadius(i) {
     const thing = this.things[i], isLoose = thing.tag === "body" && !this.isJointed(thing.name) && !(this.isDescribed && isPlanarBody(thing));
     if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || isLoose)) return 0;
-    const massOf = (one) => this.value(one.mass || "0"), mass = massOf(thing);
+    const massOf = (other) => this.value(other.mass || "0"), mass = massOf(thing);
     const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
     const share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
     return (0.07 * this.radius * (0.35 + 0.65 * share)) / (1 + Math.min(this.things.length, 60) / 12);
@@ -336,24 +336,24 @@ class Scene {
   }
 
   // Returns the radius about the origin of its object within which a shape lies.
-  reachOfShape(shape) {
+  boundingRadius(shape) {
     const measure = (name) => this.value(shape[name] || "0"), away = Math.hypot(...AXES.map(measure));
-    if (shape.type === "mesh") return away + reachOf(this.meshes.get(shape.mesh));
+    if (shape.type === "mesh") return away + radiusOf(this.meshes.get(shape.mesh));
     return away + Math.max(Math.hypot(...["sizeX", "sizeY", "sizeZ"].map(measure)) / 2, measure("radius") + measure("length") / 2);
   }
 
   // Expands a box by the shapes; a shape is within a ball about its object.
   expandByShapes(box, sample) {
     const point = new THREE.Vector3(), ball = new THREE.Box3();
-    for (const { shape, reach } of this.reaches) {
-      const size = new THREE.Vector3(2 * reach, 2 * reach, 2 * reach);
+    for (const { shape, radius } of this.shapeRadii) {
+      const size = new THREE.Vector3(2 * radius, 2 * radius, 2 * radius);
       if (this.plane) size.setComponent(this.planeNormal, 0);
       box.union(ball.setFromCenterAndSize(this.position(sample, this.byName.get(shape.in), point), size));
     }
   }
 
   // Adds the shapes that are fixed to the base.
-  addStillShapes() {
+  addFixedShapes() {
     for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
   }
 
@@ -365,39 +365,39 @@ class Scene {
   }
 
   // Adds a rod between two things, or from the centre of a planar body to its joint.
-  addRod(holder) {
+  addRod(connection) {
     const thickness = 0.014 * this.radius / (1 + this.things.length / 60);
     const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);
     this.world.add(mesh);
-    let knob = null;
-    if (holder.tag === "joint") {
-      knob = new THREE.Mesh(new THREE.SphereBufferGeometry(1.6 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
-      this.world.add(knob);
+    let ball = null;
+    if (connection.tag === "joint") {
+      ball = new THREE.Mesh(new THREE.SphereBufferGeometry(1.6 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
+      this.world.add(ball);
     }
-    if (holder.tag === "rod" && !holder.from) {
-      knob = new THREE.Mesh(new THREE.SphereBufferGeometry(2 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
-      this.world.add(knob);
+    if (connection.tag === "rod" && !connection.from) {
+      ball = new THREE.Mesh(new THREE.SphereBufferGeometry(2 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
+      this.world.add(ball);
     }
-    return { holder, mesh, knob };
+    return { connection, mesh, ball };
   }
 
   placeRods(sample) {
-    const from = new THREE.Vector3(), to = new THREE.Vector3(), way = new THREE.Vector3(), y = new THREE.Vector3(0, 1, 0);
-    for (const { holder, mesh, knob } of this.rods) {
-      if (holder.tag === "joint") {
-        this.position(sample, this.byName.get(holder.of), from);
-        this.jointPosition(sample, holder, to);
-        knob.position.copy(to);
+    const from = new THREE.Vector3(), to = new THREE.Vector3(), direction = new THREE.Vector3(), y = new THREE.Vector3(0, 1, 0);
+    for (const { connection, mesh, ball } of this.rods) {
+      if (connection.tag === "joint") {
+        this.position(sample, this.byName.get(connection.of), from);
+        this.jointPosition(sample, connection, to);
+        ball.position.copy(to);
       } else {
-        this.position(sample, this.byName.get(holder.from), from);
-        this.position(sample, this.byName.get(holder.to), to);
-        if (knob) knob.position.copy(from);
+        this.position(sample, this.byName.get(connection.from), from);
+        this.position(sample, this.byName.get(connection.to), to);
+        if (ball) ball.position.copy(from);
       }
-      const length = way.subVectors(to, from).length();
+      const length = direction.subVectors(to, from).length();
       mesh.visible = length > 1e-9 * this.radius;
       if (!mesh.visible) continue;
       mesh.position.addVectors(from, to).multiplyScalar(0.5);
-      mesh.quaternion.setFromUnitVectors(y, way.normalize());
+      mesh.quaternion.setFromUnitVectors(y, direction.normalize());
       mesh.scale.set(1, length, 1);
     }
   }
@@ -419,12 +419,12 @@ class Scene {
   // Adds the paths of things, and of the last ends of lines that have a trail.
   addTrails() {
     const moving = this.things.map((thing, i) => i).filter((i) => !["frame"].includes(this.things[i].tag) && !this.isJointed(this.things[i].name) && this.columns[i].some((c) => c >= 0));
-    const chosen = moving.length <= TRAILS ? moving : moving.slice(-1);
+    const chosen = moving.length <= MOST_TRAILS ? moving : moving.slice(-1);
     const paths = chosen.map((i) => ({ color: this.colorOf(i), where: (sample, time, target) => this.position(sample, i, target) }));
     this.lines.filter(({ line }) => line.trail).forEach((line, k) => paths.push({ color: this.colorOf(this.things.length + k), where: line.ends[line.isPoint ? 0 : 1] }));
     this.trails = paths.map((path) => {
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * TRAIL), 3));
+      geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * TRAIL_LENGTH), 3));
       const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: path.color, transparent: true, opacity: 0.7 }));
       line.frustumCulled = false;
       this.world.add(line);
@@ -433,9 +433,9 @@ class Scene {
   }
 
   placeTrails(history, at) {
-    const point = new THREE.Vector3(), count = Math.min(TRAIL, at + 1);
+    const point = new THREE.Vector3(), count = Math.min(TRAIL_LENGTH, at + 1);
     for (const { where, line } of this.trails) {
-      line.visible = Boolean(this.wished.trails);
+      line.visible = Boolean(this.options.trails);
       if (!line.visible) continue;
       const attribute = line.geometry.attributes.position;
       for (let k = 0; k < count; k++) {
@@ -483,14 +483,14 @@ class Scene {
     this.controls.target.copy(centre);
     this.controls.enableKeys = false;
     this.controls.screenSpacePanning = true;
-    this.allowTurning(!this.plane || this.wished.turning);
+    this.allowRotation(!this.plane || this.options.rotation);
     this.centre = centre;
     this.light.position.copy(outwards).addScaledVector(up, 0.8).add(new THREE.Vector3(0.3, 0.2, 0.1));
     this.outwards = outwards;
     this.controls.update();
   }
 
-  allowTurning(isAllowed) {
+  allowRotation(isAllowed) {
     this.controls.enableRotate = isAllowed;
     this.controls.mouseButtons.LEFT = isAllowed ? THREE.MOUSE.ROTATE : THREE.MOUSE.PAN;
     this.controls.touches.ONE = isAllowed ? THREE.TOUCH.ROTATE : THREE.TOUCH.PAN;
@@ -503,8 +503,8 @@ class Scene {
     const aspect = width / height;
     if (this.plane) {
       const upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
-      const reach = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
-      const half = Math.max(reach(upAxis), reach(across) / aspect) + 0.06 * this.radius;
+      const extent = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
+      const half = Math.max(extent(upAxis), extent(across) / aspect) + 0.06 * this.radius;
       Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     } else {
       this.camera.aspect = aspect;
@@ -529,7 +529,7 @@ class Scene {
     return label;
   }
 
-  // Returns the place of a point on the screen, in pixels to the right and down.
+  // Returns the position of a point on the screen, in pixels to the right and down.
   pixels(point) {
     const { x, y } = point.clone().project(this.camera);
     return [((x + 1) * this.container.clientWidth) / 2, ((1 - y) * this.container.clientHeight) / 2];
@@ -538,8 +538,8 @@ class Scene {
   placeLabels(sample) {
     const point = new THREE.Vector3(), taken = [];
     this.labels.forEach((label, i) => {
-      label.style.display = this.wished.names ? "" : "none";
-      if (!this.wished.names) return;
+      label.style.display = this.options.names ? "" : "none";
+      if (!this.options.names) return;
       const [right, down] = this.pixels(this.position(sample, i, point)), x = right + 8;
       let y = down - 18;
       while (taken.some((other) => Math.abs(other[0] - x) < 50 && Math.abs(other[1] - y) < 13)) y += 13;
@@ -549,10 +549,10 @@ class Scene {
   }
 
   placeThings(objects, sample) {
-    const turn = new THREE.Matrix4(), point = new THREE.Vector3();
+    const rotation = new THREE.Matrix4(), point = new THREE.Vector3();
     objects.forEach((object, i) => {
-      this.turn(sample, i, turn);
-      object.matrix.copy(turn).setPosition(this.position(sample, i, point));
+      this.rotation(sample, i, rotation);
+      object.matrix.copy(rotation).setPosition(this.position(sample, i, point));
       object.matrixWorldNeedsUpdate = true;
     });
   }
@@ -573,7 +573,7 @@ class Scene {
   }
 
   // Enlarges the view of a plane, if a thing has left it.
-  widen(sample, time) {
+  enlargeView(sample, time) {
     const point = new THREE.Vector3(), before = this.frameBox.clone();
     for (const line of this.lines) line.expand(this.frameBox, sample, time);
     this.things.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
@@ -584,17 +584,17 @@ class Scene {
   draw(history, at) {
     const runs = history.samples[at], time = history.time(at);
     this.follow(runs[0], time);
-    if (this.plane) this.widen(runs[0], time);
+    if (this.plane) this.enlargeView(runs[0], time);
     this.placeThings(this.objects, runs[0]);
     this.placeGhost(runs[1]);
     this.placeRods(runs[0]);
-    for (const line of this.lines) line.place(runs[0], time);
-    this.arrows.place(history, at);
+    for (const line of this.lines) line.update(runs[0], time);
+    this.arrows.update(history, at);
     this.placeTrails(history, at);
     this.controls.update();
     this.renderer.render(this.world, this.camera);
     this.placeLabels(runs[0]);
-    this.arrows.label();
+    this.arrows.placeLabels();
   }
 }
 

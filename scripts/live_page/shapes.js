@@ -15,7 +15,7 @@ function eigen(matrix) {
   return [[a[0][0], a[1][1], a[2][2]], v];
 }
 
-const near = (a, b, scale) => Math.abs(a - b) <= 1e-3 * scale;
+const isNear = (a, b, scale) => Math.abs(a - b) <= 1e-3 * scale;
 
 // Returns a ball { radius }, a cylinder { radius, length } about its third axis, or a box { sides }, in m, with its axes, each a unit vector.
 function solidOf(mass, inertia) {
@@ -24,9 +24,9 @@ function solidOf(mass, inertia) {
   if (!(largest > 0) || !(mass > 0)) return null;
   for (let k = 0; k < 3; k++) {
     const [first, second] = [(k + 1) % 3, (k + 2) % 3];
-    if (!near(moments[first], moments[second], largest)) continue;
+    if (!isNear(moments[first], moments[second], largest)) continue;
     const axes = [column(first), column(second), column(k)];
-    if (near(moments[k], moments[first], largest)) return { kind: "ball", radius: Math.sqrt((2.5 * moments[k]) / mass), axes };
+    if (isNear(moments[k], moments[first], largest)) return { kind: "ball", radius: Math.sqrt((2.5 * moments[k]) / mass), axes };
     const radius = Math.sqrt((2 * Math.max(0, moments[k])) / mass);
     const length = Math.sqrt(Math.max(0, (12 * moments[first]) / mass - 3 * radius ** 2));
     return { kind: "cylinder", radius, length, axes };

@@ -12,8 +12,8 @@ function startOf(file, name) {
 // Returns the file of the system with the present values, and the names of changed variables that the file does not contain.
 function systemNow() {
   const file = new DOMParser().parseFromString(data.system, "text/xml"), missing = [];
-  for (const [place, control] of settings()) {
-    const { name, type } = description.variables[place], found = startOf(file, name);
+  for (const [index, control] of settings()) {
+    const { name, type } = description.variables[index], found = startOf(file, name);
     if (found) found[0].setAttribute(found[1], type === "Boolean" ? String(control.value !== 0) : String(control.value));
     else missing.push(name);
   }
@@ -29,7 +29,7 @@ function addSystem() {
   $("system").hidden = !data.system || !data.system.includes("<system");
   $("system").addEventListener("click", () => {
     const [text, missing] = systemNow();
-    if (missing.length > 0) say(`system.xml does not name ${missing.join(", ")}; it is saved without their values.`);
+    if (missing.length > 0) showMessage(`system.xml does not name ${missing.join(", ")}; it is saved without their values.`);
     save("system.xml", text, "text/xml");
   });
 }

@@ -1,7 +1,7 @@
 // Records the animation as a WebM file.
 "use strict";
 
-const FRAMES_A_SECOND = 30;
+const FRAME_RATE = 30;
 
 function addVideo() {
   const button = $("video");
@@ -10,7 +10,7 @@ function addVideo() {
   button.addEventListener("click", () => {
     if (recorder) return recorder.stop();
     const parts = [];
-    recorder = new MediaRecorder(scene.renderer.domElement.captureStream(FRAMES_A_SECOND), { mimeType: "video/webm" });
+    recorder = new MediaRecorder(scene.renderer.domElement.captureStream(FRAME_RATE), { mimeType: "video/webm" });
     recorder.ondataavailable = (event) => parts.push(event.data);
     recorder.onstop = () => {
       save(`${description.name}.webm`, new Blob(parts), "video/webm");

@@ -193,12 +193,12 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
         assert page.frame_locator("#page").locator("h1").inner_text() == "Two point masses on two massless rods"
         page.locator("#source").fill(spring.replace("k*x^2/2", "k*y^2/2"))
         page.wait_for_function("document.getElementById('state').textContent === '1 error'")
-        assert page.locator("#said").inner_text().startswith("line 6: the potential: unknown name 'y'")
+        assert page.locator("#messages").inner_text().startswith("line 6: the potential: unknown name 'y'")
         assert page.locator("#lines .wrong").inner_text() == "6" and page.evaluate("bench.runs") == 1
-        page.locator("#said button").click()
+        page.locator("#messages button").click()
         assert page.evaluate("(({ value, selectionStart, selectionEnd }) => value.slice(selectionStart, selectionEnd))(document.getElementById('source'))") == "  <potential>k*y^2/2</potential>"
         run_anew(page, spring)
-        assert page.locator("#said").inner_text() == "" and page.locator("#lines .wrong").count() == 0
+        assert page.locator("#messages").inner_text() == "" and page.locator("#lines .wrong").count() == 0
         assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
         with page.expect_download() as download:
             page.locator("#savePage").click()
@@ -233,8 +233,8 @@ def test_words_that_may_stand_at_the_caret(browser, tmp_path):
         assert set(page.evaluate("[...FUNCTIONS, ...OPERATORS]")) == functions | {"distance", "dot", "norm"}
         for text, expected, becomes in CONTEXTS:
             at = text.index("|")
-            offered = page.evaluate("([text, at]) => wordsAt(text, at, language)", [text[:at] + text[at + 1 :], at])
-            assert [word["label"] for word in offered["words"]] == expected, text
+            offered = page.evaluate("([text, at]) => completionsAt(text, at, language)", [text[:at] + text[at + 1 :], at])
+            assert [word["label"] for word in offered["completions"]] == expected, text
             if becomes is not None:
                 source = page.locator("#source")
                 source.fill(text[:at].removesuffix(offered["word"]) + text[at + 1 :])
@@ -256,11 +256,11 @@ def test_colors_and_the_button_that_inserts(browser, tmp_path):
         assert ["comment", "<!-- a < b -->"] in kinds and ["attribute", "at"] in kinds and ["value", '"1\n'] in kinds and ["text", "1 & 2"] in kinds
         page.locator("#source").fill('<system name="A">\n  <kinetic>1</kinetic>\n</system>\n')
         page.locator("#insert").click()
-        assert page.locator("#words li").count() > 30
+        assert page.locator("#completions li").count() > 30
         page.keyboard.type("exp")
         page.keyboard.press("Tab")
         page.keyboard.press("Control+Space")
-        assert page.locator("#words").is_hidden(), "nothing is offered before the tag's end is near"
+        assert page.locator("#completions").is_hidden(), "nothing is offered before the tag's end is near"
         assert page.locator("#source").input_value() == '<system name="A">\n  <kinetic>1</kinetic>\n  <experiment/>\n</system>\n'
         page.keyboard.type(" st")
         page.keyboard.press("ArrowDown")
@@ -278,5 +278,5 @@ def test_several_files(browser, tmp_path):
         page.locator("#files").select_option("Motor/system.xml")
         page.locator("#source").fill("<system")
         page.wait_for_function("document.getElementById('state').textContent === '2 errors'")
-        assert page.locator("#said").inner_text().startswith("Motor/system.xml, line 1: <system> is not closed")
+        assert page.locator("#messages").inner_text().startswith("Motor/system.xml, line 1: <system> is not closed")
         assert page.locator("#lines .wrong").inner_text() == "1"

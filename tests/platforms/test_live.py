@@ -167,7 +167,7 @@ def test_lengths_change(browser, page_file):
     """Rods of a linkage that change their length still meet at the joints; those on the base stay in place."""
     joints = """() => {
       const sample = live.history.samples[live.history.length - 1][0], { scene } = live, place = (joint) => scene.jointPosition(sample, joint, new THREE.Vector3()).toArray();
-      return scene.holders.filter((joint) => joint.withX !== undefined).map((joint) => {
+      return scene.connections.filter((joint) => joint.withX !== undefined).map((joint) => {
         const other = [joint.withX, joint.withY].map((formula) => live.valueOf(formula));
         return [place(joint), joint.with ? place({ of: joint.with, place: other }) : [...other, 0]];
       });
@@ -177,7 +177,7 @@ def test_lengths_change(browser, page_file):
             page.get_by_role("spinbutton", name=name, exact=True).fill(value)
             page.get_by_role("spinbutton", name=name, exact=True).press("Enter")
         page.click("#reset")
-        page.wait_for_function("live.scene.holders.some((joint) => joint.place && Math.abs(joint.place[0]) === 0.35)")
+        page.wait_for_function("live.scene.connections.some((joint) => joint.position && Math.abs(joint.position[0]) === 0.35)")
         page.click("#step")
         found = page.evaluate(joints)
         assert len(found) == 4

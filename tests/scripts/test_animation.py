@@ -47,7 +47,7 @@ def arm():
 
 def at(page, sample):
     """Move the slider to a sample, wait for its picture, and return its time."""
-    page.evaluate("place => { const bar = document.getElementById('past'); bar.value = place; bar.dispatchEvent(new Event('input')); }", sample)
+    page.evaluate("place => { const bar = document.getElementById('timeline'); bar.value = place; bar.dispatchEvent(new Event('input')); }", sample)
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page.evaluate("place => live.history.time(place)", sample)
 
@@ -90,9 +90,9 @@ def test_a_pendulum(browser, tmp_path):
             assert rod[3, :3] == pytest.approx(np.zeros(3)) and rod[1, :3] == pytest.approx(bob / 0.5, abs=1e-6)
             assert page.evaluate("live.scene.lines[1].stretched[0].scale.y") == pytest.approx(0.5, rel=1e-6)
         page.click("#back")
-        assert page.input_value("#past") == "999"
+        assert page.input_value("#timeline") == "999"
         page.click("#reset")
-        assert page.input_value("#past") == "0"
+        assert page.input_value("#timeline") == "0"
         assert page.evaluate(COLORS_SEEN) > 3
     assert all(url.startswith(("file:", "blob:")) for url in fetched)
 
@@ -184,7 +184,7 @@ def test_the_view_follows(browser, tmp_path):
     _, file = page_of_run(tmp_path, "KnifeEdge")
     with opened(browser, file) as page:
         paused(page)
-        assert page.evaluate("live.scene.followed") == [1]
+        assert page.evaluate("live.scene.followedAxes") == [1]
         for sample in (0, 300, 1000):
             at(page, sample)
             assert page.evaluate(where)[1] == pytest.approx(0.5, abs=0.01)
@@ -193,7 +193,7 @@ def test_the_view_follows(browser, tmp_path):
         assert abs(page.evaluate(where)[1] - 0.5) > 0.4
     _, file = page_of_run(tmp_path, "FourBar", stop_time=1.0)
     with opened(browser, file) as page:
-        assert page.evaluate("live.scene.followed") == [] and page.locator("#followChoice").is_hidden()
+        assert page.evaluate("live.scene.followedAxes") == [] and page.locator("#followChoice").is_hidden()
 
 
 def test_values_of_arrows_and_legends(browser, tmp_path):

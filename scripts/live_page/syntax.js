@@ -1,4 +1,4 @@
-// Reads the text of a system while it is written: its tokens, for colors, and what may be typed at a position, for completion.
+// Reads the text of a system while it is written: its tokens, for colors, and the completions at a position.
 "use strict";
 
 const FUNCTIONS = "abs acos acosh asin asinh atan atan2 atanh ceil cos cosh der diff distance dot exp floor gauss if integral log max min mod norm pow round sign sin sinh sqrt sum tan tanh uniform".split(" ");
@@ -28,7 +28,7 @@ function tokensOf(text) {
 }
 
 // Returns the text as HTML in which each token has its kind as a class.
-function coloured(text) {
+function highlighted(text) {
   const escape = (part) => part.replace(/&/g, "&amp;").replace(/</g, "&lt;");
   return tokensOf(text).map(([kind, begin, end]) => (kind === "text" ? escape(text.slice(begin, end)) : `<span class="${kind}">${escape(text.slice(begin, end))}</span>`)).join("");
 }
@@ -39,7 +39,7 @@ function attributesFrom(text, tokens) {
   return tokens.slice(0, end < 0 ? undefined : end).filter(([kind]) => kind === "attribute").map(([, begin, after]) => text.slice(begin, after));
 }
 
-// Returns what stands at a position: the kind, the part of the word before it, the element, its parent, its attributes (in a name of one, all others), and the last one before.
+// Returns the context of a position: its kind, the part of the word before it, the element, its parent, its attributes (without the one at the position), and the attribute before it.
 function contextAt(text, at) {
   const open = [], tokens = tokensOf(text);
   let element = "", attributes = [];
@@ -72,29 +72,29 @@ function namesIn(text) {
   return [...new Set([...found.sort(), ...FUNCTIONS.map((name) => `${name}(`), ...OPERATORS, "pi", "time"])];
 }
 
-// Returns what a new element looks like; "|" marks where the caret goes.
-function elementText(name, { attributes, holds, hasText }) {
-  const needed = Object.entries(attributes).filter(([, { isNeeded }]) => isNeeded).map(([attribute]) => ` ${attribute}=""`).join("");
-  const text = `${name}${needed}${holds.length || hasText ? `></${name}>` : "/>"}`;
-  return needed ? text.replace('""', '"|"') : text.replace(/><\/|\/>/, (end) => (end === "/>" ? "|/>" : ">|</"));
+// Returns the text of a new element; "|" marks the position of the caret.
+function elementText(name, { attributes, contains, hasText }) {
+  const required = Object.entries(attributes).filter(([, { isRequired }]) => isRequired).map(([attribute]) => ` ${attribute}=""`).join("");
+  const text = `${name}${required}${contains.length || hasText ? `></${name}>` : "/>"}`;
+  return required ? text.replace('""', '"|"') : text.replace(/><\/|\/>/, (end) => (end === "/>" ? "|/>" : ">|</"));
 }
 
-// Returns the words that may stand at a position, each as {label, text, note}, where text replaces the part of the word that is there.
-function wordsAt(text, at, language) {
+// Returns the word before a position and its completions, each as {label, text, note}, where text replaces the part of the word that is there.
+function completionsAt(text, at, language) {
   const { kind, word, element, parent, attributes, attribute } = contextAt(text, at);
   const begins = ({ label }) => label.toLowerCase().startsWith(word.toLowerCase());
-  let words = [];
+  let completions = [];
   if (kind === "element") {
-    words = Object.keys(language).map((name) => [name, kindOf(language, name, parent)]).filter(([, { in: parents }]) => (parent ? parents.includes(parent) : parents.length === 0))
-      .map(([name, known]) => ({ label: name, text: elementText(name, known), note: known.text }));
-  } else if (kind === "end") words = parent ? [{ label: parent, text: `${parent}>`, note: "" }] : [];
+    completions = Object.keys(language).map((name) => [name, kindOf(language, name, parent)]).filter(([, { in: parents }]) => (parent ? parents.includes(parent) : parents.length === 0))
+      .map(([name, declaration]) => ({ label: name, text: elementText(name, declaration), note: declaration.text }));
+  } else if (kind === "end") completions = parent ? [{ label: parent, text: `${parent}>`, note: "" }] : [];
   else if (kind === "attribute") {
-    words = Object.entries(kindOf(language, element, parent)?.attributes ?? {}).filter(([name]) => !attributes.includes(name)).map(([name, { text: note }]) => ({ label: name, text: `${name}="|"`, note }));
+    completions = Object.entries(kindOf(language, element, parent)?.attributes ?? {}).filter(([name]) => !attributes.includes(name)).map(([name, { text: note }]) => ({ label: name, text: `${name}="|"`, note }));
   } else if (kind === "value" || (kind === "text" && parent)) {
     const values = kind === "value" ? (kindOf(language, element, parent)?.attributes[attribute]?.values ?? []) : [];
     const free = kind === "text" || !["name", "velocity", "description", "unit", "displayUnit"].includes(attribute);
-    words = values.length > 0 ? values.map((value) => ({ label: value, text: value, note: "" })) : free && word ? namesIn(text).map((name) => ({ label: name, text: name, note: "" })) : [];
+    completions = values.length > 0 ? values.map((value) => ({ label: value, text: value, note: "" })) : free && word ? namesIn(text).map((name) => ({ label: name, text: name, note: "" })) : [];
   }
-  const found = words.filter(begins);
-  return { word, words: found.length === 1 && found[0].label === word ? [] : found };
+  const found = completions.filter(begins);
+  return { word, completions: found.length === 1 && found[0].label === word ? [] : found };
 }
