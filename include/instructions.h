@@ -189,7 +189,7 @@ struct LimitCheck {
   const char *function; /* name for messages */
   double share;
   Slot exponent;
-  bool is_gated; /* applies only if the value of guard_condition is positive */
+  bool is_guarded; /* applies only if the value of guard_condition is positive */
   Slot guard_condition;
 };
 

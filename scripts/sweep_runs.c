@@ -77,7 +77,7 @@ struct Sweep {
 };
 
 /* The run that listens to the log of its FMU; NULL while steps are repeated. */
-static _Thread_local struct Course *listener;
+static _Thread_local struct SweepRun *listener;
 
 static double now(void) {
   struct timespec time;
@@ -86,7 +86,7 @@ static double now(void) {
 }
 
 /* A run in progress, with its last three samples since the last event, the newest first. */
-struct Course {
+struct SweepRun {
   const struct Functions *f;
   fmi2Component component;
   const struct Sweep *sweep;
@@ -96,7 +96,7 @@ struct Course {
 };
 
 /* Records an event of a contact or friction, from the FMU's message on it. */
-static void hear_event(const struct Course *course, const char *message) {
+static void hear_event(const struct SweepRun *course, const char *message) {
   char name[1000];
   double time;
   int end = 0;
@@ -127,7 +127,7 @@ static double excess_of(const double *time, double late, double middle, double e
 }
 
 /* Returns the largest value up to the newest sample, of the variable times a sign. */
-static double peak_of(const struct Course *course, size_t variable, double sign) {
+static double peak_of(const struct SweepRun *course, size_t variable, double sign) {
   size_t n = course->sweep->sampled.count;
   const double *value = course->sweep->samples + variable;
   double late = sign * value[0];
@@ -137,7 +137,7 @@ static double peak_of(const struct Course *course, size_t variable, double sign)
   return fmax(late, middle + excess_of(course->time, late, middle, early));
 }
 
-static void record(const struct Course *course, size_t i) {
+static void record(const struct SweepRun *course, size_t i) {
   const struct Record *record = &course->sweep->records[i];
   double *result = &course->recorded[i];
   if (record->kind == RECORD_VALUE && record->time == course->time[0])
@@ -147,7 +147,7 @@ static void record(const struct Course *course, size_t i) {
 }
 
 /* Samples and records the present time. Returns false if values cannot be read. */
-static bool sample(struct Course *course, double time) {
+static bool sample(struct SweepRun *course, double time) {
   const struct Variables *sampled = &course->sweep->sampled;
   double *samples = course->sweep->samples;
   memmove(samples + sampled->count, samples, 2 * sampled->count * sizeof *samples);
@@ -159,7 +159,7 @@ static bool sample(struct Course *course, double time) {
   return true;
 }
 
-static int events_of(const struct Course *course) {
+static int events_of(const struct SweepRun *course) {
   const struct Variables *counter = &course->sweep->counter;
   fmi2Integer count = 0;
   if (counter->count > 0) course->f->get_integer(course->component, counter->references, 1, &count);
@@ -167,14 +167,14 @@ static int events_of(const struct Course *course) {
 }
 
 /* Records the number of events until now, and the time of the first one. */
-static void record_events(const struct Course *course, double time, int count) {
+static void record_events(const struct SweepRun *course, double time, int count) {
   for (size_t i = 0; i < course->sweep->record_count; i++) {
     if (course->sweep->records[i].kind == RECORD_EVENTS) course->recorded[i] = count;
     if (course->sweep->records[i].kind == RECORD_FIRST && isnan(course->recorded[i])) course->recorded[i] = time;
   }
 }
 
-static bool go(const struct Course *course, fmi2FMUstate state, double begin, double end) {
+static bool go(const struct SweepRun *course, fmi2FMUstate state, double begin, double end) {
   return course->f->restore(course->component, state) <= fmi2Warning &&
          (end <= begin || course->f->step(course->component, begin, end - begin, fmi2False) <= fmi2Warning);
 }
@@ -186,7 +186,8 @@ static const double found = 1e-10; /* accuracy of the times, relative to the ste
  * Samples just before and after each event of the step from begin to end, from the saved state at begin with `count`
  * events. Leaves the FMU somewhere in the step. A step that is too short for the FMU ends the search.
  */
-static void sample_events(struct Course *course, fmi2FMUstate *state, double begin, double end, int total, int count) {
+static void sample_events(struct SweepRun *course, fmi2FMUstate *state, double begin, double end, int total,
+                          int count) {
   double enough = found * (end - begin);
   for (int i = 0; i < EVENT_ROWS && count < total; i++) {
     double low = begin, high = end;
@@ -207,7 +208,7 @@ static void sample_events(struct Course *course, fmi2FMUstate *state, double beg
 }
 
 /* Takes a communication step and records it. Returns NULL, or the name of the function that failed. */
-static const char *step(struct Course *course, double begin, double end) {
+static const char *step(struct SweepRun *course, double begin, double end) {
   const struct Functions *f = course->f;
   fmi2FMUstate first = NULL, last = NULL;
   bool looks = course->sweep->counter.count > 0, fails = looks && f->save(course->component, &first) > fmi2Warning;
@@ -254,7 +255,7 @@ static const char *run(const struct Functions *f, fmi2Component component, const
   if (f->exit(component) > fmi2Warning) return "fmi2ExitInitializationMode";
   if (f->get(component, watched->references, watched->count, sweep->before + k * watched->count) > fmi2Warning)
     return "fmi2GetReal";
-  struct Course course = {
+  struct SweepRun course = {
       .f = f, .component = component, .sweep = sweep, .recorded = sweep->recorded + k * sweep->record_count};
   begin_records(sweep, course.recorded);
   if (sweep->sampled.count > 0 && !sample(&course, 0.0)) return "fmi2GetReal";

@@ -5,39 +5,39 @@
 #include "base/memory.h"
 
 /* A line in the picture: points are given by the share of its length, and by the distance to its right in m. */
-struct Way {
-  struct Spot from, to;
+struct PictureLine {
+  struct PicturePoint from, to;
   double right, up; /* unit vector to its right */
   double length;    /* in m */
 };
 
-static struct Way way_between(struct Spot from, struct Spot to) {
+static struct PictureLine way_between(struct PicturePoint from, struct PicturePoint to) {
   double right = to.right - from.right, up = to.up - from.up, length = hypot(right, up);
-  if (!(length > 0.0)) return (struct Way){from, to, 1.0, 0.0, 0.0};
-  return (struct Way){from, to, up / length, -right / length, length};
+  if (!(length > 0.0)) return (struct PictureLine){from, to, 1.0, 0.0, 0.0};
+  return (struct PictureLine){from, to, up / length, -right / length, length};
 }
 
-static struct Spot spot_at(const struct Way *way, double share, double aside) {
-  return (struct Spot){way->from.right + share * (way->to.right - way->from.right) + aside * way->right,
-                       way->from.up + share * (way->to.up - way->from.up) + aside * way->up};
+static struct PicturePoint spot_at(const struct PictureLine *way, double share, double aside) {
+  return (struct PicturePoint){way->from.right + share * (way->to.right - way->from.right) + aside * way->right,
+                               way->from.up + share * (way->to.up - way->from.up) + aside * way->up};
 }
 
-static void append_between(struct Drawing *drawing, enum Look look, const struct Way *way, const double from[2],
+static void append_between(struct Drawing *drawing, enum Look look, const struct PictureLine *way, const double from[2],
                            const double to[2]) {
   append_line(drawing, look, spot_at(way, from[0], from[1]), spot_at(way, to[0], to[1]));
 }
 
 /* Appends a rod of a given radius. */
-static void append_thick(struct Drawing *drawing, const struct Way *way, double radius) {
-  struct Spot corners[5] = {spot_at(way, 0.0, radius), spot_at(way, 1.0, radius), spot_at(way, 1.0, -radius),
-                            spot_at(way, 0.0, -radius), spot_at(way, 0.0, radius)};
+static void append_thick(struct Drawing *drawing, const struct PictureLine *way, double radius) {
+  struct PicturePoint corners[5] = {spot_at(way, 0.0, radius), spot_at(way, 1.0, radius), spot_at(way, 1.0, -radius),
+                                    spot_at(way, 0.0, -radius), spot_at(way, 0.0, radius)};
   append_shape(drawing, SOLID, true, corners, 4);
   append_shape(drawing, EDGE, false, corners, 5);
 }
 
-static void append_coil(struct Drawing *drawing, const struct Way *way, double radius) {
+static void append_coil(struct Drawing *drawing, const struct PictureLine *way, double radius) {
   enum { TURNS = 12 };
-  struct Spot spots[TURNS + 4];
+  struct PicturePoint spots[TURNS + 4];
   spots[0] = way->from;
   spots[1] = spot_at(way, 0.12, 0.0);
   for (int i = 0; i < TURNS; i++)
@@ -47,9 +47,9 @@ static void append_coil(struct Drawing *drawing, const struct Way *way, double r
   append_shape(drawing, ROPE, false, spots, TURNS + 4);
 }
 
-static void append_damper(struct Drawing *drawing, const struct Way *way, double radius) {
-  struct Spot housing[4] = {spot_at(way, 0.65, radius), spot_at(way, 0.2, radius), spot_at(way, 0.2, -radius),
-                            spot_at(way, 0.65, -radius)};
+static void append_damper(struct Drawing *drawing, const struct PictureLine *way, double radius) {
+  struct PicturePoint housing[4] = {spot_at(way, 0.65, radius), spot_at(way, 0.2, radius), spot_at(way, 0.2, -radius),
+                                    spot_at(way, 0.65, -radius)};
   append_line(drawing, ROPE, way->from, spot_at(way, 0.2, 0.0));
   append_shape(drawing, ROPE, false, housing, 4);
   append_between(drawing, LINK, way, (double[]){0.5, -0.8 * radius}, (double[]){0.5, 0.8 * radius});
@@ -57,15 +57,15 @@ static void append_damper(struct Drawing *drawing, const struct Way *way, double
 }
 
 /* Appends two half circles and the straight parts between them. */
-static void append_belt(struct Drawing *drawing, const struct Way *way, double radius) {
+static void append_belt(struct Drawing *drawing, const struct PictureLine *way, double radius) {
   enum { HALF = 12, POINTS = 2 * (HALF + 1) };
-  struct Spot spots[POINTS + 1];
+  struct PicturePoint spots[POINTS + 1];
   for (int i = 0; i < POINTS; i++) {
     bool is_second = i > HALF;
     double angle = acos(-1.0) * (is_second ? i - HALF - 1 : i) / HALF, outwards = radius * sin(angle);
-    struct Spot spot = spot_at(way, is_second, is_second ? -radius * cos(angle) : radius * cos(angle));
+    struct PicturePoint spot = spot_at(way, is_second, is_second ? -radius * cos(angle) : radius * cos(angle));
     double sign = is_second ? 1.0 : -1.0; /* along the line is the vector to its right, turned by a right angle */
-    spots[i] = (struct Spot){spot.right - sign * outwards * way->up, spot.up + sign * outwards * way->right};
+    spots[i] = (struct PicturePoint){spot.right - sign * outwards * way->up, spot.up + sign * outwards * way->right};
   }
   spots[POINTS] = spots[0];
   append_shape(drawing, LINK, false, spots, POINTS + 1);
@@ -75,7 +75,7 @@ static void append_belt(struct Drawing *drawing, const struct Way *way, double r
 static void append_circle(struct Drawing *drawing, const struct View *view, const struct DrawnLine *line,
                           const double from[3], const double to[3]) {
   enum { ROUND = 36 };
-  struct Spot spots[ROUND + 1];
+  struct PicturePoint spots[ROUND + 1];
   double out[3], across[3];
   int first = (line->axis + 1) % 3, second = (line->axis + 2) % 3;
   for (int i = 0; i < 3; i++) out[i] = i == line->axis ? 0.0 : to[i] - from[i];
@@ -92,7 +92,7 @@ static void append_circle(struct Drawing *drawing, const struct View *view, cons
     append_line(drawing, ROPE, spots[k], spots[k + ROUND / 2]);
 }
 
-static void append_hatched(struct Drawing *drawing, const struct Way *way, double size) {
+static void append_hatched(struct Drawing *drawing, const struct PictureLine *way, double size) {
   enum { HATCHES = 12 };
   double depth = 0.05 * size;
   int count = (int)fmin(fmax(way->length / depth / 1.5, 3.0), HATCHES);
@@ -102,21 +102,21 @@ static void append_hatched(struct Drawing *drawing, const struct Way *way, doubl
   append_line(drawing, GROUND, way->from, way->to);
 }
 
-static void append_support(struct Drawing *drawing, struct Spot spot, double radius) {
-  struct Spot corners[4] = {spot,
-                            {spot.right - 0.8 * radius, spot.up - 1.3 * radius},
-                            {spot.right + 0.8 * radius, spot.up - 1.3 * radius},
-                            spot};
+static void append_support(struct Drawing *drawing, struct PicturePoint spot, double radius) {
+  struct PicturePoint corners[4] = {spot,
+                                    {spot.right - 0.8 * radius, spot.up - 1.3 * radius},
+                                    {spot.right + 0.8 * radius, spot.up - 1.3 * radius},
+                                    spot};
   append_shape(drawing, GROUND, true, corners, 3);
   append_shape(drawing, ROPE, false, corners, 4);
   append_shape(drawing, JOINT, true, &spot, 1);
 }
 
-static void append_arrow(struct Drawing *drawing, const struct Way *way, double size) {
+static void append_arrow(struct Drawing *drawing, const struct PictureLine *way, double size) {
   double share = way->length > 0.0 ? 1.0 - fmin(0.08 * size / way->length, 0.5) : 1.0, aside = 0.03 * size;
   append_line(drawing, LINK, way->from, way->to);
-  append_shape(drawing, LINK, false, (struct Spot[]){spot_at(way, share, aside), way->to, spot_at(way, share, -aside)},
-               3);
+  append_shape(drawing, LINK, false,
+               (struct PicturePoint[]){spot_at(way, share, aside), way->to, spot_at(way, share, -aside)}, 3);
 }
 
 double *values_of_lines(const struct Model *model, const double *values) {
@@ -145,7 +145,7 @@ void append_drawn_line(struct Drawing *drawing, const struct View *view, const s
     for (int i = 0; i < 3; i++) sum += ends[end][i];
   }
   if (!isfinite(sum)) return;
-  struct Way way = way_between(seen(view, ends[0]), seen(view, ends[1]));
+  struct PictureLine way = way_between(seen(view, ends[0]), seen(view, ends[1]));
   switch (line->kind) {
   case LINE_ROD:
     if (line->radius_formula != NULL) append_thick(drawing, &way, radius);

@@ -16,24 +16,25 @@ const struct LookStyle looks[LOOK_COUNT] = {
     [SIGNAL] = {"base", 2.0, 0.0, {29, 36, 51}},
 };
 
-void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count) {
+void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct PicturePoint *points,
+                  size_t count) {
   struct Shape shape = {look, is_filled, allocate(count, sizeof *points), count};
   for (size_t i = 0; i < count; i++) shape.points[i] = points[i];
   drawing->shapes = make_room(drawing->shapes, drawing->count, sizeof *drawing->shapes);
   drawing->shapes[drawing->count++] = shape;
 }
 
-void append_line(struct Drawing *drawing, enum Look look, struct Spot from, struct Spot to) {
-  append_shape(drawing, look, false, (struct Spot[]){from, to}, 2);
+void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint from, struct PicturePoint to) {
+  append_shape(drawing, look, false, (struct PicturePoint[]){from, to}, 2);
 }
 
 struct Rectangle rectangle_of(const struct Drawing *drawing) {
   struct Rectangle all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   for (size_t i = 0; i < drawing->count; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct Spot spot = drawing->shapes[i].points[j];
-      all.least = (struct Spot){fmin(all.least.right, spot.right), fmin(all.least.up, spot.up)};
-      all.most = (struct Spot){fmax(all.most.right, spot.right), fmax(all.most.up, spot.up)};
+      struct PicturePoint spot = drawing->shapes[i].points[j];
+      all.least = (struct PicturePoint){fmin(all.least.right, spot.right), fmin(all.least.up, spot.up)};
+      all.most = (struct PicturePoint){fmax(all.most.right, spot.right), fmax(all.most.up, spot.up)};
     }
   return all;
 }
@@ -45,7 +46,7 @@ bool fit_drawing(struct Drawing *drawing) {
   double pixels = (PICTURE_SIZE - 2.0 * margin) / size;
   for (size_t i = 0; i < drawing->count; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct Spot *spot = &drawing->shapes[i].points[j];
+      struct PicturePoint *spot = &drawing->shapes[i].points[j];
       spot->right = PICTURE_SIZE / 2.0 + pixels * (spot->right - (all.least.right + all.most.right) / 2.0);
       spot->up = PICTURE_SIZE / 2.0 - pixels * (spot->up - (all.least.up + all.most.up) / 2.0);
     }
@@ -53,12 +54,12 @@ bool fit_drawing(struct Drawing *drawing) {
 }
 
 static int compare_spots(const void *first, const void *second) {
-  const struct Spot *a = first, *b = second;
+  const struct PicturePoint *a = first, *b = second;
   if (a->right != b->right) return a->right < b->right ? -1 : 1;
   return (a->up > b->up) - (a->up < b->up);
 }
 
-static double turn(struct Spot a, struct Spot b, struct Spot c) {
+static double turn(struct PicturePoint a, struct PicturePoint b, struct PicturePoint c) {
   return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
 }
 
@@ -67,18 +68,18 @@ static double turn(struct Spot a, struct Spot b, struct Spot c) {
  * left are removed. O(n log n) with the sort. A. M. Andrew: Another efficient algorithm for convex hulls in two
  * dimensions, 1979.
  */
-static size_t append_half_hull(const struct Spot *points, size_t count, bool backwards, struct Spot *hull,
-                               size_t length) {
+static size_t append_half_hull(const struct PicturePoint *points, size_t count, bool backwards,
+                               struct PicturePoint *hull, size_t length) {
   size_t first = length;
   for (size_t i = 0; i < count; i++) {
-    struct Spot point = points[backwards ? count - 1 - i : i];
+    struct PicturePoint point = points[backwards ? count - 1 - i : i];
     while (length >= first + 2 && !(turn(hull[length - 2], hull[length - 1], point) > 0.0)) length--;
     hull[length++] = point;
   }
   return length - 1; /* its last point begins the other chain */
 }
 
-size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull) {
+size_t convex_hull(struct PicturePoint *points, size_t count, struct PicturePoint *hull) {
   qsort(points, count, sizeof *points, compare_spots);
   return append_half_hull(points, count, true, hull, append_half_hull(points, count, false, hull, 0));
 }

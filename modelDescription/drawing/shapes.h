@@ -25,7 +25,7 @@ enum { PICTURE_SIZE = 160 };
 extern const struct LookStyle looks[LOOK_COUNT];
 
 /* A point of the picture, in m before fit_drawing(), in pixels after it. */
-struct Spot {
+struct PicturePoint {
   double right, up;
 };
 
@@ -33,7 +33,7 @@ struct Spot {
 struct Shape {
   enum Look look;
   bool is_filled; /* a convex polygon, else a polyline */
-  struct Spot *points;
+  struct PicturePoint *points;
   size_t count;
 };
 
@@ -44,12 +44,13 @@ struct Drawing {
 };
 
 /* Append a polygon, filled or not, and a line; they copy the points. */
-void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct Spot *points, size_t count);
-void append_line(struct Drawing *drawing, enum Look look, struct Spot from, struct Spot to);
+void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct PicturePoint *points,
+                  size_t count);
+void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint from, struct PicturePoint to);
 
 /* The bounding box of all points; least is greater than most without points. */
 struct Rectangle {
-  struct Spot least, most;
+  struct PicturePoint least, most;
 };
 
 /* Returns the bounding rectangle of all shapes. */
@@ -62,6 +63,6 @@ struct Rectangle rectangle_of(const struct Drawing *drawing);
 bool fit_drawing(struct Drawing *drawing);
 
 /* Finds the convex hull; sorts points. Returns its number of points, which come first in hull[2 count]. */
-size_t convex_hull(struct Spot *points, size_t count, struct Spot *hull);
+size_t convex_hull(struct PicturePoint *points, size_t count, struct PicturePoint *hull);
 
 #endif

@@ -4,8 +4,8 @@
 
 enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both end circles of a cylinder */
 
-struct Spot seen(const struct View *view, const double position[3]) {
-  struct Spot spot = {0.0, 0.0};
+struct PicturePoint seen(const struct View *view, const double position[3]) {
+  struct PicturePoint spot = {0.0, 0.0};
   for (int i = 0; i < 3; i++) {
     spot.right += view->right[i] * position[i];
     spot.up += view->up[i] * position[i];
@@ -13,7 +13,7 @@ struct Spot seen(const struct View *view, const double position[3]) {
   return spot;
 }
 
-static struct Spot corner(const struct View *view, const struct Solid *solid, const double along[3]) {
+static struct PicturePoint corner(const struct View *view, const struct Solid *solid, const double along[3]) {
   double position[3];
   for (int i = 0; i < 3; i++) {
     position[i] = solid->middle[i];
@@ -46,8 +46,8 @@ static void set_edges(struct Solid *solid, const double moment[3], double mass, 
   solid->half[axis] = sqrt(fmax(3.0 * moment[(axis + 1) % 3] / mass - 0.75 * radius * radius, 0.0));
 }
 
-static void append_filled(struct Drawing *drawing, struct Spot *points, size_t count) {
-  struct Spot hull[2 * RINGS + 1];
+static void append_filled(struct Drawing *drawing, struct PicturePoint *points, size_t count) {
+  struct PicturePoint hull[2 * RINGS + 1];
   size_t size = convex_hull(points, count, hull);
   append_shape(drawing, SOLID, true, hull, size);
   hull[size] = hull[0];
@@ -55,7 +55,7 @@ static void append_filled(struct Drawing *drawing, struct Spot *points, size_t c
 }
 
 void append_cylinder(struct Drawing *drawing, const struct View *view, const struct Solid *solid, int axis) {
-  struct Spot rings[RINGS];
+  struct PicturePoint rings[RINGS];
   for (int i = 0; i < RINGS; i++) {
     double angle = 2.0 * acos(-1.0) * (i % ROUND) / (ROUND - 1), along[3];
     along[axis] = i < ROUND ? -1.0 : 1.0;
@@ -68,7 +68,7 @@ void append_cylinder(struct Drawing *drawing, const struct View *view, const str
 }
 
 void append_box(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
-  struct Spot corners[8];
+  struct PicturePoint corners[8];
   for (int i = 0; i < 8; i++)
     corners[i] = corner(view, solid, (double[]){i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
   for (int i = 0; i < 8; i++)
@@ -79,18 +79,19 @@ void append_box(struct Drawing *drawing, const struct View *view, const struct S
 
 /* The outline consists of the points whose tangent planes contain the direction of view. */
 void append_ellipsoid(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
-  struct Spot spots[ROUND], middle = seen(view, solid->middle);
+  struct PicturePoint spots[ROUND], middle = seen(view, solid->middle);
   for (int i = 0; i < ROUND; i++) {
     double angle = 2.0 * acos(-1.0) * i / ROUND, support = 0.0;
-    spots[i] = (struct Spot){0.0, 0.0};
+    spots[i] = (struct PicturePoint){0.0, 0.0};
     for (int axis = 0; axis < 3; axis++) {
-      struct Spot direction = seen(view, solid->axis[axis]);
+      struct PicturePoint direction = seen(view, solid->axis[axis]);
       double along = solid->half[axis] * (direction.right * cos(angle) + direction.up * sin(angle));
       support += along * along;
       spots[i].right += along * solid->half[axis] * direction.right;
       spots[i].up += along * solid->half[axis] * direction.up;
     }
-    spots[i] = (struct Spot){middle.right + spots[i].right / sqrt(support), middle.up + spots[i].up / sqrt(support)};
+    spots[i] =
+        (struct PicturePoint){middle.right + spots[i].right / sqrt(support), middle.up + spots[i].up / sqrt(support)};
   }
   append_filled(drawing, spots, ROUND);
 }

@@ -14,7 +14,7 @@
 enum { MOST_WAYS = 8, MOST_DOTS = 60 };
 
 /* The visible parts of the system at its start values. */
-struct Sight {
+struct VisibleParts {
   struct Samples samples;
   struct Connections connections;
   struct Surfaces surfaces;
@@ -46,34 +46,35 @@ static struct View view_of(const struct Model *model, enum Plane plane) {
   return view;
 }
 
-static struct Spot spot_of(const struct Sight *sight, size_t thing) {
+static struct PicturePoint spot_of(const struct VisibleParts *sight, size_t thing) {
   const Node *position = sight->samples.things[thing].position;
   const double *values = sight->values;
   return seen(&sight->view, (double[]){values[position[0]], values[position[1]], values[position[2]]});
 }
 
 /* Returns the position of a point given in the axes of a planar body, or relative to another object. */
-static struct Spot spot_on(const struct Sight *sight, size_t thing, double x, double y) {
-  const struct Thing *body = &sight->samples.things[thing];
+static struct PicturePoint spot_on(const struct VisibleParts *sight, size_t thing, double x, double y) {
+  const struct SceneObject *body = &sight->samples.things[thing];
   double angle = body->is_planar ? sight->values[body->angle] : 0.0;
-  struct Spot spot = spot_of(sight, thing);
-  return (struct Spot){spot.right + x * cos(angle) - y * sin(angle), spot.up + x * sin(angle) + y * cos(angle)};
+  struct PicturePoint spot = spot_of(sight, thing);
+  return (struct PicturePoint){spot.right + x * cos(angle) - y * sin(angle), spot.up + x * sin(angle) + y * cos(angle)};
 }
 
 /* Appends a planar body as a uniform bar of its moment of inertia m l^2/12. */
-static void append_bar(struct Drawing *drawing, const struct Body *body, struct Spot middle, const double *values) {
+static void append_bar(struct Drawing *drawing, const struct Body *body, struct PicturePoint middle,
+                       const double *values) {
   double half = sqrt(3.0 * values[body->inertia.node] / values[body->mass.node]), angle = values[body->angle.node];
   double right = half * cos(angle), up = half * sin(angle);
   if (isfinite(right) && isfinite(up))
-    append_line(drawing, BAR, (struct Spot){middle.right - right, middle.up - up},
-                (struct Spot){middle.right + right, middle.up + up});
+    append_line(drawing, BAR, (struct PicturePoint){middle.right - right, middle.up - up},
+                (struct PicturePoint){middle.right + right, middle.up + up});
 }
 
 /* Returns the projection of a point onto the surface. */
-static struct Spot foot_of(const struct SceneSurface *surface, struct Spot spot) {
+static struct PicturePoint foot_of(const struct SceneSurface *surface, struct PicturePoint spot) {
   double height =
       (spot.right - surface->point[0]) * surface->normal[0] + (spot.up - surface->point[1]) * surface->normal[1];
-  return (struct Spot){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
+  return (struct PicturePoint){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
 }
 
 /* Appends a hatched line, as long as the objects above it; short for a stop. */
@@ -83,7 +84,7 @@ static void append_surface(struct Drawing *drawing, const struct SceneSurface *s
   double along[2] = {surface->normal[1], -surface->normal[0]}, low = -half, high = half;
   for (size_t i = 0; i < drawing->count && !surface->is_stop; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct Spot foot = foot_of(surface, drawing->shapes[i].points[j]);
+      struct PicturePoint foot = foot_of(surface, drawing->shapes[i].points[j]);
       double offset = (foot.right - surface->point[0]) * along[0] + (foot.up - surface->point[1]) * along[1];
       low = fmin(low, offset - 0.12 * size);
       high = fmax(high, offset + 0.12 * size);
@@ -92,20 +93,21 @@ static void append_surface(struct Drawing *drawing, const struct SceneSurface *s
   int hatches = surface->is_stop ? HATCHES / 3 : HATCHES;
   for (int i = 0; i <= hatches; i++) {
     double offset = low + (high - low) * i / hatches;
-    struct Spot at = {surface->point[0] + offset * along[0], surface->point[1] + offset * along[1]};
-    struct Spot behind = {at.right - depth * (surface->normal[0] + along[0]),
-                          at.up - depth * (surface->normal[1] + along[1])};
+    struct PicturePoint at = {surface->point[0] + offset * along[0], surface->point[1] + offset * along[1]};
+    struct PicturePoint behind = {at.right - depth * (surface->normal[0] + along[0]),
+                                  at.up - depth * (surface->normal[1] + along[1])};
     append_line(drawing, GROUND, at, behind);
   }
-  append_line(drawing, GROUND, (struct Spot){surface->point[0] + low * along[0], surface->point[1] + low * along[1]},
-              (struct Spot){surface->point[0] + high * along[0], surface->point[1] + high * along[1]});
+  append_line(drawing, GROUND,
+              (struct PicturePoint){surface->point[0] + low * along[0], surface->point[1] + low * along[1]},
+              (struct PicturePoint){surface->point[0] + high * along[0], surface->point[1] + high * along[1]});
 }
 
 /* Appends a square of a plane in space around its point. */
 static void append_plane(struct Drawing *drawing, const struct View *view, const struct SceneSurface *surface,
                          double size) {
   double first[3] = {0.0, 0.0, 0.0}, second[3], corner[3];
-  struct Spot corners[5];
+  struct PicturePoint corners[5];
   int least = 0;
   for (int i = 1; i < 3; i++)
     if (fabs(surface->normal[i]) < fabs(surface->normal[least])) least = i;
@@ -124,12 +126,12 @@ static void append_plane(struct Drawing *drawing, const struct View *view, const
   append_shape(drawing, GROUND, false, corners, 5);
 }
 
-static bool is_particle(const struct Thing *thing) {
+static bool is_particle(const struct SceneObject *thing) {
   return thing->body != NULL && !thing->is_planar && !is_solid(thing->body);
 }
 
 /* True if a rod or a joint connects the object, or if it is not a particle. */
-static bool is_attached(const struct Sight *sight, size_t thing) {
+static bool is_attached(const struct VisibleParts *sight, size_t thing) {
   const struct Connections *connections = &sight->connections;
   bool attached = !is_particle(&sight->samples.things[thing]);
   for (size_t k = 0; k < connections->rod_count; k++)
@@ -139,8 +141,8 @@ static bool is_attached(const struct Sight *sight, size_t thing) {
 }
 
 /* Appends the base's axes, and lines from the origin to unconnected objects. */
-static void append_axes(struct Drawing *drawing, const struct Sight *sight, double size) {
-  struct Spot origin = {0.0, 0.0};
+static void append_axes(struct Drawing *drawing, const struct VisibleParts *sight, double size) {
+  struct PicturePoint origin = {0.0, 0.0};
   for (int axis = 0; axis < (sight->is_in_space ? 3 : 2); axis++) {
     double tip[3] = {0.0, 0.0, 0.0};
     tip[axis] = 0.3 * size;
@@ -151,7 +153,7 @@ static void append_axes(struct Drawing *drawing, const struct Sight *sight, doub
 }
 
 /* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */
-static void append_bodies(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+static void append_bodies(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
   const struct Connections *connections = &sight->connections;
   for (size_t i = 0; i < model->mechanism.shape_count; i++)
@@ -171,18 +173,18 @@ static void append_bodies(struct Drawing *drawing, const struct Sight *sight, co
     if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
 }
 
-static void append_pivot(struct Drawing *drawing, struct Spot spot) {
+static void append_pivot(struct Drawing *drawing, struct PicturePoint spot) {
   append_shape(drawing, BASE, true, &spot, 1);
   append_shape(drawing, HOLE, true, &spot, 1);
 }
 
 /* Appends dots and joints; the origin last, on top. With lines, only dots of particles that have no shape. */
-static void append_points(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+static void append_points(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
   const struct Samples *samples = &sight->samples;
   bool is_guessed = !has_described_lines(&model->drawing);
   for (size_t i = samples->thing_count; i-- > 1;) {
-    const struct Thing *thing = &samples->things[i];
-    struct Spot spot = spot_of(sight, i);
+    const struct SceneObject *thing = &samples->things[i];
+    struct PicturePoint spot = spot_of(sight, i);
     bool is_ball = is_particle(thing) && thing->body->mass.node != ZERO && samples->thing_count <= MOST_DOTS;
     bool is_shown = is_guessed || (is_ball && !has_drawn_shape(model, thing->body));
     if (!thing->is_planar && is_shown) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
@@ -211,7 +213,7 @@ static bool is_first(const struct Surfaces *surfaces, size_t surface) {
 }
 
 /* Returns the surface with its point nearest to the object's start position. */
-static struct SceneSurface met_surface(const struct Sight *sight, struct SceneSurface met) {
+static struct SceneSurface met_surface(const struct VisibleParts *sight, struct SceneSurface met) {
   const Node *position = sight->samples.things[met.thing].position;
   double height = 0.0;
   if (met.is_stop) return met;
@@ -220,7 +222,7 @@ static struct SceneSurface met_surface(const struct Sight *sight, struct SceneSu
   return met;
 }
 
-static void append_surfaces(struct Drawing *drawing, const struct Sight *sight, double size) {
+static void append_surfaces(struct Drawing *drawing, const struct VisibleParts *sight, double size) {
   for (size_t i = 0; i < sight->surfaces.count; i++) {
     struct SceneSurface surface = met_surface(sight, sight->surfaces.items[i]);
     if (!is_first(&sight->surfaces, i)) continue;
@@ -241,7 +243,7 @@ static bool is_finite(const struct Rectangle *all) {
 }
 
 /* Drawings of lines may lie in the plane of x and z; surfaces and joints that are guessed need space for z. */
-static enum Plane plane_of(const struct Sight *sight, const struct Model *model) {
+static enum Plane plane_of(const struct VisibleParts *sight, const struct Model *model) {
   bool has_y = false, has_z = false;
   for (size_t i = 0; i < sight->samples.thing_count; i++) {
     has_y |= sight->samples.things[i].position[1] != ZERO;
@@ -255,9 +257,9 @@ static enum Plane plane_of(const struct Sight *sight, const struct Model *model)
   return has_y || !has_described_lines(&model->drawing) ? IN_SPACE : IN_XZ;
 }
 
-static struct Sight sight_of(const struct Model *model) {
+static struct VisibleParts sight_of(const struct Model *model) {
   struct Configurations everything = configurations_of(model, NULL);
-  struct Sight sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
+  struct VisibleParts sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
   sight.connections = find_connections(&sight.samples);
   sight.surfaces = find_surfaces(&sight.samples);
   if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));
@@ -269,13 +271,13 @@ static struct Sight sight_of(const struct Model *model) {
 }
 
 /* Appends the ends of lines as dots, which gives the drawing its size. */
-static void append_ends(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+static void append_ends(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
   for (size_t i = 0; i < 2 * model->drawing.count; i++) {
     const struct DrawnLine *line = &model->drawing.lines[i / 2];
     double position[3];
     if (i % 2 == 1 && !has_two_ends(line)) continue;
     position_of_end(&line->ends[i % 2], sight->line_values, position);
-    struct Spot spot = seen(&sight->view, position);
+    struct PicturePoint spot = seen(&sight->view, position);
     if (isfinite(spot.right) && isfinite(spot.up)) append_shape(drawing, JOINT, true, &spot, 1);
   }
 }
@@ -285,7 +287,8 @@ static double size_of(const struct Rectangle *all) {
 }
 
 /* Appends the planes among the shapes, below the last object. */
-static void append_planes(struct Drawing *drawing, const struct Sight *sight, const struct Model *model, double size) {
+static void append_planes(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model,
+                          double size) {
   for (size_t i = 0; i < model->mechanism.shape_count; i++) {
     struct SceneSurface surface = {.thing = sight->samples.thing_count - 1};
     if (!find_drawn_plane(model, &model->mechanism.shapes[i], sight->values, surface.point, surface.normal)) continue;
@@ -295,13 +298,14 @@ static void append_planes(struct Drawing *drawing, const struct Sight *sight, co
   }
 }
 
-static void append_lines(struct Drawing *drawing, const struct Sight *sight, const struct Model *model, double size) {
+static void append_lines(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model,
+                         double size) {
   for (size_t i = 0; i < model->drawing.count; i++)
     append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size);
 }
 
 /* Draws what the author describes: lines, and shapes on them. Returns false if there is nothing to see. */
-static bool draw_lines(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+static bool draw_lines(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
   struct Drawing bodies = {.count = 0};
   append_bodies(&bodies, sight, model);
   append_points(&bodies, sight, model);
@@ -317,7 +321,7 @@ static bool draw_lines(struct Drawing *drawing, const struct Sight *sight, const
 }
 
 /* Draws rods, joints and surfaces that are found by samples. Returns false if there is nothing to see. */
-static bool draw_guesses(struct Drawing *drawing, const struct Sight *sight, const struct Model *model) {
+static bool draw_guesses(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
   struct Drawing seen_things = {.count = 0};
   append_bodies(&seen_things, sight, model);
   append_points(&seen_things, sight, model);
@@ -331,7 +335,7 @@ static bool draw_guesses(struct Drawing *drawing, const struct Sight *sight, con
 }
 
 static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
-  struct Sight sight = sight_of(model);
+  struct VisibleParts sight = sight_of(model);
   bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &sight, model);
   bool is_seen = has_drawn || draw_guesses(drawing, &sight, model);
   release_samples(&sight.samples);
@@ -346,13 +350,14 @@ static void append_signals(struct Drawing *drawing, size_t count, double from) {
   size_t shown = count < MOST_SIGNALS ? count : MOST_SIGNALS;
   for (size_t i = 0; i < shown; i++) {
     double up = 1.0 - 2.0 * ((double)i + 0.5) / (double)shown, tip = from + 0.7;
-    append_line(drawing, SIGNAL, (struct Spot){from, up}, (struct Spot){tip, up});
-    append_shape(drawing, SIGNAL, false, (struct Spot[]){{tip - 0.14, up + 0.1}, {tip, up}, {tip - 0.14, up - 0.1}}, 3);
+    append_line(drawing, SIGNAL, (struct PicturePoint){from, up}, (struct PicturePoint){tip, up});
+    append_shape(drawing, SIGNAL, false,
+                 (struct PicturePoint[]){{tip - 0.14, up + 0.1}, {tip, up}, {tip - 0.14, up - 0.1}}, 3);
   }
 }
 
 static void draw_block(struct Drawing *drawing, const struct Model *model) {
-  const struct Spot corners[5] = {{-1.2, -1.2}, {1.2, -1.2}, {1.2, 1.2}, {-1.2, 1.2}, {-1.2, -1.2}};
+  const struct PicturePoint corners[5] = {{-1.2, -1.2}, {1.2, -1.2}, {1.2, 1.2}, {-1.2, 1.2}, {-1.2, -1.2}};
   drawing->count = 0;
   append_shape(drawing, BOX, true, corners, 4);
   append_shape(drawing, BOX, false, corners, 5);

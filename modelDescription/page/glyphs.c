@@ -15,19 +15,19 @@ static const char *const greek[][2] = {{"alpha", "α"}, {"beta", "β"},  {"gamma
 enum { INDEX_LIMIT = 4 };
 
 /* A part of a name. */
-struct Span {
+struct NamePart {
   const char *text;
   size_t length;
 };
 
 /* A letter or word with its indices: a word, numbers, and the part of the system. */
 struct Glyphs {
-  struct Span base, indices[INDEX_LIMIT];
+  struct NamePart base, indices[INDEX_LIMIT];
   size_t index_count;
 };
 
 /* Returns the letter of a Greek name; NULL for other names. */
-static const char *greek_letter(struct Span name) {
+static const char *greek_letter(struct NamePart name) {
   for (size_t i = 0; i < sizeof greek / sizeof *greek; i++)
     if (strlen(greek[i][0]) == name.length && memcmp(greek[i][0], name.text, name.length) == 0) return greek[i][1];
   return NULL;
@@ -35,16 +35,16 @@ static const char *greek_letter(struct Span name) {
 
 static void add_index(struct Glyphs *glyphs, const char *text, size_t length) {
   if (length > 0 && glyphs->index_count < INDEX_LIMIT)
-    glyphs->indices[glyphs->index_count++] = (struct Span){text, length};
+    glyphs->indices[glyphs->index_count++] = (struct NamePart){text, length};
 }
 
 /* Splits names such as x_end, omegaCoupler and rhoA into base and index. */
 static void split_word(struct Glyphs *glyphs) {
-  struct Span *base = &glyphs->base;
+  struct NamePart *base = &glyphs->base;
   const char *text = base->text;
   for (size_t i = 1; i < base->length; i++) {
     bool underscore = text[i] == '_' && i + 1 < base->length;
-    bool capital = isupper((unsigned char)text[i]) && greek_letter((struct Span){text, i}) != NULL;
+    bool capital = isupper((unsigned char)text[i]) && greek_letter((struct NamePart){text, i}) != NULL;
     if (!underscore && !capital) continue;
     size_t start = underscore ? i + 1 : i;
     add_index(glyphs, text + start, base->length - start);
@@ -61,16 +61,17 @@ static struct Glyphs glyphs_of(const char *name) {
   if (bracket == NULL)
     while (digits > 0 && isdigit((unsigned char)text[digits - 1])) digits--;
   if (digits == 0 || text[digits - 1] == '_') digits = length;
-  glyphs.base = (struct Span){text, digits};
+  glyphs.base = (struct NamePart){text, digits};
   split_word(&glyphs);
   add_index(&glyphs, text + digits, length - digits);
   if (bracket != NULL) add_index(&glyphs, bracket, strcspn(bracket, "]"));
   add_index(&glyphs, name, part);
-  if (part > 0 && length == strlen("force") && strncmp(text, "force", length) == 0) glyphs.base = (struct Span){"F", 1};
+  if (part > 0 && length == strlen("force") && strncmp(text, "force", length) == 0)
+    glyphs.base = (struct NamePart){"F", 1};
   return glyphs;
 }
 
-static void write_base(FILE *file, struct Span base, int dots) {
+static void write_base(FILE *file, struct NamePart base, int dots) {
   static const char *const accents[] = {"", "<mo>˙</mo></mover>", "<mo>¨</mo></mover>"};
   const char *letter = greek_letter(base);
   if (dots > 0) fputs("<mover accent=\"true\">", file);
@@ -86,7 +87,7 @@ void glyphs_write(FILE *file, const char *name, int dots) {
   if (glyphs.index_count == 0) return;
   fputs("<mrow>", file);
   for (size_t i = 0; i < glyphs.index_count; i++) {
-    struct Span index = glyphs.indices[i];
+    struct NamePart index = glyphs.indices[i];
     const char *element = isdigit((unsigned char)*index.text) ? "mn" : "mtext";
     fprintf(file, "%s<%s>%.*s</%s>", i > 0 ? "<mo>,</mo>" : "", element, (int)index.length, index.text, element);
   }

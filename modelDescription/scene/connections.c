@@ -51,7 +51,7 @@ static bool moves(const struct Samples *samples, size_t thing) {
  */
 static bool is_norm(const struct Model *model, size_t constraint) {
   for (size_t i = 0; i < model->mechanism.regularization_count; i++)
-    if (model->mechanism.stillnesses[i].constraint == model->constraints.items[constraint].node) return true;
+    if (model->mechanism.regularizations[i].constraint == model->constraints.items[constraint].node) return true;
   return false;
 }
 
@@ -129,7 +129,7 @@ static void fill_joint(const struct Samples *samples, const struct SceneJoint *j
       const double *values = samples->values[k];
       const size_t pair[2] = {joint->of, joint->with};
       for (int side = 0; side < 2; side++) {
-        const struct Thing *thing = &samples->things[pair[side]];
+        const struct SceneObject *thing = &samples->things[pair[side]];
         double sign = side == 0 ? 1.0 : -1.0, angle = thing->is_planar ? values[thing->angle] : 0.0;
         row[2 * side] = sign * (axis == 0 ? cos(angle) : sin(angle));
         row[2 * side + 1] = sign * (axis == 0 ? -sin(angle) : cos(angle));
@@ -185,7 +185,7 @@ static void try_joint(struct Connections *connections, const struct Samples *sam
 
 /* True if the pair is tested. Objects in a frame are connected only with that. */
 static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
-  const struct Thing *a = &samples->things[first], *b = &samples->things[second];
+  const struct SceneObject *a = &samples->things[first], *b = &samples->things[second];
   if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);
   return samples->thing_count <= MOST_THINGS || first == 0 || second == first + 1;
 }

@@ -69,12 +69,12 @@ static size_t count_left(const struct Mesh *mesh, size_t *merged) {
 }
 
 /* A list of 16-bit numbers. */
-struct Numbers {
+struct NumberList {
   unsigned char *bytes;
   size_t length;
 };
 
-static void append_number(struct Numbers *numbers, uint64_t number) {
+static void append_number(struct NumberList *numbers, uint64_t number) {
   for (int shift = 0; shift < 16; shift += 8) {
     numbers->bytes = make_room(numbers->bytes, numbers->length, 1);
     numbers->bytes[numbers->length++] = (unsigned char)(number >> shift & 0xff);
@@ -82,7 +82,7 @@ static void append_number(struct Numbers *numbers, uint64_t number) {
 }
 
 /* Encodes in base64; there is no padding, as the numbers come in groups of 6 bytes. */
-static char *text_of_numbers(const struct Numbers *numbers) {
+static char *text_of_numbers(const struct NumberList *numbers) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   char *text = allocate(numbers->length / 3 * 4 + 1, 1), *next = text;
   for (size_t i = 0; i < numbers->length; i += 3) {
@@ -94,7 +94,7 @@ static char *text_of_numbers(const struct Numbers *numbers) {
 
 /* Encodes the mesh; points are numbered in the order of their first use. */
 static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, size_t *merged) {
-  struct Numbers points = {NULL, 0}, triangles = {NULL, 0};
+  struct NumberList points = {NULL, 0}, triangles = {NULL, 0};
   size_t *numbers = allocate(mesh->point_count, sizeof *numbers), count = 0, corners[3];
   for (size_t i = 0; i < mesh->triangle_count; i++) {
     if (!is_left(mesh, i, merged, corners)) continue;

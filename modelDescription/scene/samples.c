@@ -22,7 +22,7 @@ static Node component(const struct Model *model, const char *name, const char *a
 }
 
 /* Appends an object with its position. A body outside frames has its own components, where given. */
-static void append_thing(struct Samples *samples, struct Thing thing) {
+static void append_thing(struct Samples *samples, struct SceneObject thing) {
   const struct Body *body = thing.body;
   bool is_free = body != NULL && !body->is_in_frame;
   for (int axis = 0; axis < 3 && thing.name != NULL; axis++)
@@ -42,15 +42,16 @@ static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
 
 static void find_things(struct Samples *samples) {
   const struct Mechanism *mechanism = &samples->model->mechanism;
-  append_thing(samples, (struct Thing){.name = NULL});
+  append_thing(samples, (struct SceneObject){.name = NULL});
   for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
-    if (!mechanism->frames[i].is_of_body) append_thing(samples, (struct Thing){.name = mechanism->frames[i].name});
+    if (!mechanism->frames[i].is_of_body)
+      append_thing(samples, (struct SceneObject){.name = mechanism->frames[i].name});
   size_t first_body = samples->thing_count;
   for (size_t i = 0; i < mechanism->body_count; i++) {
     const struct Body *body = &mechanism->bodies[i];
-    append_thing(
-        samples,
-        (struct Thing){.name = body->name, .body = body, .angle = body->angle.node, .is_planar = body->has_angle});
+    append_thing(samples,
+                 (struct SceneObject){
+                     .name = body->name, .body = body, .angle = body->angle.node, .is_planar = body->has_angle});
   }
   for (size_t i = BASE + 1, thing = 1; i < mechanism->frame_count; i++)
     if (!mechanism->frames[i].is_of_body)
@@ -96,7 +97,7 @@ static Node last_node(const struct Samples *samples) {
   const struct Model *model = samples->model;
   Node last = ZERO;
   for (size_t i = 0; i < samples->thing_count; i++) {
-    const struct Thing *thing = &samples->things[i];
+    const struct SceneObject *thing = &samples->things[i];
     for (int axis = 0; axis < 3; axis++) last = later(last, thing->position[axis]);
     last = later(last, thing->angle);
   }

@@ -7,7 +7,7 @@
 #include "model/model.h"
 
 /* An object with a position: the base, a frame, a body, a particle or a point. */
-struct Thing {
+struct SceneObject {
   const char *name;        /* NULL for the base */
   const struct Body *body; /* NULL for the base and frames */
   size_t frame;            /* index of the object that it is in */
@@ -19,7 +19,7 @@ struct Thing {
 /* Samples of one model. values[0] is the start; indices of objects are those of things. */
 struct Samples {
   const struct Model *model;
-  struct Thing *things; /* the first one is the base */
+  struct SceneObject *things; /* the first one is the base */
   size_t thing_count;
   size_t *constraints; /* indices in the model, of constraints on positions; none if there are too many */
   size_t constraint_count;

@@ -79,7 +79,8 @@ static double *values_where(const struct Configurations *configurations, Node ga
 }
 
 /* Sets the surface at the end of a path, with the normal from at to beside. False if the object does not move. */
-static bool is_end(const struct Thing *thing, const double *at, const double *beside, struct SceneSurface *surface) {
+static bool is_end(const struct SceneObject *thing, const double *at, const double *beside,
+                   struct SceneSurface *surface) {
   for (int axis = 0; axis < 3; axis++) {
     surface->point[axis] = at[thing->position[axis]];
     surface->normal[axis] = beside[thing->position[axis]] - at[thing->position[axis]];

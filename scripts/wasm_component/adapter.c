@@ -13,7 +13,7 @@
 
 #define EXPORT(name) __attribute__((export_name(name)))
 
-struct Component {
+struct AdapterInstance {
   fmi3Instance instance;
   char *name;
 };
@@ -130,21 +130,21 @@ static void hand_on(fmi3InstanceEnvironment environment, fmi3Status status, fmi3
   report_to_host(name, strlen(name), (int32_t)status, category, strlen(category), message, strlen(message));
 }
 
-static struct Component *component_of(fmi3Instance instance, char *name) {
+static struct AdapterInstance *component_of(fmi3Instance instance, char *name) {
   if (instance == NULL) {
     free(name);
     return NULL;
   }
-  struct Component *component = allocate(1, sizeof *component);
-  *component = (struct Component){instance, name};
+  struct AdapterInstance *component = allocate(1, sizeof *component);
+  *component = (struct AdapterInstance){instance, name};
   return component;
 }
 
 /* Both return NULL on failure. */
 EXPORT("instantiate-co-simulation")
-struct Component *instantiate_co_simulation(char *name, size_t name_count, char *token, size_t token_count,
-                                            bool visible, bool logging_on, bool event_mode_used,
-                                            bool early_return_allowed, fmi3ValueReference *required, size_t n) {
+struct AdapterInstance *instantiate_co_simulation(char *name, size_t name_count, char *token, size_t token_count,
+                                                  bool visible, bool logging_on, bool event_mode_used,
+                                                  bool early_return_allowed, fmi3ValueReference *required, size_t n) {
   char *own_name = terminated(name, name_count), *own_token = terminated(token, token_count);
   fmi3Instance instance = fmi3InstantiateCoSimulation(own_name, own_token, NULL, visible, logging_on, event_mode_used,
                                                       early_return_allowed, required, n, own_name, hand_on, NULL);
@@ -154,8 +154,8 @@ struct Component *instantiate_co_simulation(char *name, size_t name_count, char 
 }
 
 EXPORT("instantiate-model-exchange")
-struct Component *instantiate_model_exchange(char *name, size_t name_count, char *token, size_t token_count,
-                                             bool visible, bool logging_on) {
+struct AdapterInstance *instantiate_model_exchange(char *name, size_t name_count, char *token, size_t token_count,
+                                                   bool visible, bool logging_on) {
   char *own_name = terminated(name, name_count), *own_token = terminated(token, token_count);
   fmi3Instance instance =
       fmi3InstantiateModelExchange(own_name, own_token, NULL, visible, logging_on, own_name, hand_on);
@@ -169,7 +169,7 @@ EXPORT("place") void *place(void) {
   return instance;
 }
 
-EXPORT("free-instance") void free_instance(struct Component *self) {
+EXPORT("free-instance") void free_instance(struct AdapterInstance *self) {
   fmi3FreeInstance(self->instance);
   free(self->name);
   free(self);
@@ -183,7 +183,7 @@ EXPORT("get-version") struct Text *get_version(void) {
 }
 
 EXPORT("set-debug-logging")
-fmi3Status set_debug_logging(struct Component *self, bool logging_on, struct Text *texts, size_t count) {
+fmi3Status set_debug_logging(struct AdapterInstance *self, bool logging_on, struct Text *texts, size_t count) {
   char **categories = allocate(count, sizeof *categories);
   for (size_t i = 0; i < count; i++) categories[i] = terminated(texts[i].characters, texts[i].count);
   fmi3Status status = fmi3SetDebugLogging(self->instance, logging_on, count, (const char *const *)categories);
@@ -196,13 +196,13 @@ fmi3Status set_debug_logging(struct Component *self, bool logging_on, struct Tex
 /* --- Transitions between states --- */
 
 EXPORT("enter-initialization-mode")
-fmi3Status enter_initialization_mode(struct Component *self, bool has_tolerance, double tolerance, double start_time,
-                                     bool has_stop_time, double stop_time) {
+fmi3Status enter_initialization_mode(struct AdapterInstance *self, bool has_tolerance, double tolerance,
+                                     double start_time, bool has_stop_time, double stop_time) {
   return fmi3EnterInitializationMode(self->instance, has_tolerance, tolerance, start_time, has_stop_time, stop_time);
 }
 
 #define TRANSITION(name, function)                                                                                     \
-  EXPORT(name) fmi3Status transition_##function(struct Component *self) {                                              \
+  EXPORT(name) fmi3Status transition_##function(struct AdapterInstance *self) {                                        \
     return fmi3##function(self->instance);                                                                             \
   }
 TRANSITION("exit-initialization-mode", ExitInitializationMode)
@@ -215,7 +215,7 @@ TRANSITION("evaluate-discrete-states", EvaluateDiscreteStates)
 TRANSITION("terminate", Terminate)
 TRANSITION("reset", Reset)
 
-EXPORT("update-discrete-states") void *update_discrete_states(struct Component *self) {
+EXPORT("update-discrete-states") void *update_discrete_states(struct AdapterInstance *self) {
   static struct {
     uint8_t failed;
     union {
@@ -233,7 +233,7 @@ EXPORT("update-discrete-states") void *update_discrete_states(struct Component *
   return &result;
 }
 
-EXPORT("do-step") void *do_step(struct Component *self, double time, double size, bool no_set_before) {
+EXPORT("do-step") void *do_step(struct AdapterInstance *self, double time, double size, bool no_set_before) {
   static struct {
     uint8_t failed;
     union {
@@ -250,7 +250,7 @@ EXPORT("do-step") void *do_step(struct Component *self, double time, double size
   return &result;
 }
 
-EXPORT("completed-integrator-step") void *completed_integrator_step(struct Component *self, bool no_set_before) {
+EXPORT("completed-integrator-step") void *completed_integrator_step(struct AdapterInstance *self, bool no_set_before) {
   static struct {
     uint8_t failed;
     union {
@@ -270,14 +270,16 @@ EXPORT("completed-integrator-step") void *completed_integrator_step(struct Compo
 /* --- Values --- */
 
 #define VALUES(suffix, Type)                                                                                           \
-  EXPORT("get-" suffix) struct ListResult *get_##Type(struct Component *self, fmi3ValueReference *vr, size_t n) {      \
+  EXPORT("get-" suffix)                                                                                                \
+  struct ListResult *get_##Type(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n) {                      \
     fmi3##Type *values = allocate(n, sizeof *values);                                                                  \
     fmi3Status status = fmi3Get##Type(self->instance, vr, n, values, n);                                               \
     discard(vr, n);                                                                                                    \
     return list_result(status, values, n);                                                                             \
   }                                                                                                                    \
   EXPORT("set-" suffix)                                                                                                \
-  fmi3Status set_##Type(struct Component *self, fmi3ValueReference *vr, size_t n, fmi3##Type *values, size_t count) {  \
+  fmi3Status set_##Type(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n, fmi3##Type *values,            \
+                        size_t count) {                                                                                \
     fmi3Status status = fmi3Set##Type(self->instance, vr, n, values, count);                                           \
     discard(vr, n);                                                                                                    \
     discard(values, count);                                                                                            \
@@ -297,7 +299,7 @@ VALUES("boolean", Boolean)
 
 /* Functions of types that no variable has: report an error for any reference, and return nothing for none. */
 #define NO_VALUES(suffix, name, call)                                                                                  \
-  EXPORT(suffix) struct ListResult *name(struct Component *self, fmi3ValueReference *vr, size_t n) {                   \
+  EXPORT(suffix) struct ListResult *name(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n) {             \
     fmi3Status status = call;                                                                                          \
     discard(vr, n);                                                                                                    \
     return list_result(n == 0 ? fmi3OK : has_failed(status) ? status : fmi3Error, NULL, 0);                            \
@@ -313,7 +315,7 @@ NO_VALUES("get-shift-fraction", get_shift_fraction, fmi3GetShiftFraction(self->i
 
 #define NO_SETTING(suffix, name, call)                                                                                 \
   EXPORT(suffix)                                                                                                       \
-  fmi3Status name(struct Component *self, fmi3ValueReference *vr, size_t n, void *values, size_t count) {              \
+  fmi3Status name(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n, void *values, size_t count) {        \
     fmi3Status status = call;                                                                                          \
     discard(vr, n);                                                                                                    \
     discard(values, count);                                                                                            \
@@ -331,7 +333,8 @@ static void discard_texts(struct Text *texts, size_t count) {
 }
 
 EXPORT("set-string")
-fmi3Status set_strings(struct Component *self, fmi3ValueReference *vr, size_t n, struct Text *values, size_t count) {
+fmi3Status set_strings(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n, struct Text *values,
+                       size_t count) {
   fmi3Status status = fmi3SetString(self->instance, vr, n, NULL, count);
   discard(vr, n);
   discard_texts(values, count);
@@ -340,7 +343,8 @@ fmi3Status set_strings(struct Component *self, fmi3ValueReference *vr, size_t n,
 }
 
 EXPORT("set-binary")
-fmi3Status set_binaries(struct Component *self, fmi3ValueReference *vr, size_t n, struct Text *values, size_t count) {
+fmi3Status set_binaries(struct AdapterInstance *self, fmi3ValueReference *vr, size_t n, struct Text *values,
+                        size_t count) {
   fmi3Status status = fmi3SetBinary(self->instance, vr, n, NULL, NULL, count);
   discard(vr, n);
   discard_texts(values, count);
@@ -349,20 +353,20 @@ fmi3Status set_binaries(struct Component *self, fmi3ValueReference *vr, size_t n
 }
 
 EXPORT("get-number-of-variable-dependencies")
-struct CountResult *get_number_of_variable_dependencies(struct Component *self, fmi3ValueReference vr) {
+struct CountResult *get_number_of_variable_dependencies(struct AdapterInstance *self, fmi3ValueReference vr) {
   size_t count = 0;
   return count_result(fmi3GetNumberOfVariableDependencies(self->instance, vr, &count), count);
 }
 
 /* modelDescription.xml has the dependencies; this function returns none. */
 EXPORT("get-variable-dependencies")
-struct ListResult *get_variable_dependencies(struct Component *self, fmi3ValueReference vr) {
+struct ListResult *get_variable_dependencies(struct AdapterInstance *self, fmi3ValueReference vr) {
   return list_result(fmi3GetVariableDependencies(self->instance, vr, NULL, NULL, NULL, NULL, 0), NULL, 0);
 }
 
 /* --- Saved states, serialized --- */
 
-EXPORT("get-fmu-state") struct ListResult *get_fmu_state(struct Component *self) {
+EXPORT("get-fmu-state") struct ListResult *get_fmu_state(struct AdapterInstance *self) {
   fmi3FMUState state = NULL;
   size_t size = 0;
   void *bytes = NULL;
@@ -376,7 +380,7 @@ EXPORT("get-fmu-state") struct ListResult *get_fmu_state(struct Component *self)
   return list_result(status, bytes, bytes != NULL ? size : 0);
 }
 
-EXPORT("set-fmu-state") fmi3Status set_fmu_state(struct Component *self, const fmi3Byte *bytes, size_t count) {
+EXPORT("set-fmu-state") fmi3Status set_fmu_state(struct AdapterInstance *self, const fmi3Byte *bytes, size_t count) {
   fmi3FMUState state = NULL;
   fmi3Status status = fmi3DeserializeFMUState(self->instance, bytes, count, &state);
   discard(bytes, count);
@@ -389,7 +393,7 @@ EXPORT("set-fmu-state") fmi3Status set_fmu_state(struct Component *self, const f
 
 #define DERIVATIVE(name, function, result_count)                                                                       \
   EXPORT(name)                                                                                                         \
-  struct ListResult *derivative_##function(struct Component *self, fmi3ValueReference *unknowns, size_t rows,          \
+  struct ListResult *derivative_##function(struct AdapterInstance *self, fmi3ValueReference *unknowns, size_t rows,    \
                                            fmi3ValueReference *knowns, size_t columns, double *seed, size_t seeds) {   \
     double *values = allocate(result_count, sizeof *values);                                                           \
     fmi3Status status =                                                                                                \
@@ -403,7 +407,7 @@ DERIVATIVE("get-directional-derivative", GetDirectionalDerivative, rows)
 DERIVATIVE("get-adjoint-derivative", GetAdjointDerivative, columns)
 
 EXPORT("get-output-derivatives")
-struct ListResult *get_output_derivatives(struct Component *self, struct Order *requests, size_t n) {
+struct ListResult *get_output_derivatives(struct AdapterInstance *self, struct Order *requests, size_t n) {
   fmi3ValueReference *vr = allocate(n, sizeof *vr);
   fmi3Int32 *orders = allocate(n, sizeof *orders);
   double *values = allocate(n, sizeof *values);
@@ -420,7 +424,7 @@ struct ListResult *get_output_derivatives(struct Component *self, struct Order *
 
 /* The draft has this function of FMI 2.0; FMI 3.0 does not. */
 EXPORT("set-input-derivatives")
-fmi3Status set_input_derivatives(struct Component *self, struct Order *requests, size_t n, double *values,
+fmi3Status set_input_derivatives(struct AdapterInstance *self, struct Order *requests, size_t n, double *values,
                                  size_t count) {
   discard(requests, n);
   discard(values, count);
@@ -432,18 +436,19 @@ fmi3Status set_input_derivatives(struct Component *self, struct Order *requests,
 
 /* --- Model exchange --- */
 
-EXPORT("set-time") fmi3Status set_time(struct Component *self, double time) {
+EXPORT("set-time") fmi3Status set_time(struct AdapterInstance *self, double time) {
   return fmi3SetTime(self->instance, time);
 }
 
-EXPORT("set-continuous-states") fmi3Status set_continuous_states(struct Component *self, double *states, size_t n) {
+EXPORT("set-continuous-states")
+fmi3Status set_continuous_states(struct AdapterInstance *self, double *states, size_t n) {
   fmi3Status status = fmi3SetContinuousStates(self->instance, states, n);
   discard(states, n);
   return status;
 }
 
 #define VECTOR(name, function, count_function)                                                                         \
-  EXPORT(name) struct ListResult *vector_##function(struct Component *self) {                                          \
+  EXPORT(name) struct ListResult *vector_##function(struct AdapterInstance *self) {                                    \
     size_t count = 0;                                                                                                  \
     fmi3Status status = fmi3##count_function(self->instance, &count);                                                  \
     double *values = allocate(count, sizeof *values);                                                                  \
@@ -455,12 +460,14 @@ VECTOR("get-continuous-state-derivatives", GetContinuousStateDerivatives, GetNum
 VECTOR("get-nominals-of-continuous-states", GetNominalsOfContinuousStates, GetNumberOfContinuousStates)
 VECTOR("get-event-indicators", GetEventIndicators, GetNumberOfEventIndicators)
 
-EXPORT("get-number-of-continuous-states") struct CountResult *get_number_of_continuous_states(struct Component *self) {
+EXPORT("get-number-of-continuous-states")
+struct CountResult *get_number_of_continuous_states(struct AdapterInstance *self) {
   size_t count = 0;
   return count_result(fmi3GetNumberOfContinuousStates(self->instance, &count), count);
 }
 
-EXPORT("get-number-of-event-indicators") struct CountResult *get_number_of_event_indicators(struct Component *self) {
+EXPORT("get-number-of-event-indicators")
+struct CountResult *get_number_of_event_indicators(struct AdapterInstance *self) {
   size_t count = 0;
   return count_result(fmi3GetNumberOfEventIndicators(self->instance, &count), count);
 }

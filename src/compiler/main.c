@@ -61,7 +61,7 @@ struct Arguments {
   size_t point_count;
   enum CodeForm form;
   bool linearize, equations, pull, arrays, words, help, version;
-  struct Extras extras;
+  struct OptionalParts extras;
 };
 
 /* Returns the length up to the next comma outside parentheses. */

@@ -34,7 +34,7 @@ enum File {
 };
 
 /* The bytes of a file; NULL if it is not written. */
-struct Content {
+struct FileContent {
   const char *bytes;
   size_t length;
 };
@@ -60,7 +60,7 @@ static bool create_directory(const char *path) {
   return make_directory(path);
 }
 
-static bool write_file(const char *path, const struct Content *content) {
+static bool write_file(const char *path, const struct FileContent *content) {
   FILE *file = fopen(path, "wb");
   if (file == NULL) return false;
   bool written = fwrite(content->bytes, 1, content->length, file) == content->length;
@@ -93,7 +93,7 @@ static void remove_all(const char *directory, const char *suffix) {
   }
 }
 
-static bool write_beside(const char *directory, const struct Content *contents) {
+static bool write_beside(const char *directory, const struct FileContent *contents) {
   bool written = true;
   for (int i = 0; i < FILE_COUNT && written; i++) {
     if (contents[i].bytes == NULL) continue;
@@ -104,7 +104,7 @@ static bool write_beside(const char *directory, const struct Content *contents) 
 }
 
 /* Renames the unfinished files to replace those of an earlier run. */
-static bool move_in(const char *directory, const struct Content *contents) {
+static bool move_in(const char *directory, const struct FileContent *contents) {
   bool moved = true;
   char *mark = path_of(directory, FILE_COUNT - 1, "");
   remove(mark);
@@ -129,15 +129,15 @@ static bool create_directories(const char *directory) {
   return created;
 }
 
-static void write_all(const char *directory, const struct Content *contents, struct Diagnostics *diagnostics) {
+static void write_all(const char *directory, const struct FileContent *contents, struct Diagnostics *diagnostics) {
   if (create_directories(directory) && write_beside(directory, contents) && move_in(directory, contents)) return;
   report_error(diagnostics, 0, "cannot write into '%s': %s; expected a directory that can be written", directory,
                strerror(errno));
   remove_all(directory, unfinished);
 }
 
-static struct Content text_content(const char *text) {
-  return (struct Content){text, strlen(text)};
+static struct FileContent text_content(const char *text) {
+  return (struct FileContent){text, strlen(text)};
 }
 
 static bool write_buffers(const struct Program *program, const struct Summary *summary, const char *guid,
@@ -152,7 +152,7 @@ static bool write_buffers(const struct Program *program, const struct Summary *s
 }
 
 /* Adds the pictures of a flange if terminals use them. */
-static void add_flange(const struct Program *program, struct Content *contents) {
+static void add_flange(const struct Program *program, struct FileContent *contents) {
   struct Drawing flange = flange_drawing();
   contents[FLANGE_PICTURE].bytes = (const char *)png_of(&flange, &contents[FLANGE_PICTURE].length);
   if (fmi3_terminal_count(program) == 0) contents[FLANGE_PICTURE].bytes = contents[FLANGE_ICON].bytes = NULL;
@@ -166,7 +166,7 @@ void output_write(const struct Program *program, const struct Summary *summary, 
     return;
   }
   xmlBufferPtr anonymous = xmlBufferCreate(), buffers[FILE_COUNT];
-  struct Content contents[FILE_COUNT];
+  struct FileContent contents[FILE_COUNT];
   char guid[GUID_LENGTH];
   char *code = text_of(program, code_write), *licenses = text_of(program, licenses_write);
   for (int i = 0; i < FILE_COUNT; i++) buffers[i] = xmlBufferCreate();

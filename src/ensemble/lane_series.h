@@ -1,4 +1,4 @@
-/* The recurrences of include/series.h for lanes, under the same names. */
+/* The recurrences of include/series.h for lanes, under the same names and include guard, so that it replaces them. */
 #ifndef SERIES_H
 #define SERIES_H
 

@@ -215,8 +215,8 @@ static Lanes defect(struct LaneSteps *steps, Lanes s) {
 /* Does the same; if the coefficients do not limit the step, also inside it. */
 static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
   Lanes inside = {0};
-  for (int i = 0; any_lane(steps->is_limited) && i < DEFECT_PLACES; i++)
-    inside = larger_or_infinite(inside, defect(steps, slots_of_defects[i] * s));
+  for (int i = 0; any_lane(steps->is_limited) && i < DEFECT_POINTS; i++)
+    inside = larger_or_infinite(inside, defect(steps, defect_points[i] * s));
   Lanes end = defect(steps, s);
   return lanes_select(steps->is_limited, larger_or_infinite(end, inside), end);
 }

@@ -40,7 +40,7 @@ static const struct Solver *solver_named(const char *name) {
 }
 
 static const uint32_t *code_of(const struct Encoding *encoding, const struct IrFunction *ir) {
-  struct Words words = {0};
+  struct WordList words = {0};
   if (ir == NULL) return NULL;
   encode(encoding, ir, &words);
   return words.items;

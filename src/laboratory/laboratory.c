@@ -56,7 +56,8 @@ int derive(const char *path, int pull) {
   struct Interface *interface = interface_create(model, equations);
   arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, (struct Extras){0}, &diagnostics);
+  struct Expressions *expressions =
+      expressions_create(model, equations, interface, (struct OptionalParts){0}, &diagnostics);
   if (expressions != NULL) make(program_create(expressions, ALL_TABLES), summary, &diagnostics);
   return diagnostics.errors > 0 ? 1 : 0;
 }

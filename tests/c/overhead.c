@@ -43,7 +43,7 @@ static double time_of_steps(fmi2Component c) {
 }
 
 static double time_of_core(fmi2Component c) {
-  struct Component *component = c;
+  struct FmiComponent *component = c;
   double start = seconds();
   for (long i = 1; i <= steps; i++)
     if (communication_step(&component->instance, (double)i * step_size, step_size) != STATUS_DONE) exit(1);

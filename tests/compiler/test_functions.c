@@ -258,7 +258,7 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
   enum Operation operation = e->graph->vertices[node].operation;
   const struct Function *row = &functions[operation];
   const struct Reference *reference = reference_of(operation);
-  if (row->recurrence == ARITHMETIC || row->recurrence == GATED) return;
+  if (row->recurrence == ARITHMETIC || row->recurrence == GUARDED) return;
   double a = value_at(e, row->auxiliary(e->graph, node), x, y, 0), sign = (a > 0) - (a < 0);
   double by_x = slope(reference, x, y, 0), here = (double)value(reference, x, y);
   switch (row->recurrence) {
@@ -279,7 +279,7 @@ static void check_recurrence(struct Expressions *e, Node node, double x, double 
     if (operation == LESS || operation == SIGN)
       assert_near(operation == LESS ? a < 0 : sign, here, "the piece", operation, x, y);
     return;
-  case GATED:
+  case GUARDED:
   case ARITHMETIC: return;
   }
 }

@@ -28,7 +28,7 @@ static void check_components(struct Position *positions, size_t count) {
     coupled[positions[k].row][positions[k].column] = coupled[positions[k].column][positions[k].row] = true;
   }
   close_pattern(coupled);
-  struct Components components = find_components(COORDINATES, &elements);
+  struct ConnectedComponents components = find_components(COORDINATES, &elements);
   size_t found = 0;
   for (size_t i = 0; i < COORDINATES; i++) {
     for (size_t j = 0; j < COORDINATES; j++) assert_int_equal(components.of[i] == components.of[j], coupled[i][j]);

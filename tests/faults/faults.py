@@ -42,7 +42,7 @@ PLACES = [
      broken("unit of an angle")),
     ("(double)((x > 0.0) - (x < 0.0))", "(double)((x > 0.0) - (x <= 0.0))", ctest("test_functions")),
     ("values[(long)turns & 3]", "values[(long)turns & 1]", ctest("test_functions")),
-    ("*sum = add(graph, *sum, gated_product(graph, weight, by));", "*sum = gated_product(graph, weight, by);",
+    ("*sum = add(graph, *sum, guarded_product(graph, weight, by));", "*sum = guarded_product(graph, weight, by);",
      ctest("test_differentiate")),
     ("subtract(graph, ONE, varied)", "ONE", ctest("test_differentiate")),
     ("if (!graph_depends_on(graph, seed, SEED_PARAMETER)) return", "if (true) return",
@@ -157,7 +157,7 @@ PLACES = [
     # The drawing
     ("remainder & 1 ? 0xedb88320u : 0u", "remainder & 1 ? 0xedb88320u : 1u", pytest("test_pictures", "png", "DoublePendulum", "BouncingBall", "ElasticPendulum")),
     # The compiler: programs, and writing them
-    ("case VELOCITY: return slot_in(SPACE_STATE, n + index);", "case VELOCITY: return slot_in(SPACE_STATE, index);",
+    ("case VELOCITY: return slot_at(SPACE_STATE, n + index);", "case VELOCITY: return slot_at(SPACE_STATE, index);",
      pytest("test_evaluated_code", "taylor-statements")),
     ('[CUBE] = {"$1 * $1 * $1"', '[CUBE] = {"$1 * $1"', pytest("test_evaluated_code", "taylor-statements")),
     ("right[i] = negate(graph, result[i]);", "right[i] = result[i];", pytest("test_evaluated_code", "taylor-statements")),
@@ -367,7 +367,7 @@ PLACES = [
     ("CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-28 * B", "CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-2 * B", pytest("test_instructions", "")),
     ("CHECK_POSITIVE: EACH(2, REQUIRE(A > 0.0", "CHECK_POSITIVE: EACH(2, REQUIRE(A > -1.0", pytest("test_instructions", "")),
     ("R = -(*ROW_A * (&B)[-1]) * reciprocal[k]", "R = (*ROW_A * (&B)[-1]) * reciprocal[k]", pytest("test_evaluated_code", "tables")),
-    ("    if (check->is_gated) LIMIT_WHERE(", "    if (false) LIMIT_WHERE(", pytest("test_instructions", "")),
+    ("    if (check->is_guarded)\n      LIMIT_WHERE(", "    if (false) LIMIT_WHERE(", pytest("test_instructions", "")),
     ("case GUARD_OF: EACH(3, R = WHERE(A > 0.0, B, 0.0));", "case GUARD_OF: EACH(3, R = WHERE(A >= 0.0, B, 0.0));", pytest("test_instructions", "")),
     ("case SIGN_OF: EACH(2, R = WHERE(A > 0.0, 1.0, WHERE(A < 0.0, -1.0, 0.0)));", "case SIGN_OF: EACH(2, R = WHERE(A > 0.0, 1.0, -1.0));",
      pytest("test_instructions", "")),

@@ -114,11 +114,11 @@ def test_sliders(browser, page_file):
         page.get_by_role("spinbutton", name="m1").press("Enter")
         page.click("#reset")
         found, _ = run_in_page(page, 2.0)
-        assert page.inner_text(".control .words:not(:empty)") == "-1 for 'm1' is below its minimum, 0"
+        assert page.inner_text(".control .message:not(:empty)") == "-1 for 'm1' is below its minimum, 0"
         assert page.get_by_role("spinbutton", name="m1").input_value() == "1"
         page.get_by_role("spinbutton", name="m1").fill("2")
         page.get_by_role("spinbutton", name="m1").press("Enter")
-        page.wait_for_selector(".control .words:not(:empty)", state="detached")
+        page.wait_for_selector(".control .message:not(:empty)", state="detached")
     instance = fmu.Instance("DoublePendulum", logging=False)
     with contextlib.closing(SimpleNamespace(close=instance.free)):
         instance.initialize({"theta1": 1.0, "l1": 10.0})
@@ -169,7 +169,7 @@ def test_lengths_change(browser, page_file):
       const sample = live.history.samples[live.history.length - 1][0], { scene } = live, place = (joint) => scene.jointPosition(sample, joint, new THREE.Vector3()).toArray();
       return scene.connections.filter((joint) => joint.withX !== undefined).map((joint) => {
         const other = [joint.withX, joint.withY].map((formula) => live.valueOf(formula));
-        return [place(joint), joint.with ? place({ of: joint.with, place: other }) : [...other, 0]];
+        return [place(joint), joint.with ? place({ of: joint.with, position: other }) : [...other, 0]];
       });
     }"""
     with opened(browser, page_file("FourBar")) as page:

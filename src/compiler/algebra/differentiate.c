@@ -26,14 +26,14 @@ static Node along_exponent(struct Graph *graph, Node node, Node by_exponent, Nod
 }
 
 /* Returns weight by. The guards of weight enclose the product, since by may be undefined where a guard is closed. */
-static Node gated_product(struct Graph *graph, Node weight, Node by) {
+static Node guarded_product(struct Graph *graph, Node weight, Node by) {
   const struct Vertex vertex = graph->vertices[weight];
-  if (vertex.operation == GUARD) return function(graph, GUARD, vertex.left, gated_product(graph, vertex.right, by));
+  if (vertex.operation == GUARD) return function(graph, GUARD, vertex.left, guarded_product(graph, vertex.right, by));
   bool is_sum_of_guards = vertex.operation == ADD && graph->vertices[vertex.left].operation == GUARD &&
                           graph->vertices[vertex.right].operation == GUARD;
   if (!is_sum_of_guards) return multiply(graph, weight, by);
-  Node first = gated_product(graph, vertex.left, by);
-  return add(graph, first, gated_product(graph, vertex.right, by));
+  Node first = guarded_product(graph, vertex.left, by);
+  return add(graph, first, guarded_product(graph, vertex.right, by));
 }
 
 /* Returns the derivative of an operation from those of its operands. */
@@ -114,7 +114,7 @@ Node derivative_by(struct Graph *graph, Node target, Node symbol) {
 static void add_adjoint(struct Graph *graph, unsigned kinds, Node *adjoint, Node operand, Node weight, Node by) {
   if ((graph->vertices[operand].kinds & kinds) == 0) return;
   Node *sum = &adjoint[cone_slot(graph->cone, operand)];
-  *sum = add(graph, *sum, gated_product(graph, weight, by));
+  *sum = add(graph, *sum, guarded_product(graph, weight, by));
 }
 
 /* Returns the adjoints of the symbols of the kinds; adjoint has one element for each member of the cone. */

@@ -10,7 +10,7 @@
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
 
 /* Context of an expression: a sum in a product, and a product in a power, need parentheses. */
-enum Tightness { IN_SUM, IN_PRODUCT, IN_POWER };
+enum Precedence { IN_SUM, IN_PRODUCT, IN_POWER };
 
 /* State while an expression is printed. */
 struct Printer {
@@ -21,7 +21,7 @@ struct Printer {
   int depth;
 };
 
-static void print(struct Printer *printer, Node node, enum Tightness tightness);
+static void print(struct Printer *printer, Node node, enum Precedence tightness);
 
 void number_text(double value, char text[NUMBER_LENGTH]) {
   for (int digits = 15; digits <= 17; digits++) {
@@ -140,12 +140,12 @@ static Node opposite_of(const struct Graph *graph, Node guard_condition) {
   return guard->operation == GUARD && guard->right == ONE ? guard->left : ZERO;
 }
 
-bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
+bool choice_of(const struct Graph *graph, Node node, struct Conditional *choice) {
   const struct Vertex *vertices = graph->vertices, *vertex = &vertices[node];
   if (vertex->operation == GUARD) {
     Node opposite = opposite_of(graph, vertex->left);
-    *choice = opposite != ZERO ? (struct Choice){opposite, ZERO, vertex->right}
-                               : (struct Choice){vertex->left, vertex->right, ZERO};
+    *choice = opposite != ZERO ? (struct Conditional){opposite, ZERO, vertex->right}
+                               : (struct Conditional){vertex->left, vertex->right, ZERO};
     return true;
   }
   if (vertex->operation != ADD) return false;
@@ -153,12 +153,12 @@ bool choice_of(const struct Graph *graph, Node node, struct Choice *choice) {
   if (left->operation != GUARD || right->operation != GUARD) return false;
   bool is_swapped = opposite_of(graph, left->left) == right->left;
   const struct Vertex *first = is_swapped ? right : left, *second = is_swapped ? left : right;
-  *choice = (struct Choice){first->left, first->right, second->right};
+  *choice = (struct Conditional){first->left, first->right, second->right};
   return opposite_of(graph, second->left) == first->left;
 }
 
 /* Prints if(a > 0, ...) for a guard by sign(a). */
-static void print_choice(struct Printer *printer, const struct Choice *choice) {
+static void print_choice(struct Printer *printer, const struct Conditional *choice) {
   const struct Graph *graph = printer->graph;
   Node base = choice->guard_condition;
   double coefficient = coefficient_of(graph, choice->guard_condition, &base);
@@ -174,7 +174,7 @@ static void print_choice(struct Printer *printer, const struct Choice *choice) {
 }
 
 static void print_term(struct Printer *printer, Node node, bool first) {
-  struct Choice choice;
+  struct Conditional choice;
   bool is_sum = printer->graph->vertices[node].operation == ADD && !choice_of(printer->graph, node, &choice);
   if (is_sum && name_of(printer, node) == NULL) {
     if (is_cut(printer)) return;
@@ -233,7 +233,7 @@ static void print_function(struct Printer *printer, const struct Vertex *vertex)
   fputs(")", printer->file);
 }
 
-static void print(struct Printer *printer, Node node, enum Tightness tightness) {
+static void print(struct Printer *printer, Node node, enum Precedence tightness) {
   if (is_cut(printer)) return;
   const char *name = name_of(printer, node);
   if (name != NULL) {
@@ -243,7 +243,7 @@ static void print(struct Printer *printer, Node node, enum Tightness tightness) 
   printer->depth++;
   const struct Vertex *vertex = &printer->graph->vertices[node];
   Node base;
-  struct Choice choice;
+  struct Conditional choice;
   bool is_choice = choice_of(printer->graph, node, &choice);
   bool sum = !is_choice && (vertex->operation == ADD || coefficient_of(printer->graph, node, &base) < 0);
   bool product = vertex->operation == MULTIPLY || vertex->operation == POWER;

@@ -20,12 +20,12 @@ struct NodeNames {
 char *expression_text_with_names(const struct Graph *graph, Node node, const struct NodeNames *names);
 
 /* if(guard_condition > 0, positive, other) */
-struct Choice {
+struct Conditional {
   Node guard_condition, positive, other;
 };
 
 /* True for a gate, and for a sum of two gates of which one is open where the other is closed. */
-bool choice_of(const struct Graph *graph, Node node, struct Choice *choice);
+bool choice_of(const struct Graph *graph, Node node, struct Conditional *choice);
 
 /* Bytes for a number's text; 17 digits with sign, point and exponent take 25. */
 enum { NUMBER_LENGTH = 40 };

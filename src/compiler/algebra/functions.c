@@ -255,7 +255,7 @@ const struct Function functions[OPERATION_COUNT] = {
                .is_internal = true,
                .of_two = guard_of,
                .units = UNIT_KEPT,
-               .recurrence = GATED,
+               .recurrence = GUARDED,
                .auxiliary = operand,
                .partial_derivatives = along_guard},
     [SINE] = {.name = "sin", .of_one = sine, .parity = ODD, .recurrence = INTEGRAL, .auxiliary = cosine_of_operand},

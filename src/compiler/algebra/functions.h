@@ -37,7 +37,7 @@ enum Recurrence {
   REFLECTION,         /* abs: x or -x, by the sign of a = x */
   CHOICE,             /* min and max: one of the operands, by the sign of a = left - right */
   PIECEWISE_CONSTANT, /* y' = 0 except where the sign of a changes */
-  GATED               /* the coefficients of the right operand, or 0 */
+  GUARDED             /* the coefficients of the right operand, or 0 */
 };
 
 /* A row of the table: the properties of one operation. */

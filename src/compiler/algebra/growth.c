@@ -6,14 +6,14 @@
 #include "algebra/simplify.h"
 
 /* exp(u), cosh(u) or sinh(u), to a power: u = coefficient base, with the power as part of the coefficient for exp. */
-struct Growth {
+struct GrowingFactor {
   enum Operation operation;
   Node base;
   double coefficient, power;
 };
 
 /* A positive function that decays as fast as something grows: node^power. */
-struct Decay {
+struct DecayingFactor {
   Node node; /* 1/(1 + exp(u)), 1/cosh(u) or exp(u) */
   double power;
 };
@@ -54,10 +54,11 @@ static bool is_never_negative(const struct Graph *graph, Node node) {
 }
 
 /* True for cosh and sinh to whole powers, and for exp if its argument may be positive. Sets growth. */
-static bool grows(const struct Graph *graph, struct Factor factor, struct Growth *growth) {
+static bool grows(const struct Graph *graph, struct Factor factor, struct GrowingFactor *growth) {
   const struct Vertex *vertex = vertex_of(graph, factor.base);
   double logarithm = logarithm_of_base(graph, vertex);
-  *growth = (struct Growth){.operation = logarithm != 0.0 ? EXPONENTIAL : vertex->operation, .power = factor.exponent};
+  *growth =
+      (struct GrowingFactor){.operation = logarithm != 0.0 ? EXPONENTIAL : vertex->operation, .power = factor.exponent};
   bool is_hyperbolic = growth->operation == COSH || growth->operation == SINH;
   if (!is_whole_from_1(factor.exponent) || (growth->operation != EXPONENTIAL && !is_hyperbolic)) return false;
   growth->coefficient = coefficient_of(graph, logarithm != 0.0 ? vertex->right : vertex->left, &growth->base);
@@ -77,7 +78,7 @@ struct Rates {
 /*
  * Adds a growing factor of a term to the rates; *rate is the sum over the term's factors. False without a common decay.
  */
-static bool take_factor(struct Rates *rates, const struct Growth *growth, double *rate) {
+static bool take_factor(struct Rates *rates, const struct GrowingFactor *growth, double *rate) {
   bool is_hyperbolic = growth->operation != EXPONENTIAL;
   if (rates->unit != 0.0 && growth->base != rates->base) return false;
   if (is_hyperbolic && rates->is_hyperbolic && growth->coefficient != rates->unit) return false;
@@ -97,7 +98,7 @@ static bool take_term(const struct Graph *graph, Node term, struct Rates *rates)
   int count = factors_of(graph, term, factors);
   double rate = 0.0;
   for (int i = 0; i < count; i++) {
-    struct Growth growth;
+    struct GrowingFactor growth;
     if (grows(graph, factors[i], &growth) && !take_factor(rates, &growth, &rate)) return false;
   }
   return true;
@@ -114,7 +115,7 @@ static bool rates_of(const struct Graph *graph, Node node, struct Rates *rates) 
 }
 
 /* Finds the decay that bounds a sum or one factor. False if there is none. */
-static bool decay_of(struct Graph *graph, Node node, struct Decay *decay) {
+static bool decay_of(struct Graph *graph, Node node, struct DecayingFactor *decay) {
   struct Rates rates;
   if (!rates_of(graph, node, &rates) || rates.unit == 0.0) return false;
   decay->power = rates.most / rates.unit;
@@ -172,21 +173,22 @@ static Node expand(struct Graph *graph, Node sum) {
  * Splits base = inner / (s1^p1 s2^p2 ...), where inner is bounded: for each factor that grows, a decay; for exp(u)
  * it is exp(-u). Returns the number of decays; 0 if nothing grows, or if a growing factor has no decay.
  */
-static int split(struct Graph *graph, Node base, struct Decay decays[FACTOR_LIMIT], Node *inner) {
+static int split(struct Graph *graph, Node base, struct DecayingFactor decays[FACTOR_LIMIT], Node *inner) {
   Node bare;
   struct Factor factors[FACTOR_LIMIT];
   double coefficient = coefficient_of(graph, base, &bare);
   int count = factors_of(graph, bare, factors), found = 0;
   *inner = graph_constant(graph, coefficient);
   for (int i = 0; i < count; i++) {
-    struct Growth growth;
-    struct Decay decay;
+    struct GrowingFactor growth;
+    struct DecayingFactor decay;
     Node scaled = ONE;
     bool is_exponential = grows(graph, factors[i], &growth) && growth.operation == EXPONENTIAL;
     bool is_sum = vertex_of(graph, factors[i].base)->operation == ADD;
     if (is_sum) factors[i].base = expand(graph, factors[i].base);
     if (is_exponential && vertex_of(graph, factors[i].base)->operation == EXPONENTIAL)
-      decay = (struct Decay){function(graph, EXPONENTIAL, scale(graph, -growth.coefficient, growth.base), ZERO), 1.0};
+      decay = (struct DecayingFactor){
+          function(graph, EXPONENTIAL, scale(graph, -growth.coefficient, growth.base), ZERO), 1.0};
     else if ((is_sum || growth.operation == COSH) && factors[i].exponent > 0.0 &&
              decay_of(graph, factors[i].base, &decay)) {
       Node by = power_number(graph, decay.node, decay.power);
@@ -205,7 +207,7 @@ static int split(struct Graph *graph, Node base, struct Decay decays[FACTOR_LIMI
 }
 
 bool bounded_power(struct Graph *graph, Node base, double n, Node *result) {
-  struct Decay decays[FACTOR_LIMIT];
+  struct DecayingFactor decays[FACTOR_LIMIT];
   Node inner;
   int count = split(graph, base, decays, &inner);
   if (count == 0) return false;
@@ -224,7 +226,7 @@ static Node logarithm_of_growth(struct Graph *graph, Node decay) {
 }
 
 bool bounded_logarithm(struct Graph *graph, Node node, Node *result) {
-  struct Decay decays[FACTOR_LIMIT];
+  struct DecayingFactor decays[FACTOR_LIMIT];
   Node inner;
   int count = split(graph, node, decays, &inner);
   if (count == 0) return false;
@@ -236,7 +238,7 @@ bool bounded_logarithm(struct Graph *graph, Node node, Node *result) {
 
 /* Replaces the growing exponentials of a factor by capped ones. Returns their number; 2 if they cannot be replaced. */
 static int cap_factor(struct Graph *graph, struct Factor factor, Node *result) {
-  struct Growth growth;
+  struct GrowingFactor growth;
   Node inner;
   *result = power_number(graph, factor.base, factor.exponent);
   if (vertex_of(graph, factor.base)->operation == ADD && factor.exponent > 0.0) {
@@ -280,14 +282,14 @@ bool bounded_argument(struct Graph *graph, Node argument, Node *result) {
 }
 
 /* The bounded product of powers of a growing and of a decaying factor. */
-struct Joined {
+struct BoundedProduct {
   Node product;
   double left, right; /* the exponents in it */
 };
 
 /* Joins exp(u)^m with a decay along the same base. */
-static bool join_exponential(struct Graph *graph, const struct Growth *growth, struct Factor left, struct Factor right,
-                             struct Joined *joined) {
+static bool join_exponential(struct Graph *graph, const struct GrowingFactor *growth, struct Factor left,
+                             struct Factor right, struct BoundedProduct *joined) {
   Node base;
   const struct Vertex vertex = *vertex_of(graph, right.base);
   double coefficient = coefficient_of(graph, vertex.left, &base), rate = fabs(coefficient);
@@ -295,7 +297,7 @@ static bool join_exponential(struct Graph *graph, const struct Growth *growth, s
   if (base == growth->base && is_opposite && vertex.operation == LOGISTIC &&
       2.0 * fabs(growth->coefficient) == rate) { /* exp(u) / (1 + exp(2 u)) = 1/(2 cosh(u)) */
     Node quotient = function(graph, SECH, scale(graph, fabs(growth->coefficient), base), ZERO);
-    *joined = (struct Joined){scale(graph, 0.5, quotient), left.exponent, 1.0};
+    *joined = (struct BoundedProduct){scale(graph, 0.5, quotient), left.exponent, 1.0};
     return true;
   }
   double count = fmin(floor(fabs(growth->coefficient) / rate), floor(right.exponent));
@@ -314,7 +316,8 @@ static bool join_exponential(struct Graph *graph, const struct Growth *growth, s
 }
 
 /* Joins sinh(u) or cosh(u) with 1/cosh(u): to tanh(u), or 1. */
-static bool join_hyperbolic(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
+static bool join_hyperbolic(struct Graph *graph, struct Factor left, struct Factor right,
+                            struct BoundedProduct *joined) {
   const struct Vertex *growing = vertex_of(graph, left.base), *decaying = vertex_of(graph, right.base);
   if (decaying->operation != SECH || growing->left != decaying->left) return false;
   joined->left = joined->right = fmin(floor(left.exponent), floor(right.exponent));
@@ -324,41 +327,42 @@ static bool join_hyperbolic(struct Graph *graph, struct Factor left, struct Fact
 }
 
 /* Joins exp(u) exp(-v), where u and v are multiples of one expression. */
-static bool join_opposite(struct Graph *graph, const struct Growth *growth, struct Factor left, struct Factor right,
-                          struct Joined *joined) {
-  struct Growth other;
+static bool join_opposite(struct Graph *graph, const struct GrowingFactor *growth, struct Factor left,
+                          struct Factor right, struct BoundedProduct *joined) {
+  struct GrowingFactor other;
   if (!grows(graph, right, &other) || vertex_of(graph, right.base)->operation != EXPONENTIAL) return false;
   if (other.base != growth->base || other.coefficient * growth->coefficient > 0.0) return false;
   Node operand = scale(graph, growth->coefficient + other.coefficient, growth->base);
-  *joined = (struct Joined){function(graph, EXPONENTIAL, operand, ZERO), left.exponent, right.exponent};
+  *joined = (struct BoundedProduct){function(graph, EXPONENTIAL, operand, ZERO), left.exponent, right.exponent};
   return true;
 }
 
 /* Multiplies out a power of a sum, and each term by a decay along the same base, to the least power that bounds it. */
-static bool join_expanded(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
+static bool join_expanded(struct Graph *graph, struct Factor left, struct Factor right, struct BoundedProduct *joined) {
   enum { HIGHEST_POWER = 4 };
   Node base, sum = expand_term(graph, power_number(graph, left.base, left.exponent));
   struct Rates rates;
   coefficient_of(graph, vertex_of(graph, right.base)->left, &base);
   if (!rates_of(graph, sum, &rates) || rates.base != base) return false;
   for (int power = 1; power <= HIGHEST_POWER && power <= right.exponent; power++) {
-    *joined = (struct Joined){distribute(graph, sum, power_number(graph, right.base, power)), left.exponent, power};
+    *joined =
+        (struct BoundedProduct){distribute(graph, sum, power_number(graph, right.base, power)), left.exponent, power};
     if (is_bounded(graph, joined->product)) return true;
   }
   return false;
 }
 
-static bool join_sum(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
-  struct Decay decay;
+static bool join_sum(struct Graph *graph, struct Factor left, struct Factor right, struct BoundedProduct *joined) {
+  struct DecayingFactor decay;
   if (left.exponent < 1.0 || !decay_of(graph, left.base, &decay)) return false;
   if (decay.node != right.base || decay.power > right.exponent) return join_expanded(graph, left, right, joined);
   Node sum = distribute(graph, left.base, power_number(graph, decay.node, decay.power));
-  *joined = (struct Joined){sum, 1.0, decay.power};
+  *joined = (struct BoundedProduct){sum, 1.0, decay.power};
   return is_bounded(graph, sum);
 }
 
-static bool join(struct Graph *graph, struct Factor left, struct Factor right, struct Joined *joined) {
-  struct Growth growth;
+static bool join(struct Graph *graph, struct Factor left, struct Factor right, struct BoundedProduct *joined) {
+  struct GrowingFactor growth;
   enum Operation operation = vertex_of(graph, right.base)->operation;
   bool decays = (operation == LOGISTIC || operation == SECH) && right.exponent >= 1.0;
   if (decays && vertex_of(graph, left.base)->operation == ADD) return join_sum(graph, left, right, joined);
@@ -385,7 +389,7 @@ bool bounded_product(struct Graph *graph, const struct Factor *left, int left_co
                      int right_count, Node *result) {
   for (int i = 0; i < left_count; i++) {
     for (int j = 0; j < right_count; j++) {
-      struct Joined joined;
+      struct BoundedProduct joined;
       bool forwards = join(graph, left[i], right[j], &joined);
       if (!forwards && !join(graph, right[j], left[i], &joined)) continue;
       Node first = remaining(graph, left, left_count, i, forwards ? joined.left : joined.right);

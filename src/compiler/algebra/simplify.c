@@ -212,15 +212,15 @@ int terms_of(const struct Graph *graph, Node node, Node *terms, int limit) {
 }
 
 /* A term of a sum: coefficient times factors, which are ascending by base. factor_count is -1 for too many. */
-struct Term {
+struct SumTerm {
   Node node;
   double coefficient;
   struct Factor factors[FACTOR_LIMIT];
   int factor_count;
 };
 
-static struct Term term_of(const struct Graph *graph, Node node) {
-  struct Term term = {.node = node};
+static struct SumTerm term_of(const struct Graph *graph, Node node) {
+  struct SumTerm term = {.node = node};
   Node base;
   term.coefficient = coefficient_of(graph, node, &base);
   term.factor_count = vertex_of(graph, node)->operation == ADD ? -1 : factors_of(graph, node, term.factors);
@@ -228,7 +228,7 @@ static struct Term term_of(const struct Graph *graph, Node node) {
 }
 
 /* Removes the factors that both terms have from both. Returns their number. */
-static int common_factors(struct Term *a, struct Term *b, struct Factor *common) {
+static int common_factors(struct SumTerm *a, struct SumTerm *b, struct Factor *common) {
   int count = 0, a_count = 0, b_count = 0, i = 0, j = 0;
   while (i < a->factor_count || j < b->factor_count) {
     bool only_a = j == b->factor_count || (i < a->factor_count && a->factors[i].base < b->factors[j].base);
@@ -249,7 +249,8 @@ static int common_factors(struct Term *a, struct Term *b, struct Factor *common)
 }
 
 /* True if the term is sin(u)^2 or cos(u)^2; returns which one, and u. */
-static bool is_square_of(const struct Graph *graph, const struct Term *term, enum Operation *operation, Node *angle) {
+static bool is_square_of(const struct Graph *graph, const struct SumTerm *term, enum Operation *operation,
+                         Node *angle) {
   if (term->factor_count != 1 || term->factors[0].exponent != 2.0) return false;
   const struct Vertex *vertex = vertex_of(graph, term->factors[0].base);
   *operation = vertex->operation;
@@ -258,7 +259,7 @@ static bool is_square_of(const struct Graph *graph, const struct Term *term, enu
 }
 
 /* Combines a + b into one term, by equal factors, sin^2 + cos^2 = 1 or 1 - sin^2 = cos^2. False if none applies. */
-static bool combine(struct Graph *graph, struct Term a, struct Term b, Node *result) {
+static bool combine(struct Graph *graph, struct SumTerm a, struct SumTerm b, Node *result) {
   if (a.factor_count < 0 || b.factor_count < 0) return false;
   struct Factor common[2 * FACTOR_LIMIT];
   int count = common_factors(&a, &b, common);
@@ -298,7 +299,7 @@ Node add(struct Graph *graph, Node left, Node right) {
   if (left == ZERO) return right;
   if (right == ZERO) return left;
   Node a[TERM_LIMIT], b[TERM_LIMIT];
-  struct Term a_terms[TERM_LIMIT], b_terms[TERM_LIMIT];
+  struct SumTerm a_terms[TERM_LIMIT], b_terms[TERM_LIMIT];
   int a_count = terms_of(graph, left, a, TERM_LIMIT), b_count = terms_of(graph, right, b, TERM_LIMIT);
   for (int i = 0; i < a_count; i++) a_terms[i] = term_of(graph, a[i]);
   for (int i = 0; i < b_count; i++) b_terms[i] = term_of(graph, b[i]);

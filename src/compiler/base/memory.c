@@ -10,12 +10,12 @@
 #include "base/platform.h"
 
 /* A block of memory. All blocks form a ring, which starts and ends at `ring`. */
-struct Block {
-  struct Block *previous, *next;
+struct MemoryBlock {
+  struct MemoryBlock *previous, *next;
   max_align_t content[];
 };
 
-static struct Block ring = {&ring, &ring};
+static struct MemoryBlock ring = {&ring, &ring};
 
 static void (*handler)(void) = abort;
 
@@ -28,24 +28,24 @@ static _Noreturn void out_of_memory(void) {
   abort();
 }
 
-static struct Block *block_of(void *content) {
-  return (struct Block *)((char *)content - offsetof(struct Block, content));
+static struct MemoryBlock *block_of(void *content) {
+  return (struct MemoryBlock *)((char *)content - offsetof(struct MemoryBlock, content));
 }
 
 static size_t bytes_of(size_t count, size_t size) {
-  if (size > 0 && count > (SIZE_MAX - sizeof(struct Block)) / size) out_of_memory();
-  return sizeof(struct Block) + count * size;
+  if (size > 0 && count > (SIZE_MAX - sizeof(struct MemoryBlock)) / size) out_of_memory();
+  return sizeof(struct MemoryBlock) + count * size;
 }
 
-static void *insert(struct Block *block) {
+static void *insert(struct MemoryBlock *block) {
   if (block == NULL) out_of_memory();
-  *block = (struct Block){.previous = ring.previous, .next = &ring};
+  *block = (struct MemoryBlock){.previous = ring.previous, .next = &ring};
   ring.previous->next = block;
   ring.previous = block;
   return block->content;
 }
 
-static void *take_out(struct Block *block) {
+static void *take_out(struct MemoryBlock *block) {
   block->previous->next = block->next;
   block->next->previous = block->previous;
   return block;
@@ -64,7 +64,7 @@ void release(void *content) {
 }
 
 void release_all(void) {
-  for (struct Block *block = ring.next, *next = NULL; block != &ring; block = next) {
+  for (struct MemoryBlock *block = ring.next, *next = NULL; block != &ring; block = next) {
     next = block->next;
     free(block);
   }

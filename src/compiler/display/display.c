@@ -29,7 +29,7 @@ static const double compact = 1.4, factored = 1.25;
 static const char *text_inside(struct Display *display, Node node);
 
 /* Returns if(a > 0, ...); a closed contact is a condition by itself. */
-static char *choice_text(struct Display *display, const struct Choice *choice) {
+static char *choice_text(struct Display *display, const struct Conditional *choice) {
   const struct Graph *graph = display->graph;
   Node base = choice->guard_condition;
   double coefficient = coefficient_of(graph, base, &base);
@@ -64,7 +64,7 @@ static char *function_text(struct Display *display, Node node) {
 static const char *atom_text(struct Display *display, const struct Atoms *atoms, Node node) {
   const struct Graph *graph = display->graph;
   const char *name = displayed_name(atoms, node);
-  struct Choice choice;
+  struct Conditional choice;
   if (name != NULL) return name;
   if (graph->vertices[node].operation == SYMBOL) return graph_symbol_of(graph, node)->name;
   if (choice_of(graph, node, &choice)) return choice_text(display, &choice);
@@ -96,7 +96,8 @@ static bool is_factored(const struct Atoms *atoms, const struct Terms *terms, co
 }
 
 /* Returns the text of one form, and the weight of its length in *weight; NULL if it is too large. */
-static char *text_of_form(struct Display *display, Node node, enum Expansion expansion, bool is_whole, double *weight) {
+static char *text_of_form(struct Display *display, Node node, enum ProductExpansion expansion, bool is_whole,
+                          double *weight) {
   struct Atoms atoms = {
       .graph = display->graph, .names = display->names, .whole = is_whole ? node : (Node)-1, .expansion = expansion};
   const char *texts[ATOM_ROOM] = {NULL};
@@ -113,7 +114,7 @@ static char *text_of_form(struct Display *display, Node node, enum Expansion exp
 
 /* Returns the shortest of the forms of a node; NULL if all are too large. */
 static char *shortest_text(struct Display *display, Node node, bool is_whole) {
-  static const enum Expansion expansions[] = {EXPAND_QUADRATIC, EXPAND_ALL, EXPAND_NONE};
+  static const enum ProductExpansion expansions[] = {EXPAND_QUADRATIC, EXPAND_ALL, EXPAND_NONE};
   Node reduced = simplify_fraction(display->graph, node);
   char *best = NULL;
   double least = INFINITY;

@@ -190,7 +190,7 @@ static struct Terms terms_of_sum(struct Atoms *atoms, Node node) {
 /* Returns the terms of a node of which no limit is exceeded yet. */
 static struct Terms terms_of_node(struct Atoms *atoms, Node node) {
   const struct Vertex *vertex = &atoms->graph->vertices[node];
-  struct Choice choice;
+  struct Conditional choice;
   if (displayed_name(atoms, node) == NULL && !choice_of(atoms->graph, node, &choice)) {
     if (vertex->operation == CONSTANT) return single_term(atoms, vertex->value);
     if (vertex->operation == ADD) return terms_of_sum(atoms, node);

@@ -10,7 +10,7 @@
 enum { ATOM_ROOM = 48, TERM_ROOM = 200 };
 
 /* Which products of sums are multiplied out, and powers of sums; products of accelerations always are. */
-enum Expansion {
+enum ProductExpansion {
   EXPAND_NONE,
   EXPAND_QUADRATIC, /* those of degree 2 and more in velocities, so that terms of inertia come together */
   EXPAND_ALL
@@ -30,7 +30,7 @@ struct Atoms {
   struct Graph *graph;
   const struct NodeNames *names;
   Node whole; /* the displayed expression, which is not replaced by its name */
-  enum Expansion expansion;
+  enum ProductExpansion expansion;
   Node nodes[ATOM_ROOM];
   int count;
   size_t visits;

@@ -31,11 +31,11 @@ static struct VirtualWork work_on_positions(const struct Model *model, const Nod
     }
   }
   for (size_t i = 0; i < model->mechanism.regularization_count && kind == COORDINATE; i++) {
-    Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
+    Node moved = model->mechanism.regularizations[i].constraint, acceleration = moved;
     if (is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    virtual_work_add(&work, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
+    virtual_work_add(&work, moved, multiply(graph, model->mechanism.regularizations[i].inertia, acceleration));
   }
   return work;
 }
@@ -70,10 +70,10 @@ static struct VirtualWork work_on_velocities(const struct Model *model, const No
     }
   }
   for (size_t i = 0; i < model->mechanism.regularization_count && kind == COORDINATE; i++) {
-    Node moved = model->mechanism.stillnesses[i].constraint, acceleration = moved;
+    Node moved = model->mechanism.regularizations[i].constraint, acceleration = moved;
     if (!is_rate(graph, moved)) continue;
     derivative_along(graph, &acceleration, 1, seeds, &acceleration);
-    virtual_work_add(&work, moved, multiply(graph, model->mechanism.stillnesses[i].inertia, acceleration));
+    virtual_work_add(&work, moved, multiply(graph, model->mechanism.regularizations[i].inertia, acceleration));
   }
   return work;
 }
@@ -96,9 +96,9 @@ Node energy_of_regularization(const struct Model *model) {
   struct Graph *graph = model->graph;
   Node *seeds = time_seeds(model, false), energy = ZERO;
   for (size_t i = 0; i < model->mechanism.regularization_count; i++) {
-    Node rate = model->mechanism.stillnesses[i].constraint;
+    Node rate = model->mechanism.regularizations[i].constraint;
     if (!is_rate(graph, rate)) derivative_along(graph, &rate, 1, seeds, &rate);
-    Node term = multiply(graph, model->mechanism.stillnesses[i].inertia, power_number(graph, rate, 2.0));
+    Node term = multiply(graph, model->mechanism.regularizations[i].inertia, power_number(graph, rate, 2.0));
     energy = add(graph, energy, scale(graph, 0.5, term));
   }
   return energy;

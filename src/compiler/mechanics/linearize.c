@@ -12,7 +12,7 @@
 #include "base/memory.h"
 
 /* Expansion of the variables at the operating point: states, inputs, accelerations and constraint forces. */
-struct Expansion {
+struct LinearizationSeries {
   struct Graph *graph;
   Node *values;     /* of each symbol: its value at the point; parameters stay */
   Node *deviations; /* of each symbol: symbol - value; ZERO for parameters */
@@ -23,17 +23,17 @@ enum {
   EXPANDED = STATES_AND_INPUTS | 1u << ACCELERATION,
 };
 
-static Node at_point(const struct Expansion *expansion, Node node) {
+static Node at_point(const struct LinearizationSeries *expansion, Node node) {
   Node value;
   substitute(expansion->graph, &node, 1, expansion->values, &value);
   return value;
 }
 
-static Node deviation_of(const struct Expansion *expansion, Node symbol) {
+static Node deviation_of(const struct LinearizationSeries *expansion, Node symbol) {
   return expansion->deviations[expansion->graph->vertices[symbol].left];
 }
 
-static void set_value(struct Expansion *expansion, Node symbol, Node value) {
+static void set_value(struct LinearizationSeries *expansion, Node symbol, Node value) {
   Node number = expansion->graph->vertices[symbol].left;
   expansion->values[number] = value;
   expansion->deviations[number] = subtract(expansion->graph, symbol, value);
@@ -43,9 +43,9 @@ static Node point_of(const struct Model *model, Node symbol) {
   return model->point.values[model->graph->vertices[symbol].left];
 }
 
-static struct Expansion expansion_create(const struct Model *model) {
+static struct LinearizationSeries expansion_create(const struct Model *model) {
   struct Graph *graph = model->graph;
-  struct Expansion expansion = {.graph = graph};
+  struct LinearizationSeries expansion = {.graph = graph};
   expansion.values = own_symbols(graph);
   expansion.deviations = allocate(graph->symbol_count, sizeof(Node));
   const struct VariableList *lists[] = {&model->coordinates, &model->velocities, &model->states, &model->inputs};
@@ -58,7 +58,7 @@ static struct Expansion expansion_create(const struct Model *model) {
 }
 
 /* Returns factor * sum over symbols s of (d node / d s at the point) * deviation of s. */
-static Node change_of(const struct Expansion *expansion, Node node, double factor) {
+static Node change_of(const struct LinearizationSeries *expansion, Node node, double factor) {
   struct Graph *graph = expansion->graph;
   struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
   Node change = ZERO;
@@ -70,13 +70,13 @@ static Node change_of(const struct Expansion *expansion, Node node, double facto
 }
 
 /* Returns the Taylor polynomial of degree 1 at the point. */
-static Node expand(const struct Expansion *expansion, Node node) {
+static Node expand(const struct LinearizationSeries *expansion, Node node) {
   Node change = change_of(expansion, node, 1.0);
   return add(expansion->graph, at_point(expansion, node), change);
 }
 
 /* Returns the Taylor polynomial of degree 2 at the point. */
-static Node expand_twice(const struct Expansion *expansion, Node node) {
+static Node expand_twice(const struct LinearizationSeries *expansion, Node node) {
   struct Graph *graph = expansion->graph;
   struct Gradient slopes = gradient_by_kinds(graph, node, EXPANDED);
   Node result = at_point(expansion, node);
@@ -125,8 +125,8 @@ static void solve_block(struct Graph *graph, const struct InertiaBlock *block, s
 }
 
 /* Computes the accelerations and constraint forces at the point. */
-static void find_values(struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
-                        const struct Inertia *inertia, Node *value) {
+static void find_values(struct LinearizationSeries *expansion, const struct Model *model,
+                        const struct Equations *equations, const struct Inertia *inertia, Node *value) {
   Node *right = allocate(inertia->count, sizeof *right);
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];
@@ -153,7 +153,7 @@ static size_t join_symbols(const struct Gradient *gradients, size_t count, Node 
 }
 
 /* Solves M da = -(d residual / d s) ds for a block, with M and the accelerations at the point. */
-static void linearize_block(const struct Expansion *expansion, const struct Equations *equations,
+static void linearize_block(const struct LinearizationSeries *expansion, const struct Equations *equations,
                             const struct InertiaBlock *block, Node *acceleration) {
   struct Graph *graph = expansion->graph;
   struct Gradient *gradients = allocate(block->count, sizeof *gradients);
@@ -213,7 +213,7 @@ static Node without_unknowns(const struct Model *model, const struct Equations *
 }
 
 /* True if the point fulfils the constraints and their time derivatives. */
-static bool fulfils_constraints(const struct Expansion *expansion, const struct Model *model,
+static bool fulfils_constraints(const struct LinearizationSeries *expansion, const struct Model *model,
                                 const struct Equations *equations, struct Diagnostics *diagnostics) {
   const struct Constraints *constraints = equations->constraints;
   Node *levels = allocate(2 * constraints->count, sizeof *levels);
@@ -234,8 +234,8 @@ static bool fulfils_constraints(const struct Expansion *expansion, const struct 
 }
 
 /* Fills in the equations: affine in states and inputs, with energies of degree 2. */
-static void expand_all(const struct Expansion *expansion, const struct Model *model, const struct Equations *equations,
-                       struct Equations *linear) {
+static void expand_all(const struct LinearizationSeries *expansion, const struct Model *model,
+                       const struct Equations *equations, struct Equations *linear) {
   struct Graph *graph = expansion->graph;
   for (size_t b = 0; b < linear->inertia->block_count; b++)
     linearize_block(expansion, equations, &linear->inertia->blocks[b], linear->acceleration);
@@ -261,7 +261,7 @@ static void expand_all(const struct Expansion *expansion, const struct Model *mo
 struct Equations *linearize(const struct Model *model, const struct Equations *equations,
                             struct Diagnostics *diagnostics) {
   if (!can_be_linearized(model, equations, diagnostics)) return NULL;
-  struct Expansion expansion = expansion_create(model);
+  struct LinearizationSeries expansion = expansion_create(model);
   struct Equations *linear = equations_create(model);
   linear->explicit_form = true;
   linear->inertia = inertia_substitute(model->graph, equations->inertia, expansion.values);

@@ -41,7 +41,7 @@ static struct Elements mass_elements(const struct Model *model) {
 }
 
 /* Returns the components of coordinates that M couples, with the regularized constraints. */
-static struct Components couplings(const struct Matrices *matrices) {
+static struct ConnectedComponents couplings(const struct Matrices *matrices) {
   const struct Elements *jacobian = &matrices->constraints->jacobian;
   size_t *first = allocate(matrices->constraints->count, sizeof *first); /* 1 + a coordinate of each constraint */
   struct Elements all = {0};
@@ -57,14 +57,14 @@ static struct Components couplings(const struct Matrices *matrices) {
 }
 
 /* Returns the index of each coordinate in its component; counts the coordinates of each component. */
-static size_t *indices_in(const struct Components *components, size_t count, size_t *sizes) {
+static size_t *indices_in(const struct ConnectedComponents *components, size_t count, size_t *sizes) {
   size_t *indices = allocate(count, sizeof *indices);
   for (size_t i = 0; i < count; i++) indices[i] = sizes[components->of[i]]++;
   return indices;
 }
 
 /* Adds M, and j^T j for the row j of each regularized constraint, to the dense matrices of the components. */
-static void fill(const struct Matrices *matrices, const struct Components *components, const size_t *indices,
+static void fill(const struct Matrices *matrices, const struct ConnectedComponents *components, const size_t *indices,
                  const size_t *sizes, double **dense) {
   const struct Elements *mass = &matrices->mass, *jacobian = &matrices->constraints->jacobian;
   for (size_t k = 0; k < mass->count; k++) {
@@ -129,7 +129,7 @@ static bool hold_motion(struct Matrices *matrices, const double *z) {
 /* Regularizes one null vector of each component. False if nothing changed. */
 static bool hold_motions(struct Matrices *matrices) {
   size_t n = matrices->count;
-  struct Components components = couplings(matrices);
+  struct ConnectedComponents components = couplings(matrices);
   size_t *sizes = allocate(components.count, sizeof *sizes), *indices = indices_in(&components, n, sizes);
   double **dense = allocate(components.count, sizeof *dense), *z = allocate(n, sizeof *z),
          *all = allocate(n, sizeof *all);
@@ -195,16 +195,17 @@ static double square_of_row(const struct Matrices *matrices, size_t row, const d
  * Appends the regularizations. Each inertia is about the smallest that its constraint couples. A larger one would swamp
  * that by its rounding errors; a smaller one would cost digits of the forces on coordinates without inertia.
  */
-static void append_stillnesses(const struct Matrices *matrices, struct Model *model) {
+static void append_regularizations(const struct Matrices *matrices, struct Model *model) {
   struct Graph *graph = model->graph;
   double *symbols = start_values(model), *at_start = graph_evaluate(graph, symbols);
   Node *inertias = inertias_of(matrices, at_start);
   for (size_t j = 0; j < model->constraints.count; j++) {
     if (!matrices->is_regularized[j]) continue;
     Node inertia = harmonic_inertia(matrices, j, inertias);
-    model->mechanism.stillnesses = make_room(model->mechanism.stillnesses, model->mechanism.regularization_count,
-                                             sizeof *model->mechanism.stillnesses);
-    model->mechanism.stillnesses[model->mechanism.regularization_count++] = (struct Regularization){
+    model->mechanism.regularizations =
+        make_room(model->mechanism.regularizations, model->mechanism.regularization_count,
+                  sizeof *model->mechanism.regularizations);
+    model->mechanism.regularizations[model->mechanism.regularization_count++] = (struct Regularization){
         model->constraints.items[j].node, scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)};
   }
 }
@@ -235,5 +236,5 @@ void hold_massless_coordinates(struct Model *model) {
   matrices.values = values_somewhere(&matrices, model->graph);
   bool any = false;
   while (hold_motions(&matrices)) any = true;
-  if (any) append_stillnesses(&matrices, model);
+  if (any) append_regularizations(&matrices, model);
 }

@@ -152,7 +152,7 @@ struct Mechanism {
   size_t shape_count;
   struct VariableList element_variables; /* positions, velocities, lengths and forces of elements, as nodes */
   struct Vector gravity;                 /* m/s2: the acceleration of <gravity>, along the base's axes */
-  struct Regularization *stillnesses;
+  struct Regularization *regularizations;
   size_t regularization_count;
 };
 

@@ -62,7 +62,7 @@ struct Assignment {
 };
 
 /* Sampling times base + count period. These are modes, since base and period change when the period is changed. */
-struct Sample {
+struct SampleClock {
   Node base, count, period;
   Node every, offset; /* period and first time, constant between events */
   Node branch;        /* mode of the branch that switches at the next time */
@@ -71,12 +71,12 @@ struct Sample {
 /* An <event> or <sample>. All values are computed before the first assignment. */
 struct Event {
   enum Passage passage;
-  struct Sample sample; /* with PASSAGE_SAMPLES */
-  Node condition;       /* of modes only: positive if the condition holds; for an expression, its sign */
-  Node expression;      /* whose zero crossing is the event; ZERO for conditions and samples */
-  Node last_sign;       /* of an expression, the mode with its last nonzero sign; else ZERO */
-  long line;            /* of the sample, or of when, for messages */
-  bool is_of_contacts;  /* the condition depends on contacts, frictions or constraint forces */
+  struct SampleClock sample; /* with PASSAGE_SAMPLES */
+  Node condition;            /* of modes only: positive if the condition holds; for an expression, its sign */
+  Node expression;           /* whose zero crossing is the event; ZERO for conditions and samples */
+  Node last_sign;            /* of an expression, the mode with its last nonzero sign; else ZERO */
+  long line;                 /* of the sample, or of when, for messages */
+  bool is_of_contacts;       /* the condition depends on contacts, frictions or constraint forces */
   struct Assignment *assignments;
   size_t assignment_count;
   char *text; /* for messages: the condition, or the period of a sample */

@@ -24,11 +24,11 @@ static void weigh_fixed(const struct Program *program, struct CodeGenerator *gen
                         const struct LoopedBlock *looped) {
   const struct Model *model = program->model;
   const struct InertiaBlock *block = looped->block;
-  Slot weight = slot_in(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
+  Slot weight = slot_at(SPACE_NUMBER, graph_constant(model->graph, weight_of_fixed));
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     if (row >= model->coordinates.count || !model->coordinates.items[row].is_fixed) continue;
-    Slot mass = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    Slot mass = slot_at(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
     ir_append(generator->ir, PRODUCT, mass, mass, weight, 0);
   }
 }
@@ -38,7 +38,7 @@ static void leave_nonsymmetric_out(struct CodeGenerator *generator, const struct
   const struct InertiaBlock *block = looped->block;
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    generator_copy(generator, slot_in(SPACE_MASS, first + i), ZERO);
+    generator_copy(generator, slot_at(SPACE_MASS, first + i), ZERO);
 }
 
 /* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */
@@ -64,8 +64,8 @@ static void append_block(const struct Program *program, struct CodeGenerator *ge
   append_solved(program, generator, number, right_side, starting);
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
-    Slot pivot = slot_in(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
-    if (row < n) ir_copy(generator->ir, target_slot(row), slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+    Slot pivot = slot_at(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    if (row < n) ir_copy(generator->ir, target_slot(row), slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
     else ir_copy(generator->ir, target_slot(row + constraints), pivot);
   }
 }
@@ -161,7 +161,7 @@ struct IrFunction *build_responses(const struct Program *program, struct CodeGen
     for (size_t i = 0; i < block->count; i++)
       if (block->coordinates[i] < n)
         ir_copy(generator->ir, target_slot(block->coordinates[i]),
-                slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+                slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
   return ir;
 }

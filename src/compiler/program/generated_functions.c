@@ -31,7 +31,7 @@ static struct IrFunction *build_derivatives(const struct Program *program, struc
   const struct NodeList *rates = &program->equations->rates;
   hold_unknowns(generator, program->equations, &program->blocks, program->expressions->unknowns);
   generator_compute(generator, rates->nodes, rates->count, false);
-  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_in(SPACE_STATE, n + i));
+  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_at(SPACE_STATE, n + i));
   for (size_t i = 0; i < rates->count; i++) generator_copy(generator, target_slot(2 * n + i), rates->nodes[i]);
   return ir;
 }
@@ -59,7 +59,7 @@ static struct BlockRows block_rows_create(const struct LoopedBlocks *blocks, siz
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++) {
       rows.number[looped->block->coordinates[i]] = b + 1;
-      rows.right_side[looped->block->coordinates[i]] = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i);
+      rows.right_side[looped->block->coordinates[i]] = slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i);
     }
   }
   return rows;
@@ -97,7 +97,7 @@ static struct IrFunction *build_directional(const struct Program *program, struc
   append_along(program, generator, n, n, expressions->rates_along, rates);
   hold_solutions(generator, &program->blocks, expressions->unknowns_along);
   generator_compute(generator, expressions->rates_along, rates, false);
-  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_in(SPACE_SEED_STATE, n + i));
+  for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_at(SPACE_SEED_STATE, n + i));
   for (size_t i = 0; i < rates; i++) generator_copy(generator, target_slot(2 * n + i), expressions->rates_along[i]);
   return ir;
 }
@@ -113,7 +113,7 @@ static void append_multipliers(const struct Program *program, struct CodeGenerat
     append_solution(generator, &program->blocks, b, gradient->right_side);
     for (size_t i = 0; i < block->count; i++)
       generator_define(generator, gradient->multiplier[block->coordinates[i]],
-                       slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+                       slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 
@@ -216,7 +216,7 @@ static struct IrFunction *build_accelerations(const struct Program *program, str
   struct IrFunction *ir = generator_begin(generator);
   append_accelerations(generator, program->equations, &program->blocks, true);
   for (size_t i = 0; i < row_count(program->equations); i++)
-    ir_copy(generator->ir, target_slot(i), slot_in(SPACE_ACCELERATION, i));
+    ir_copy(generator->ir, target_slot(i), slot_at(SPACE_ACCELERATION, i));
   return ir;
 }
 

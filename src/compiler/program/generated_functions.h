@@ -41,7 +41,7 @@ enum FunctionName {
 };
 
 /* The result of a generated function: none; 0 or 1 + a singular coordinate; a number. */
-enum Returned { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
+enum ReturnKind { RETURNS_NOTHING, RETURNS_STATUS, RETURNS_VALUE };
 
 /* Where a function reads or leaves the accelerations: its workspace, the array that it fills, or an argument. */
 enum Accelerations { IN_WORKSPACE, IN_TARGET, IN_ARGUMENT };
@@ -54,7 +54,7 @@ struct GeneratedFunction {
   const char *comment, *name;
   const char *arguments; /* the declared parameter list */
   const char *target;    /* the array argument that it fills; NULL if it returns a value */
-  enum Returned returned;
+  enum ReturnKind returned;
   enum Accelerations accelerations;
   enum FunctionGroup group;                         /* the struct that has its field, of the same name */
   bool (*is_needed)(const struct Program *program); /* true if the system needs it; NULL: every system does */

@@ -15,25 +15,25 @@
 #include "base/memory.h"
 
 /* A constraint, with the slots of its numbers in the block that is factored at run time. */
-struct Row {
+struct ForceRow {
   Slot right_side, target, force;
   Slot change;     /* its element of dJ w, if has_change */
   bool has_change; /* it has a nonzero element of dJ w */
   bool is_looped;  /* in a block that is factored at run time; no other constraint is redundant */
 };
 
-static struct Row *rows_create(const struct Program *program) {
+static struct ForceRow *rows_create(const struct Program *program) {
   size_t n = program->equations->count;
-  struct Row *rows = allocate(program->equations->constraints->count, sizeof *rows);
+  struct ForceRow *rows = allocate(program->equations->constraints->count, sizeof *rows);
   for (size_t b = 0; b < program->blocks.count; b++) {
     const struct LoopedBlock *looped = &program->blocks.items[b];
     for (size_t i = 0; i < looped->block->count; i++) {
       size_t row = looped->block->coordinates[i];
       if (row >= n)
-        rows[row - n] = (struct Row){.right_side = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
-                                     .target = target_slot(row),
-                                     .is_looped = true,
-                                     .force = slot_in(SPACE_ACCELERATION, row)};
+        rows[row - n] = (struct ForceRow){.right_side = slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i),
+                                          .target = target_slot(row),
+                                          .is_looped = true,
+                                          .force = slot_at(SPACE_ACCELERATION, row)};
     }
   }
   return rows;
@@ -41,12 +41,12 @@ static struct Row *rows_create(const struct Program *program) {
 
 /* Solves K (w; y) = (0; F) for the block, whose right side then holds w. */
 static void append_origins(const struct Program *program, struct CodeGenerator *generator, size_t number,
-                           const struct Row *rows) {
+                           const struct ForceRow *rows) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   size_t n = program->equations->count;
   for (size_t i = 0; i < looped->block->count; i++) {
     size_t row = looped->block->coordinates[i];
-    Slot right_side = slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i);
+    Slot right_side = slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i);
     if (row < n) generator_copy(generator, right_side, ZERO);
     else ir_copy(generator->ir, right_side, rows[row - n].force);
   }
@@ -57,18 +57,18 @@ static Slot right_side_of(const struct Program *program, size_t coordinate) {
   const struct Inertia *inertia = program->equations->inertia;
   for (size_t b = 0; b < program->blocks.count; b++)
     if (program->blocks.items[b].block == inertia_block_of(inertia, coordinate))
-      return slot_in(SPACE_RIGHT_SIDE, program->blocks.items[b].first_right_side + inertia->index_in_block[coordinate]);
+      return slot_at(SPACE_RIGHT_SIDE, program->blocks.items[b].first_right_side + inertia->index_in_block[coordinate]);
   return 0;
 }
 
 /* Computes dJ w into local variables. */
-static void append_changes(const struct Program *program, struct CodeGenerator *generator, struct Row *rows) {
+static void append_changes(const struct Program *program, struct CodeGenerator *generator, struct ForceRow *rows) {
   const struct Elements *jacobian = &program->equations->constraints->jacobian;
   const Node *along = program->expressions->constraints_along;
   generator_compute(generator, along, jacobian->count, false);
   for (size_t k = 0; k < jacobian->count; k++) {
     if (along[k] == ZERO) continue;
-    struct Row *row = &rows[jacobian->positions[k].row];
+    struct ForceRow *row = &rows[jacobian->positions[k].row];
     if (!row->is_looped) continue;
     Slot term = ir_new_local(generator->ir), right_side = right_side_of(program, jacobian->positions[k].column);
     ir_append(generator->ir, PRODUCT, term, generator_slot(generator, along[k]), right_side, 0);
@@ -87,7 +87,7 @@ static bool any_changes(const struct Program *program) {
 }
 
 void append_least_forces_along(const struct Program *program, struct CodeGenerator *generator) {
-  struct Row *rows = rows_create(program);
+  struct ForceRow *rows = rows_create(program);
   size_t count = program->equations->constraints->count;
   const struct LoopedBlocks *blocks = &program->blocks;
   bool has_change = any_changes(program);

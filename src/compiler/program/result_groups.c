@@ -13,7 +13,7 @@
 enum { LONG_ENOUGH = 1000, SIZE_LIMIT = 1024, OPEN_GROUPS = 4 };
 
 /* A group that objects can still join, and the nodes that it needs. */
-struct Group {
+struct ResultGroup {
   size_t leader, size;
   bool *needs; /* indexed by node */
   struct NodeList needed;
@@ -22,19 +22,19 @@ struct Group {
 
 /* The groups that can still grow, replaced in turn. */
 struct OpenGroups {
-  struct Group groups[OPEN_GROUPS];
+  struct ResultGroup groups[OPEN_GROUPS];
   size_t next; /* index of the group that the next new one replaces */
 };
 
 /* True if the object in the cone may join: the group then needs at most 1.5 times the nodes of each object. */
-static bool may_join(const struct Cone *cone, const struct Group *group, size_t things) {
+static bool may_join(const struct Cone *cone, const struct ResultGroup *group, size_t things) {
   size_t shortest = smaller(cone->count, group->shortest), count = group->needed.count;
   if (group->size == 0 || group->size + things > SIZE_LIMIT) return false;
   for (size_t i = 0; i < cone->count; i++) count += !group->needs[cone->nodes[i]];
   return 2 * count <= 3 * shortest;
 }
 
-static void begin(const struct Graph *graph, struct Group *group, size_t leader) {
+static void begin(const struct Graph *graph, struct ResultGroup *group, size_t leader) {
   if (group->needs == NULL) group->needs = allocate(graph->count, sizeof *group->needs);
   for (size_t i = 0; i < group->needed.count; i++) group->needs[group->needed.nodes[i]] = false;
   group->needed.count = 0;
@@ -43,7 +43,7 @@ static void begin(const struct Graph *graph, struct Group *group, size_t leader)
   group->shortest = SIZE_MAX;
 }
 
-static void add_needs(const struct Cone *cone, struct Group *group) {
+static void add_needs(const struct Cone *cone, struct ResultGroup *group) {
   group->shortest = smaller(cone->count, group->shortest);
   for (size_t i = 0; i < cone->count; i++) {
     if (group->needs[cone->nodes[i]]) continue;
@@ -53,18 +53,19 @@ static void add_needs(const struct Cone *cone, struct Group *group) {
 }
 
 /* Returns the group that the object joins, or a new one in place of the oldest. */
-static struct Group *find_group(const struct Needs *needs, struct OpenGroups *open, size_t leader, size_t things) {
+static struct ResultGroup *find_group(const struct NeededNodes *needs, struct OpenGroups *open, size_t leader,
+                                      size_t things) {
   for (size_t i = 0; i < OPEN_GROUPS; i++)
     if (may_join(needs->cone, &open->groups[i], things)) return &open->groups[i];
-  struct Group *group = &open->groups[open->next];
+  struct ResultGroup *group = &open->groups[open->next];
   open->next = (open->next + 1) % OPEN_GROUPS;
   begin(needs->graph, group, leader);
   return group;
 }
 
 /* Assigns the object with the results first .. first + size - 1 to a group. */
-static void slot_thing(struct ResultGroups *groups, struct Needs *needs, const Node *result, size_t first, size_t size,
-                       struct OpenGroups *open) {
+static void assign_object(struct ResultGroups *groups, struct NeededNodes *needs, const Node *result, size_t first,
+                          size_t size, struct OpenGroups *open) {
   const struct Cone *cone = needs->cone;
   for (size_t i = 0; i < size; i++) {
     groups->leader[first + i] = first;
@@ -72,7 +73,7 @@ static void slot_thing(struct ResultGroups *groups, struct Needs *needs, const N
   }
   needs_collect(needs, result + first, size, false);
   if (cone->count < LONG_ENOUGH) return;
-  struct Group *group = find_group(needs, open, first, size);
+  struct ResultGroup *group = find_group(needs, open, first, size);
   add_needs(cone, group);
   for (size_t i = 0; i < size; i++) {
     groups->leader[first + i] = group->leader;
@@ -84,7 +85,7 @@ struct ResultGroups result_groups_of(const struct Expressions *expressions) {
   const struct Interface *interface = expressions->interface;
   const struct Graph *graph = expressions->model->graph;
   struct ResultGroups groups = groups_of_one(interface->result_count);
-  struct Needs *needs = needs_create(graph);
+  struct NeededNodes *needs = needs_create(graph);
   struct OpenGroups open[2] = {0}; /* without and with accelerations, which may be undetermined */
   for (size_t i = 0; i < interface->count && graph_limit(graph) == NULL; i++) {
     const struct InterfaceVariable *variable = &interface->variables[i];
@@ -92,7 +93,7 @@ struct ResultGroups result_groups_of(const struct Expressions *expressions) {
     if (variable->entry.kind != VARIABLE_RESULT || variable->is_continued) continue;
     while (i + size < interface->count && variable[size].is_continued) size++;
     bool has_accelerations = graph_depends_on(graph, expressions->result[first], ACCELERATION);
-    slot_thing(&groups, needs, expressions->result, first, size, &open[has_accelerations]);
+    assign_object(&groups, needs, expressions->result, first, size, &open[has_accelerations]);
   }
   return groups;
 }

@@ -120,7 +120,7 @@ static void check_quaternions(const struct Reader *reader, const double *values)
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     for (size_t k = 0; k < model->mechanism.regularization_count; k++)
-      if (model->mechanism.stillnesses[k].constraint == constraint->node && values[constraint->node] == -1)
+      if (model->mechanism.regularizations[k].constraint == constraint->node && values[constraint->node] == -1)
         report_error(reader->diagnostics, constraint->line,
                      "the quaternion of %.*s is 0 at the start values; expected a norm of 1, such as start=\"1\" of "
                      "its first coordinate",

@@ -4,7 +4,7 @@
 #include "base/memory.h"
 
 /* An element that needs a derivative of a state. */
-struct Need {
+struct DerivativeNeed {
   const struct Reader *reader;
   long line;
   const char *what; /* such as "the position of 'bob'" */
@@ -21,7 +21,7 @@ static const struct Symbol *first_of(const struct Model *model, Node node, unsig
   return gradient.count > 0 ? graph_symbol_of(model->graph, gradient.symbols[0]) : NULL;
 }
 
-static void report_missing(const struct Need *need, const struct Variable *state, const struct Variable *of,
+static void report_missing(const struct DerivativeNeed *need, const struct Variable *state, const struct Variable *of,
                            const struct Symbol *symbol, const char *remedy) {
   const char *way =
       of == state ? "whose rate depends on" : format_text("which depends on the rate of '%s', and so on", of->name);
@@ -31,7 +31,7 @@ static void report_missing(const struct Need *need, const struct Variable *state
 }
 
 /* A rate with accelerations or forces would make the equations of motion depend on their own results. */
-static bool follows_first(const struct Need *need, const struct Variable *state, const struct Variable *of) {
+static bool follows_first(const struct DerivativeNeed *need, const struct Variable *state, const struct Variable *of) {
   const struct Symbol *symbol = first_of(need->reader->model, of->rate, KIND(ACCELERATION) | KIND(REACTION));
   if (symbol != NULL)
     report_missing(need, state, of, symbol, "a rate of coordinates, velocities, states, inputs and time");
@@ -39,7 +39,7 @@ static bool follows_first(const struct Need *need, const struct Variable *state,
 }
 
 /* The time derivative of a rate contains accelerations and derivatives of inputs. */
-static bool follows_second(const struct Need *need, const struct Variable *state) {
+static bool follows_second(const struct DerivativeNeed *need, const struct Variable *state) {
   const struct Model *model = need->reader->model;
   const struct Symbol *velocity = first_of(model, state->rate, KIND(VELOCITY));
   if (velocity != NULL) {
@@ -61,12 +61,12 @@ static bool follows_second(const struct Need *need, const struct Variable *state
 }
 
 /* Notes that a state moves a mass, so that what moves the state does work. */
-static void note_moving_state(const struct Need *need, Node node) {
+static void note_moving_state(const struct DerivativeNeed *need, Node node) {
   struct Model *model = need->reader->model;
   model->given.states_move |= graph_depends_on(model->graph, node, STATE);
 }
 
-static void require_derivatives(const struct Need *need, Node node) {
+static void require_derivatives(const struct DerivativeNeed *need, Node node) {
   const struct Model *model = need->reader->model;
   const struct Gradient states = gradient_by_kinds(model->graph, node, KIND(STATE));
   for (size_t i = 0; i < states.count; i++) {
@@ -76,7 +76,7 @@ static void require_derivatives(const struct Need *need, Node node) {
 }
 
 /* In a <kinetic>, the rate of a state must not depend on coordinates, whose momentum it would change. */
-static void require_free_rates(const struct Need *need, Node node) {
+static void require_free_rates(const struct DerivativeNeed *need, Node node) {
   const struct Model *model = need->reader->model;
   const struct Gradient states = gradient_by_kinds(model->graph, node, KIND(STATE));
   for (size_t i = 0; i < states.count; i++) {
@@ -92,7 +92,7 @@ static void check_bodies(const struct Reader *reader) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
   for (size_t i = 0; i < mechanism->body_count; i++) {
     const struct Body *body = &mechanism->bodies[i];
-    struct Need need = {reader, body->line, format_text("the position of '%s'", body->name), true};
+    struct DerivativeNeed need = {reader, body->line, format_text("the position of '%s'", body->name), true};
     const struct Pose *pose = &mechanism->frames[body->frame].pose;
     for (int component = 0; component < 4; component++) {
       bool has_mass = (component < 3 ? body->mass.node : body->inertia.node) != ZERO;
@@ -114,15 +114,15 @@ void check_moving_states(const struct Reader *reader) {
   const struct Model *model = reader->model;
   if (model->states.count == 0 || reader->diagnostics->errors > 0) return;
   check_bodies(reader);
-  const struct Need of_energy = {reader, 0, "the kinetic energy", false};
+  const struct DerivativeNeed of_energy = {reader, 0, "the kinetic energy", false};
   require_derivatives(&of_energy, model->energies.explicit_kinetic.node);
   require_free_rates(&of_energy, model->energies.explicit_kinetic.node);
   note_moving_state(&of_energy, model->energies.explicit_kinetic.node);
   for (size_t i = 0; i < model->constraints.count; i++) {
     const struct Variable *constraint = &model->constraints.items[i];
     bool is_second = !graph_depends_on(model->graph, constraint->node, VELOCITY);
-    const struct Need need = {reader, constraint->line, format_text("the constraint '%s'", constraint->name),
-                              is_second};
+    const struct DerivativeNeed need = {reader, constraint->line, format_text("the constraint '%s'", constraint->name),
+                                        is_second};
     require_derivatives(&need, constraint->node);
   }
 }

@@ -47,14 +47,14 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding) {
           encoding->local_count, program->blocks.mass_count, program->blocks.right_side_count);
 }
 
-static void write_words(FILE *file, const char *name, const struct Words *words) {
+static void write_words(FILE *file, const char *name, const struct WordList *words) {
   fprintf(file, "static const uint32_t %s_code[] = {\n", name);
   for (size_t i = 0; i < words->count; i++) fprintf(file, i % 16 == 15 ? "%u,\n" : "%u,", words->items[i]);
   fputs("};\n", file);
 }
 
 static void write_table(FILE *file, const struct Encoding *encoding, const char *name, const struct IrFunction *ir) {
-  struct Words words = {0};
+  struct WordList words = {0};
   encode(encoding, ir, &words);
   write_words(file, name, &words);
   fputs("\n", file);
@@ -138,7 +138,7 @@ static void write_limit(FILE *file, const struct Encoding *encoding) {
     else fputs("NULL", file);
     fputs(", ", file);
     write_c_number(file, check.share);
-    fprintf(file, ", %u, %s, %u},\n", check.exponent, check.is_gated ? "true" : "false", check.guard_condition);
+    fprintf(file, ", %u, %s, %u},\n", check.exponent, check.is_guarded ? "true" : "false", check.guard_condition);
   }
   fputs("};\n\n", file);
   write_head(file, FUNCTION_LIMIT, "", checks->count);

@@ -6,14 +6,14 @@
 enum { PART_LENGTH = 1500 };
 
 /* Where a local variable is used. */
-struct Local {
+struct LocalUse {
   /* part: the part that computes it; shared: 1 + its index in the shared space, 0 if only one part uses it */
   size_t part, shared;
 };
 
-static void note_use(struct Local *locals, Slot slot, size_t part, size_t *shared_count) {
+static void note_use(struct LocalUse *locals, Slot slot, size_t part, size_t *shared_count) {
   if (space_of(slot) != SPACE_LOCAL) return;
-  struct Local *local = &locals[index_in(slot)];
+  struct LocalUse *local = &locals[index_in(slot)];
   if (local->part != part && local->shared == 0) local->shared = ++*shared_count;
 }
 
@@ -23,8 +23,8 @@ static size_t end_of_part(const struct IrFunction *ir, size_t steady_count, size
   return first < steady_count && end > steady_count ? steady_count : end;
 }
 
-static struct Local *find_shared(const struct IrFunction *ir, size_t steady_count, size_t *shared_count) {
-  struct Local *locals = allocate(ir->local_count, sizeof *locals);
+static struct LocalUse *find_shared(const struct IrFunction *ir, size_t steady_count, size_t *shared_count) {
+  struct LocalUse *locals = allocate(ir->local_count, sizeof *locals);
   for (size_t i = 0, part = 0, end = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     if (i == end) {
@@ -40,14 +40,14 @@ static struct Local *find_shared(const struct IrFunction *ir, size_t steady_coun
 }
 
 /* Returns the slot in a part. keeps_accelerations: they come first in the shared space. */
-static Slot placed(const struct Local *locals, bool keeps_accelerations, Slot slot) {
+static Slot placed(const struct LocalUse *locals, bool keeps_accelerations, Slot slot) {
   if (space_of(slot) == SPACE_ACCELERATION && keeps_accelerations)
-    return slot_in((enum Space)SPACE_SHARED, index_in(slot));
+    return slot_at((enum Space)SPACE_SHARED, index_in(slot));
   if (space_of(slot) != SPACE_LOCAL || locals[index_in(slot)].shared == 0) return slot;
-  return slot_in((enum Space)SPACE_SHARED, locals[index_in(slot)].shared - 1);
+  return slot_at((enum Space)SPACE_SHARED, locals[index_in(slot)].shared - 1);
 }
 
-static struct IrFunction *part_of(const struct IrFunction *ir, const struct Local *locals, bool keeps_accelerations,
+static struct IrFunction *part_of(const struct IrFunction *ir, const struct LocalUse *locals, bool keeps_accelerations,
                                   size_t first, size_t end) {
   struct IrFunction *part = ir_create();
   for (size_t i = first; i < end; i++) {
@@ -101,7 +101,7 @@ struct Parts parts_of(struct IrFunction *ir, size_t accelerations) {
   size_t steady_count = 0;
   if (ir_uses(ir, SPACE_SEED_STATE)) ir = with_steady_first(ir, &steady_count);
   parts.shared_count = accelerations;
-  const struct Local *locals = find_shared(ir, steady_count, &parts.shared_count);
+  const struct LocalUse *locals = find_shared(ir, steady_count, &parts.shared_count);
   for (size_t first = 0, end; first < ir->count; first = end) {
     end = end_of_part(ir, steady_count, first);
     if (first < steady_count) parts.steady_count++;

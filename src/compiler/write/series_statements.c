@@ -37,7 +37,7 @@ static void write_series(FILE *file, const struct Program *program) {
 static void write_check(FILE *file, const struct Program *program, const struct LimitCheck *check) {
   const struct LimitMetadata *metadata = limit_metadata(check->rule);
   fputs("  ", file);
-  if (check->is_gated) {
+  if (check->is_guarded) {
     fputs("LIMIT_WHERE(", file);
     write_slot(file, program, check->guard_condition, VALUE, NULL);
     fputs(" > 0.0, ", file);
@@ -57,7 +57,7 @@ static void write_check(FILE *file, const struct Program *program, const struct 
     fputs(", ", file);
     write_c_number(file, check->share);
   }
-  fputs(check->is_gated ? "));\n" : ");\n", file);
+  fputs(check->is_guarded ? "));\n" : ");\n", file);
 }
 
 /* Returns the set of spaces that the checks read. */
@@ -67,7 +67,7 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
     const struct LimitCheck *check = &checks->items[i];
     spaces |= 1u << space_of(check->row) | 1u << space_of(check->other_row);
     if (limit_metadata(check->rule)->has_exponent) spaces |= 1u << space_of(check->exponent);
-    if (check->is_gated) spaces |= 1u << space_of(check->guard_condition);
+    if (check->is_guarded) spaces |= 1u << space_of(check->guard_condition);
   }
   return spaces;
 }

@@ -14,7 +14,7 @@
 enum { EVENT_LIMIT = 100000 };
 
 /* State of the event search in each lane. */
-struct LaneCourse {
+struct LaneSearch {
   struct EventProgress progress;
   double *state, *parameter; /* after the last event */
 };
@@ -23,7 +23,7 @@ struct LaneCourse {
 struct SingleRun {
   struct Instance instance;
   struct CommunicationStep step; /* the whole run */
-  struct LaneCourse *courses;    /* of the lanes; their numbers follow in the same block */
+  struct LaneSearch *courses;    /* of the lanes; their numbers follow in the same block */
   /* Of the last loaded lane: origin, order, state and coefficients of its series. */
   double origin, *state;
   int order;
@@ -135,7 +135,7 @@ static void *allocate(size_t count, size_t size) {
 struct SingleRun *single_run_create(size_t lanes, double tolerance, double end) {
   size_t numbers = lagrangian.state_count + lagrangian.parameter_count;
   struct SingleRun *run = calloc(1, sizeof *run + lagrangian.state_count * (sizeof(Series) + sizeof(double)));
-  struct LaneCourse *courses = calloc(lanes, sizeof *courses + numbers * sizeof(double));
+  struct LaneSearch *courses = calloc(lanes, sizeof *courses + numbers * sizeof(double));
   bool is_created = run != NULL && courses != NULL &&
                     instance_create(&run->instance, KIND_CO_SIMULATION, &(struct Allocator){allocate, free},
                                     &(struct Log){.wanted = 0});
@@ -188,7 +188,7 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
 
 enum LaneEvent single_run_find_event(struct SingleRun *run, const struct LaneView *lane, double *time) {
   struct Instance *instance = &run->instance;
-  struct LaneCourse *course = &run->courses[lane->number];
+  struct LaneSearch *course = &run->courses[lane->number];
   const struct Span *last = &instance->fmu_state->last_step;
   if (course->progress.count >= EVENT_LIMIT) return EVENT_UNKNOWN;
   take(run, lane);
@@ -213,7 +213,7 @@ void single_run_pass_quietly(struct SingleRun *run, const struct LaneView *lane)
 }
 
 void single_run_continue(struct SingleRun *run, const struct LaneView *lane) {
-  const struct LaneCourse *course = &run->courses[lane->number];
+  const struct LaneSearch *course = &run->courses[lane->number];
   give_state(course->state, lane);
   give_numbers(course->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);
   for (size_t i = 0; i < lagrangian.state_count; i++) lane->low[i * lane->stride] = 0.0;

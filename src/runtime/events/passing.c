@@ -349,11 +349,11 @@ const char *events_check(struct Instance *instance, double time) {
   if (laws == NULL || !lagrangian.switches->friction_varies) return NULL;
   struct Resolution resolution = resolution_at(instance, time, instance->state, AT_EVENT);
   if (!resolution_values(&resolution, instance->state, resolution.value)) return NULL; /* the caller reports it */
-  bool impulses = false;
+  bool has_negative_force = false;
   for (size_t i = 0; i < lagrangian.switches->friction_count; i++)
     for (size_t part = FRICTION_FORCE; part <= FRICTION_FORCE_BACK; part += FRICTION_FORCE_BACK - FRICTION_FORCE)
-      impulses |= resolution.value[friction_slot(resolution.switches, i, part)] < 0.0;
-  return impulses && resolution_evaluate(&resolution) ? laws->check(&resolution) : NULL;
+      has_negative_force |= resolution.value[friction_slot(resolution.switches, i, part)] < 0.0;
+  return has_negative_force && resolution_evaluate(&resolution) ? laws->check(&resolution) : NULL;
 }
 
 void events_explain(struct Instance *instance, const struct CommunicationStep *step,

@@ -5,7 +5,7 @@
  *   instantiated -> initialization mode -> step complete or failed <-> event mode -> terminated   co-simulation
  *
  * Co-simulation has event mode in FMI 3.0, if the importer uses it, and intermediate update mode inside a step. Each
- * function belongs to a class, enum Function; permitted[] gives the kinds of instances and the phases in which
+ * function belongs to a class, enum FunctionClass; permitted[] gives the kinds of instances and the phases in which
  * functions of a class may be called. Every function asks enter() first. A call in another phase is an error: the
  * instance goes to PHASE_ERROR, where it can be read, reset or freed.
  */
@@ -67,7 +67,7 @@ static const struct {
     [FUNCTION_NEVER] = {FOR_BOTH, NEVER},
 };
 
-struct Instance *enter(void *component, enum Function function, const char *name) {
+struct Instance *enter(void *component, enum FunctionClass function, const char *name) {
   struct Instance *instance = component;
   if (instance == NULL) return NULL;
   instance->function = name;

@@ -5,7 +5,7 @@
 #include "instance/instance.h"
 
 /* Classes of functions that may be called in the same states. */
-enum Function {
+enum FunctionClass {
   FUNCTION_SET_DEBUG_LOGGING,
   FUNCTION_SET_UP,
   FUNCTION_EXIT_INITIALIZATION_MODE,
@@ -40,6 +40,6 @@ enum Function {
  * Returns the instance of a component, which is its first member, if the function may be called now. name: of the
  * function, for messages. Returns NULL after logging an error if it may not, or if component is NULL.
  */
-struct Instance *enter(void *component, enum Function function, const char *name);
+struct Instance *enter(void *component, enum FunctionClass function, const char *name);
 
 #endif

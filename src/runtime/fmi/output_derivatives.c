@@ -8,7 +8,7 @@
 #include "stepping/reading.h"
 
 /* Series about the present time; the rows are parts of one block. */
-struct Expansion {
+struct OutputSeries {
   Series *state, *input, *output, *work;
   double *matrix; /* of a linear system */
 };
@@ -18,7 +18,7 @@ static size_t larger(size_t a, size_t b) {
 }
 
 /* Allocates the rows; free expansion->state. False, after logging an error, without memory. */
-static bool expansion_create(struct Instance *instance, struct Expansion *expansion) {
+static bool expansion_create(struct Instance *instance, struct OutputSeries *expansion) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t work = larger(lagrangian.taylor.rows, lagrangian.taylor.output_rows);
   size_t rows = states + inputs + lagrangian.results.count + work;
@@ -36,7 +36,7 @@ static bool expansion_create(struct Instance *instance, struct Expansion *expans
 }
 
 /* Expands d x / dt = A x + B u + c, order by order. */
-static void expand_linear(const struct Instance *instance, int order, const struct Expansion *expansion) {
+static void expand_linear(const struct Instance *instance, int order, const struct OutputSeries *expansion) {
   size_t states = lagrangian.state_count, columns = states + lagrangian.input_count + 1;
   lagrangian.linear(instance->parameter, instance->parameter_constants, expansion->matrix);
   for (size_t i = 0; i < states; i++) expansion->state[i][0] = instance->state[i];
@@ -49,7 +49,7 @@ static void expand_linear(const struct Instance *instance, int order, const stru
     }
 }
 
-static enum Status fill_expansion(struct Instance *instance, int order, const struct Expansion *expansion) {
+static enum Status fill_expansion(struct Instance *instance, int order, const struct OutputSeries *expansion) {
   struct Point point = instance_point(instance);
   const Series *input = (const Series *)expansion->input;
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, point.time, expansion->input[i]);
@@ -69,7 +69,7 @@ static enum Status fill_expansion(struct Instance *instance, int order, const st
   return STATUS_DONE;
 }
 
-static enum Status read_derivative(struct Instance *instance, const struct Expansion *expansion,
+static enum Status read_derivative(struct Instance *instance, const struct OutputSeries *expansion,
                                    const struct ScalarVariable *variable, int order, double *value) {
   Series *rows = variable->kind == VARIABLE_STATE ? expansion->state : expansion->output;
   double derivative = rows[variable->index][order];
@@ -82,7 +82,7 @@ static enum Status read_derivative(struct Instance *instance, const struct Expan
 
 static enum Status read_from_series(struct Instance *instance, const unsigned *reference, size_t count,
                                     const int *order, double *value) {
-  struct Expansion expansion;
+  struct OutputSeries expansion;
   int highest = 0;
   for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
   if (!expansion_create(instance, &expansion)) return STATUS_ERROR;

@@ -1,6 +1,6 @@
 /*
  * The FMI functions that differ between versions only in their names. Each version includes this once, after its
- * struct Component and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates
+ * struct FmiComponent and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates
  * may be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
  */
 #ifndef SHARED_FUNCTIONS_H
@@ -16,7 +16,7 @@
 /* --- Life ---------------------------------------------------------------------------------------------------------- */
 
 FMI(Status) FMI(SetDebugLogging)(void *c, FMI(Boolean) loggingOn, size_t nCategories, const char *const names[]) {
-  struct Component *component = c;
+  struct FmiComponent *component = c;
   struct Instance *instance = enter(c, FUNCTION_SET_DEBUG_LOGGING, __func__);
   unsigned chosen = 0;
   if (instance == NULL || !log_choose(instance, names, nCategories, &chosen)) return FMI(Error);

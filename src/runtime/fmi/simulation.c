@@ -5,7 +5,7 @@
 
 #include "stepping/start.h"
 
-enum Status simulation_set_up(struct Instance *instance, const struct Experiment *experiment) {
+enum Status simulation_set_up(struct Instance *instance, const struct ExperimentSetup *experiment) {
   double start = experiment->start_time, stop = experiment->stop_time, tolerance = experiment->tolerance;
   if (!isfinite(start)) return reject_call(instance, "startTime is %g; expected a finite number", start);
   if (experiment->has_stop_time && !(stop >= start && isfinite(stop)))

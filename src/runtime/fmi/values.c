@@ -81,7 +81,7 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
   return STATUS_DONE;
 }
 
-enum Status values_none(void *component, enum Function function, size_t count, const char *name) {
+enum Status values_none(void *component, enum FunctionClass function, size_t count, const char *name) {
   struct Instance *instance = enter(component, function, name);
   if (instance == NULL) return STATUS_ERROR;
   return count == 0 ? STATUS_DONE : reject_call(instance, "the FMU has no variables of this type");

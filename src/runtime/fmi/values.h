@@ -15,7 +15,7 @@ enum Status values_get_whole(struct Instance *instance, const unsigned *referenc
 enum Status values_get_counts(struct Instance *instance, const unsigned *reference, size_t count, int64_t *value);
 
 /* Does nothing, for types without variables: any reference is an error. */
-enum Status values_none(void *component, enum Function function, size_t count, const char *name);
+enum Status values_none(void *component, enum FunctionClass function, size_t count, const char *name);
 
 /* Sets Real variables: all or none. */
 enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value);

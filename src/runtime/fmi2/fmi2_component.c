@@ -7,13 +7,13 @@
 
 /* Escapes '%', since the message is a printf format, and '#', which introduces a variable (section 2.1.5). */
 static void send(void *receiver, enum Status status, const char *message) {
-  const struct Component *component = receiver;
+  const struct FmiComponent *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
   log_escape(message, "%#", escaped);
   component->logger(component->environment, component->name, status_of(status), log_category_of(status), escaped);
 }
 
-struct Log log_of(struct Component *component) {
+struct Log log_of(struct FmiComponent *component) {
   return (struct Log){
       .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
@@ -36,10 +36,10 @@ static bool can_instantiate(const struct Log *log, const char *name, fmi2Type ty
 }
 
 /* Creates a component with its instance, name and messages. NULL without memory; then nothing is allocated. */
-static struct Component *component_create(const struct Component *description, enum Kind kind,
-                                          const struct Allocator *memory) {
+static struct FmiComponent *component_create(const struct FmiComponent *description, enum InterfaceType kind,
+                                             const struct Allocator *memory) {
   size_t name_size = strlen(description->name) + 1;
-  struct Component *component = memory->allocate(1, sizeof *component);
+  struct FmiComponent *component = memory->allocate(1, sizeof *component);
   char *name = memory->allocate(name_size, 1);
   if (component != NULL && name != NULL) {
     *component = *description;
@@ -58,24 +58,24 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
   (void)fmuResourceLocation;
   (void)visible;
   if (functions == NULL) return NULL;
-  struct Component description = {.logger = functions->logger,
-                                  .environment = functions->componentEnvironment,
-                                  .name = instanceName != NULL ? instanceName : "",
-                                  .categories = ALL_CATEGORIES};
+  struct FmiComponent description = {.logger = functions->logger,
+                                     .environment = functions->componentEnvironment,
+                                     .name = instanceName != NULL ? instanceName : "",
+                                     .categories = ALL_CATEGORIES};
   struct Log log = log_of(&description);
   struct Allocator memory = {functions->allocateMemory, functions->freeMemory};
   if (!can_instantiate(&log, instanceName, fmuType, fmuGUID, &memory)) return NULL;
   /* Warnings and errors are sent without debug logging too, unless fmi2SetDebugLogging names categories. */
   if (!loggingOn) description.categories = PROBLEM_CATEGORIES;
-  enum Kind kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
-  struct Component *component = component_create(&description, kind, &memory);
+  enum InterfaceType kind = fmuType == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION;
+  struct FmiComponent *component = component_create(&description, kind, &memory);
   if (component == NULL) log_write(&log, STATUS_ERROR, "fmi2Instantiate: allocateMemory returned no memory");
   else log_message(&component->instance, STATUS_DONE, "%s instantiated", lagrangian.name);
   return component;
 }
 
 void fmi2FreeInstance(fmi2Component c) {
-  struct Component *component = c;
+  struct FmiComponent *component = c;
   if (component == NULL) return;
   struct Allocator memory = component->instance.memory;
   instance_destroy(&component->instance);

@@ -6,7 +6,7 @@
 #include "instance/instance.h"
 
 /* An fmi2Component points to this; the instance is its first member. */
-struct Component {
+struct FmiComponent {
   struct Instance instance;
   fmi2CallbackLogger logger;
   fmi2ComponentEnvironment environment;
@@ -15,7 +15,7 @@ struct Component {
 };
 
 /* Returns the receiver of the component's messages. */
-struct Log log_of(struct Component *component);
+struct Log log_of(struct FmiComponent *component);
 
 /* Returns the status for the caller. */
 static inline fmi2Status status_of(enum Status status) {

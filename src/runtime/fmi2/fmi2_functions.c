@@ -29,11 +29,11 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
   struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
   if (instance == NULL) return fmi2Error;
-  struct Experiment experiment = {.start_time = startTime,
-                                  .stop_time = stopTime,
-                                  .tolerance = tolerance,
-                                  .has_stop_time = stopTimeDefined != fmi2False,
-                                  .has_tolerance = toleranceDefined != fmi2False};
+  struct ExperimentSetup experiment = {.start_time = startTime,
+                                       .stop_time = stopTime,
+                                       .tolerance = tolerance,
+                                       .has_stop_time = stopTimeDefined != fmi2False,
+                                       .has_tolerance = toleranceDefined != fmi2False};
   return status_of(simulation_set_up(instance, &experiment));
 }
 

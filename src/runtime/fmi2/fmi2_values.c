@@ -6,7 +6,7 @@
 #include "fmi2/fmi2_component.h"
 
 /* Returns the instance if the function may be called with these arrays; NULL after logging an error. */
-static struct Instance *enter_with_values(fmi2Component c, enum Function function, const char *name,
+static struct Instance *enter_with_values(fmi2Component c, enum FunctionClass function, const char *name,
                                           const fmi2ValueReference vr[], size_t nvr, const void *value) {
   struct Instance *instance = enter(c, function, name);
   bool are_right =

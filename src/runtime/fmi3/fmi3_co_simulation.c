@@ -8,7 +8,7 @@
 #include "stepping/steps.h"
 
 /* Calls the importer back. Returns the requested end of the step; end if it stays. */
-static double call_back(struct Component *component, double time, double end) {
+static double call_back(struct FmiComponent *component, double time, double end) {
   bool can_return_early = component->early_return_allowed && time < end;
   fmi3Boolean requested = fmi3False;
   fmi3Float64 requested_time = time;
@@ -23,7 +23,7 @@ static double call_back(struct Component *component, double time, double end) {
 
 /* Requests the inputs at a time within the coming step. */
 static void request(void *receiver, double time) {
-  struct Component *component = receiver;
+  struct FmiComponent *component = receiver;
   fmi3Boolean requested = fmi3False;
   fmi3Float64 requested_time = time;
   const char *function = component->instance.function;
@@ -37,7 +37,7 @@ static double update(void *receiver, double time, double end) {
 }
 
 /* Calls back at the end of the step, in the state of the instance. */
-static void update_at_end(struct Component *component) {
+static void update_at_end(struct FmiComponent *component) {
   struct FmuState *fmu_state = component->instance.fmu_state;
   if (component->intermediate_update == NULL) return;
   fmu_state->phase = PHASE_INTERMEDIATE_UPDATE;
@@ -46,7 +46,7 @@ static void update_at_end(struct Component *component) {
 }
 
 /* Observes the solver's steps if the importer wants intermediate updates. */
-static void observe(struct Component *component) {
+static void observe(struct FmiComponent *component) {
   if (component->intermediate_update == NULL) return;
   component->intermediate.update = update;
   component->intermediate.request = request;
@@ -70,7 +70,7 @@ static bool needs_event_mode(struct Instance *instance, int64_t events_before) {
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
                       fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
                       fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
-  struct Component *component = c;
+  struct FmiComponent *component = c;
   struct Instance *instance = enter(c, FUNCTION_DO_STEP, __func__);
   (void)noSetFMUStatePriorToCurrentPoint;
   if (instance == NULL || !check_array(instance, eventHandlingNeeded, 1, "eventHandlingNeeded") ||

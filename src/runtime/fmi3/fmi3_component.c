@@ -9,13 +9,13 @@
 
 /* Escapes '#', which introduces a variable in a message. */
 static void send(void *receiver, enum Status status, const char *message) {
-  const struct Component *component = receiver;
+  const struct FmiComponent *component = receiver;
   char escaped[2 * MESSAGE_LENGTH];
   log_escape(message, "#", escaped);
   component->logger(component->environment, status_of(status), log_category_of(status), escaped);
 }
 
-struct Log log_of(struct Component *component) {
+struct Log log_of(struct FmiComponent *component) {
   return (struct Log){
       .write = send, .receiver = component, .wanted = log_wanted(component->logger != NULL, component->categories)};
 }
@@ -56,7 +56,7 @@ static bool can_be_intermediate(const struct Log *log, const fmi3ValueReference 
 }
 
 /* Frees a component whose instance holds no memory. */
-static void component_free(struct Component *component) {
+static void component_free(struct FmiComponent *component) {
   fmi3_memory.free(component->before);
   fmi3_memory.free(component->intermediate.kept);
   fmi3_memory.free(component->intermediate.inputs);
@@ -65,8 +65,8 @@ static void component_free(struct Component *component) {
 }
 
 /* Creates a component. NULL without memory; then nothing is allocated. */
-static struct Component *component_create(const struct Component *description, enum Kind kind) {
-  struct Component *component = fmi3_memory.allocate(1, sizeof *component);
+static struct FmiComponent *component_create(const struct FmiComponent *description, enum InterfaceType kind) {
+  struct FmiComponent *component = fmi3_memory.allocate(1, sizeof *component);
   if (component == NULL) return NULL;
   *component = *description;
   struct Intermediate *intermediate = &component->intermediate;
@@ -81,9 +81,9 @@ static struct Component *component_create(const struct Component *description, e
   return NULL;
 }
 
-static struct Component *instantiate(const struct Component *description, enum Kind kind, const struct Log *log,
-                                     const char *function) {
-  struct Component *component = component_create(description, kind);
+static struct FmiComponent *instantiate(const struct FmiComponent *description, enum InterfaceType kind,
+                                        const struct Log *log, const char *function) {
+  struct FmiComponent *component = component_create(description, kind);
   if (component == NULL) {
     log_write(log, STATUS_ERROR, "%s: out of memory", function);
     return NULL;
@@ -97,7 +97,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String in
                                           fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage) {
   (void)resourcePath;
   (void)visible;
-  struct Component description = {
+  struct FmiComponent description = {
       .logger = logMessage, .environment = environment, .categories = categories_of(loggingOn)};
   struct Log log = log_of(&description);
   if (!can_instantiate(&log, instanceName, instantiationToken, __func__)) return NULL;
@@ -113,11 +113,11 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
                                          fmi3IntermediateUpdateCallback intermediateUpdate) {
   (void)resourcePath;
   (void)visible;
-  struct Component description = {.logger = logMessage,
-                                  .environment = environment,
-                                  .categories = categories_of(loggingOn),
-                                  .intermediate_update = intermediateUpdate,
-                                  .early_return_allowed = earlyReturnAllowed};
+  struct FmiComponent description = {.logger = logMessage,
+                                     .environment = environment,
+                                     .categories = categories_of(loggingOn),
+                                     .intermediate_update = intermediateUpdate,
+                                     .early_return_allowed = earlyReturnAllowed};
   struct Log log = log_of(&description);
   if (!can_instantiate(&log, instanceName, instantiationToken, __func__) ||
       !can_be_intermediate(&log, requiredIntermediateVariables, nRequiredIntermediateVariables, __func__))
@@ -127,7 +127,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
               "%s: eventModeUsed is true; expected false, since the system has no events (no hasEventMode)", __func__);
     return NULL;
   }
-  struct Component *component = instantiate(&description, KIND_CO_SIMULATION, &log, __func__);
+  struct FmiComponent *component = instantiate(&description, KIND_CO_SIMULATION, &log, __func__);
   if (component == NULL) return NULL;
   for (size_t i = 0; i < nRequiredIntermediateVariables; i++)
     component->sets_inputs |=
@@ -151,7 +151,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
   (void)clockUpdate;
   (void)lockPreemption;
   (void)unlockPreemption;
-  struct Component description = {
+  struct FmiComponent description = {
       .logger = logMessage, .environment = environment, .categories = categories_of(loggingOn)};
   struct Log log = log_of(&description);
   log_write(&log, STATUS_ERROR, "%s: the FMU supports only model exchange and co-simulation", __func__);
@@ -159,7 +159,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
 }
 
 void fmi3FreeInstance(fmi3Instance c) {
-  struct Component *component = c;
+  struct FmiComponent *component = c;
   if (component == NULL) return;
   instance_destroy(&component->instance);
   component_free(component);

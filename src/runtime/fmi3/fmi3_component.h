@@ -15,7 +15,7 @@ struct Workspace {
 };
 
 /* An fmi3Instance points to this; the instance is its first member. */
-struct Component {
+struct FmiComponent {
   struct Instance instance;
   fmi3LogMessageCallback logger;
   fmi3InstanceEnvironment environment;
@@ -30,7 +30,7 @@ struct Component {
 };
 
 /* Returns the receiver of the component's messages. */
-struct Log log_of(struct Component *component);
+struct Log log_of(struct FmiComponent *component);
 
 /* Returns the status for the caller. */
 static inline fmi3Status status_of(enum Status status) {

@@ -11,9 +11,9 @@ struct Partial {
 };
 
 static struct Partial enter_with_partial(fmi3Instance c, const char *name, const fmi3ValueReference unknowns[],
-                                         size_t nUnknowns, struct CodeGenerator of_unknowns,
+                                         size_t nUnknowns, struct ValueArray of_unknowns,
                                          const fmi3ValueReference knowns[], size_t nKnowns,
-                                         struct CodeGenerator of_knowns) {
+                                         struct ValueArray of_knowns) {
   struct Partial partial = {NULL, NULL};
   if (enter(c, FUNCTION_GET_PARTIAL_DERIVATIVE, name) == NULL) return partial;
   partial.unknowns = expand_references(c, WORKSPACE_REFERENCES, unknowns, nUnknowns, of_unknowns);
@@ -25,8 +25,8 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
                                         const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                         size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
   struct Partial partial =
-      enter_with_partial(c, __func__, unknowns, nUnknowns, (struct CodeGenerator){sensitivity, nSensitivity}, knowns,
-                         nKnowns, (struct CodeGenerator){seed, nSeed});
+      enter_with_partial(c, __func__, unknowns, nUnknowns, (struct ValueArray){sensitivity, nSensitivity}, knowns,
+                         nKnowns, (struct ValueArray){seed, nSeed});
   if (partial.knowns == NULL) return fmi3Error;
   return status_of(directional_derivative(c, partial.unknowns, nSensitivity, partial.knowns, nSeed, seed, sensitivity));
 }
@@ -34,8 +34,8 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t nUnknowns,
                                     const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                     size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
-  struct Partial partial = enter_with_partial(c, __func__, unknowns, nUnknowns, (struct CodeGenerator){seed, nSeed},
-                                              knowns, nKnowns, (struct CodeGenerator){sensitivity, nSensitivity});
+  struct Partial partial = enter_with_partial(c, __func__, unknowns, nUnknowns, (struct ValueArray){seed, nSeed},
+                                              knowns, nKnowns, (struct ValueArray){sensitivity, nSensitivity});
   if (partial.knowns == NULL) return fmi3Error;
   return status_of(adjoint_derivative(c, partial.unknowns, nSeed, partial.knowns, nSensitivity, seed, sensitivity));
 }
@@ -46,7 +46,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
   struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
   if (instance == NULL || !check_array(instance, orders, nvr, "orders")) return fmi3Error;
   const unsigned *references =
-      expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct CodeGenerator){values, nValues});
+      expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct ValueArray){values, nValues});
   int *order_of = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *order_of);
   if (references == NULL || order_of == NULL) return fmi3Error;
   /* The next variable begins at its index. */

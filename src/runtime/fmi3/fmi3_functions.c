@@ -18,11 +18,11 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
                                        fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime) {
   struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
   if (instance == NULL) return fmi3Error;
-  struct Experiment experiment = {.start_time = startTime,
-                                  .stop_time = stopTime,
-                                  .tolerance = tolerance,
-                                  .has_stop_time = stopTimeDefined,
-                                  .has_tolerance = toleranceDefined};
+  struct ExperimentSetup experiment = {.start_time = startTime,
+                                       .stop_time = stopTime,
+                                       .tolerance = tolerance,
+                                       .has_stop_time = stopTimeDefined,
+                                       .has_tolerance = toleranceDefined};
   enum Status status = simulation_set_up(instance, &experiment);
   if (status == STATUS_DONE) instance->fmu_state->phase = PHASE_INITIALIZATION;
   return status_of(status);

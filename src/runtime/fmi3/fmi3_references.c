@@ -30,7 +30,7 @@ static bool count_values(struct Instance *instance, const fmi3ValueReference vr[
   return true;
 }
 
-void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size) {
+void *reserve_workspace(struct FmiComponent *component, enum WorkspaceUse use, size_t count, size_t size) {
   struct Workspace *workspace = &component->workspaces[use];
   if (workspace->block != NULL && count <= workspace->size / size) return workspace->block;
   fmi3_memory.free(workspace->block);
@@ -40,8 +40,8 @@ void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size
   return workspace->block;
 }
 
-const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct CodeGenerator values) {
+const unsigned *expand_references(struct FmiComponent *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
+                                  size_t nvr, struct ValueArray values) {
   struct Instance *instance = &component->instance;
   size_t count;
   if (!check_array(instance, vr, nvr, "valueReferences") ||

@@ -8,7 +8,7 @@
 #include "fmi3/fmi3_component.h"
 
 /* An array of a caller, and its number of values. */
-struct CodeGenerator {
+struct ValueArray {
   const void *array;
   size_t count;
 };
@@ -22,10 +22,10 @@ static inline unsigned slot_of_reference(fmi3ValueReference reference) {
  * Expands the caller's references to indices of scalars: arrays become their elements. The result is in workspace. NULL
  * after logging an error, if arguments are wrong or the number of values differs.
  */
-const unsigned *expand_references(struct Component *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
-                                  size_t nvr, struct CodeGenerator values);
+const unsigned *expand_references(struct FmiComponent *component, enum WorkspaceUse use, const fmi3ValueReference vr[],
+                                  size_t nvr, struct ValueArray values);
 
 /* Returns workspace for count elements; NULL after logging an error, without memory. */
-void *reserve_workspace(struct Component *component, enum WorkspaceUse use, size_t count, size_t size);
+void *reserve_workspace(struct FmiComponent *component, enum WorkspaceUse use, size_t count, size_t size);
 
 #endif

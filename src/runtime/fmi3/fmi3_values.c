@@ -6,11 +6,11 @@
 #include "fmi3/fmi3_references.h"
 
 /* Returns the indices of scalars if the function may be called with these arrays; NULL after logging an error. */
-static const unsigned *enter_with_values(fmi3Instance c, enum Function function, const char *name,
+static const unsigned *enter_with_values(fmi3Instance c, enum FunctionClass function, const char *name,
                                          const fmi3ValueReference vr[], size_t nvr, const void *values,
                                          size_t nValues) {
   if (enter(c, function, name) == NULL) return NULL;
-  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct CodeGenerator){values, nValues});
+  return expand_references(c, WORKSPACE_REFERENCES, vr, nvr, (struct ValueArray){values, nValues});
 }
 
 /* Turns fmi3Discard into an error in intermediate update mode, where it is not allowed (section 4.2.2). */

@@ -91,7 +91,8 @@ static void free_shown(const struct Instance *instance) {
   if (instance->shown != NULL) instance->memory.free(instance->shown);
 }
 
-bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log) {
+bool instance_create(struct Instance *instance, enum InterfaceType kind, const struct Allocator *memory,
+                     const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
   bool shows = lagrangian.constraints.projection != NULL || lagrangian.event_laws != NULL;
   double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);

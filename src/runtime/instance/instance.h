@@ -12,7 +12,7 @@
 enum { INPUT_ORDER = 3 }; /* highest derivative of an input, which is a polynomial of time over a step */
 
 /* The interface that the importer uses. */
-enum Kind { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
+enum InterfaceType { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION };
 
 /* States of the FMI state machines (fmi/life_cycle.h). */
 enum Phase {
@@ -52,7 +52,7 @@ struct Span {
  */
 struct FmuState {
   int32_t phase; /* enum Phase */
-  int32_t kind;  /* enum Kind */
+  int32_t kind;  /* enum InterfaceType */
   int32_t experiment_defined, stop_time_defined;
   int32_t input_derivatives_set; /* for the next step */
   int32_t changed;               /* enum Change, since the last step */
@@ -90,7 +90,7 @@ struct Instance {
   struct Allocator memory;
   struct Log log;
   const char *function; /* last called FMI function, for messages */
-  enum Kind kind;
+  enum InterfaceType kind;
   struct FmuState *fmu_state;
   /*
    * Snapshots for reading (reading.h): the values that were set, and the reported ones that follow from them. NULL in
@@ -133,7 +133,8 @@ struct Instance {
 };
 
 /* Creates an instance. False without memory; then nothing is allocated. Logs nothing. */
-bool instance_create(struct Instance *instance, enum Kind kind, const struct Allocator *memory, const struct Log *log);
+bool instance_create(struct Instance *instance, enum InterfaceType kind, const struct Allocator *memory,
+                     const struct Log *log);
 void instance_destroy(struct Instance *instance);
 
 /* Makes a block of fmu_state_size() bytes the snapshot of the instance. */

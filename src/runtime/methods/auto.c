@@ -54,7 +54,7 @@ static const double GROWTH = 1.25;       /* of speed from window to window that 
 static const double FIRST_GROWTH = 8.0;  /* largest ratio of the first Radau step to the last Taylor step */
 
 /* The part of the snapshot after that of the active method. */
-struct Choice {
+struct AutoSaved {
   int64_t method;          /* enum AutoMethod: the active one */
   int64_t steps, restarts; /* in the window; inputs that change cause restarts */
   int64_t windows;         /* since the last handover */
@@ -73,7 +73,7 @@ struct Choice {
 
 /* Memory of this method. choice is in the snapshot; memory holds the solver_memory of both methods. */
 struct Auto {
-  struct Choice *choice;
+  struct AutoSaved *choice;
   double *state; /* state_count: workspace */
   void *memory[AUTO_METHODS];
 };
@@ -84,10 +84,10 @@ static size_t largest_saved_size(void) {
 }
 
 static size_t auto_saved_size(void) {
-  return largest_saved_size() + sizeof(struct Choice);
+  return largest_saved_size() + sizeof(struct AutoSaved);
 }
 
-static bool are_possible_counts(const struct Choice *choice) {
+static bool are_possible_counts(const struct AutoSaved *choice) {
   const int64_t counts[] = {choice->steps, choice->restarts,      choice->windows, choice->patience,
                             choice->stay,  choice->next_patience, choice->crosses, choice->is_trial};
   return snapshot_are_counts(counts, sizeof counts / sizeof *counts) && choice->steps <= window[choice->method] &&
@@ -100,7 +100,7 @@ static bool is_up_to(double number, double largest) {
   return number >= 0.0 && number <= largest;
 }
 
-static bool are_possible_numbers(const struct Choice *choice) {
+static bool are_possible_numbers(const struct AutoSaved *choice) {
   return isfinite(choice->begin) && is_up_to(choice->work, LARGEST_WORK) &&
          is_up_to(choice->trial_work, LARGEST_WORK) && is_up_to(choice->predicted_step, DBL_MAX) &&
          is_up_to(choice->last_speed, INFINITY) && is_up_to(choice->taylor_speed, INFINITY) &&
@@ -108,7 +108,7 @@ static bool are_possible_numbers(const struct Choice *choice) {
 }
 
 static bool auto_is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
-  struct Choice choice;
+  struct AutoSaved choice;
   memcpy(&choice, (const char *)saved + largest_saved_size(), sizeof choice);
   return choice.method >= 0 && choice.method < AUTO_METHODS && are_possible_counts(&choice) &&
          are_possible_numbers(&choice) && solvers[choice.method]->is_saved_valid(fmu_state, saved);
@@ -138,7 +138,7 @@ static void auto_destroy(struct Instance *instance) {
 static bool auto_create(struct Instance *instance) {
   struct Auto *automatic = instance->memory.allocate(1, sizeof *automatic + lagrangian.state_count * sizeof(double));
   if (automatic == NULL) return solver_is_out_of_memory(instance);
-  automatic->choice = (struct Choice *)(void *)((char *)instance->saved + largest_saved_size());
+  automatic->choice = (struct AutoSaved *)(void *)((char *)instance->saved + largest_saved_size());
   automatic->state = (double *)(automatic + 1);
   bool is_complete = true;
   for (int i = 0; i < AUTO_METHODS && is_complete; i++) {
@@ -156,7 +156,7 @@ static const struct Solver *auto_at_work(const struct Instance *instance) {
   return solvers[automatic != NULL ? automatic->choice->method : AUTO_TAYLOR];
 }
 
-static void begin_window(struct Choice *choice, double time) {
+static void begin_window(struct AutoSaved *choice, double time) {
   choice->steps = choice->restarts = 0;
   choice->begin = time;
   choice->work = 0.0;
@@ -164,7 +164,7 @@ static void begin_window(struct Choice *choice, double time) {
 
 static bool auto_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step) {
   struct Auto *automatic = auto_enter(instance);
-  struct Choice *choice = automatic->choice;
+  struct AutoSaved *choice = automatic->choice;
   choice->restarts++;
   if (choice->begin > step->start) begin_window(choice, step->start);
   bool is_done = solvers[choice->method]->restart(instance, state, step);
@@ -207,7 +207,7 @@ static double work_of_radau(int stages, double evaluations, double jacobians) {
 
 /* Starts the other method at the end of the last step. False if the state is unknown or memory is missing. */
 static bool hand_over(struct Instance *instance, struct Auto *automatic, const struct CommunicationStep *step) {
-  struct Choice *choice = automatic->choice;
+  struct AutoSaved *choice = automatic->choice;
   struct FmuState *fmu_state = instance->fmu_state;
   double time = fmu_state->last_step.end;
   if (!solvers[choice->method]->interpolate(instance, time, automatic->state)) return false;
@@ -232,7 +232,7 @@ static bool hand_over(struct Instance *instance, struct Auto *automatic, const s
  * True if Radau IIA is predicted to be faster than the series. The required margin falls with the time for which the
  * series were used.
  */
-static bool series_are_slow(struct Instance *instance, struct Choice *choice, double progress) {
+static bool series_are_slow(struct Instance *instance, struct AutoSaved *choice, double progress) {
   enum { ITERATIONS = 4 };
   const struct Taylor *taylor = instance->solver_memory;
   if (choice->crosses || !(taylor->saved->interval > 0.0)) return false;
@@ -244,7 +244,7 @@ static bool series_are_slow(struct Instance *instance, struct Choice *choice, do
   return step * choice->work > hope * progress * work_of_radau(stages, ITERATIONS * stages, 1.0);
 }
 
-static bool judge_series(struct Instance *instance, struct Choice *choice, double progress) {
+static bool judge_series(struct Instance *instance, struct AutoSaved *choice, double progress) {
   if (choice->patience > 0) {
     choice->patience--;
     return false;
@@ -260,7 +260,7 @@ static bool judge_series(struct Instance *instance, struct Choice *choice, doubl
 }
 
 /* True if the trial has failed: Radau IIA is slower, and its steps neither grow nor are about to. Sets the wait. */
-static bool judge_trial(const struct Instance *instance, struct Choice *choice, double speed, double other) {
+static bool judge_trial(const struct Instance *instance, struct AutoSaved *choice, double speed, double other) {
   double window_of_series = window[AUTO_TAYLOR] * work_of_series((double)taylor_rule(instance).order);
   choice->trial_work += choice->work;
   double next = radau_next_step(instance) * window[AUTO_RADAU] / choice->work;
@@ -274,7 +274,7 @@ static bool judge_trial(const struct Instance *instance, struct Choice *choice, 
 }
 
 /* True if the series are to return: see the top of this file. */
-static bool judge_radau(const struct Instance *instance, struct Choice *choice, double progress) {
+static bool judge_radau(const struct Instance *instance, struct AutoSaved *choice, double progress) {
   double speed = progress / choice->work, other = choice->taylor_speed;
   if (choice->taylor_rate == 0.0) choice->taylor_rate = choice->rate;
   other *= choice->rate > 0.0 ? choice->taylor_rate / choice->rate : INFINITY;
@@ -287,7 +287,7 @@ static bool judge_radau(const struct Instance *instance, struct Choice *choice, 
 }
 
 /* True if the other method is to take over at the end of the last step. */
-static bool judge(struct Instance *instance, struct Choice *choice) {
+static bool judge(struct Instance *instance, struct AutoSaved *choice) {
   double time = instance->fmu_state->last_step.end;
   if (choice->next_patience == 0) choice->next_patience = SHORT_PATIENCE;
   if (choice->steps == 0) begin_window(choice, time);
@@ -300,7 +300,7 @@ static bool judge(struct Instance *instance, struct Choice *choice) {
 }
 
 /* Returns the work of the last step, from the statistics before it and now. */
-static double work_between(const struct Instance *instance, const struct Choice *choice, const int64_t *before) {
+static double work_between(const struct Instance *instance, const struct AutoSaved *choice, const int64_t *before) {
   const int64_t *after = instance->fmu_state->statistics;
   if (choice->method == AUTO_TAYLOR)
     return work_of_series((double)((const struct Taylor *)instance->solver_memory)->saved->order);
@@ -310,7 +310,7 @@ static double work_between(const struct Instance *instance, const struct Choice 
 }
 
 static const char *make_step(struct Instance *instance, struct Auto *automatic, const struct CommunicationStep *step) {
-  struct Choice *choice = automatic->choice;
+  struct AutoSaved *choice = automatic->choice;
   int64_t before[STATISTIC_COUNT];
   memcpy(before, instance->fmu_state->statistics, sizeof before);
   const char *problem = solvers[choice->method]->advance(instance, step);

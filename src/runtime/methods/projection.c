@@ -37,7 +37,7 @@ static const double vanishing = 1e-6;          /* ratio of a row of J where its 
 /*
  * The parts of the workspace. change, residual, pivot and slope follow each other, as lagrangian.constraints has them.
  */
-struct Work {
+struct ProjectionWork {
   double *change;                   /* of the coordinates or velocities */
   double *residual, *pivot, *slope; /* of each constraint: -residual, pivot, length of its row of J */
   double *moved;                    /* state_count: the sum of the moves of the coordinates */
@@ -48,8 +48,8 @@ struct Work {
   double *first; /* the first state that the residuals belong to: 0 for coordinates, coordinate_count for velocities */
 };
 
-static struct Work work_of(const struct Instance *instance) {
-  struct Work work = {.change = instance->projection_work};
+static struct ProjectionWork work_of(const struct Instance *instance) {
+  struct ProjectionWork work = {.change = instance->projection_work};
   work.residual = work.change + lagrangian.coordinate_count;
   work.pivot = work.residual + lagrangian.constraints.count;
   work.slope = work.pivot + lagrangian.constraints.count;
@@ -73,11 +73,12 @@ static double size_of(const double *value, const double *state, size_t first) {
 }
 
 /* What is projected: coordinates or velocities, those of a step or of the start. */
-enum Target { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
+enum ProjectionTarget { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
 
 /* Evaluates change, residuals, pivots and slopes. False if M is singular or a value is not finite. */
-static bool evaluate_residual(struct Instance *instance, double time, const double *state, enum Target target) {
-  struct Work work = work_of(instance);
+static bool evaluate_residual(struct Instance *instance, double time, const double *state,
+                              enum ProjectionTarget target) {
+  struct ProjectionWork work = work_of(instance);
   struct Point point = solver_point(instance, time, state);
   struct Seed seed = {.state = work.moved};
   bool is_of_positions = target == POSITIONS || target == START_POSITIONS;
@@ -99,7 +100,7 @@ static bool evaluate_residual(struct Instance *instance, double time, const doub
  */
 static bool residual_is_rounding(struct Instance *instance, double time, const double *state) {
   const struct SwitchTable *switches = lagrangian.switches;
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   if (switches == NULL || switches->contact_count == 0) return false;
   struct Point point = solver_point(instance, time, state);
   switches->rounding_bounds(&point, instance->acceleration, work.rounding);
@@ -113,24 +114,24 @@ static bool residual_is_rounding(struct Instance *instance, double time, const d
   return true;
 }
 
-static void move_positions(const struct Work *work, double *state, double share) {
+static void move_positions(const struct ProjectionWork *work, double *state, double share) {
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
     state[i] += share * work->change[i];
     work->moved[i] += share * work->change[i];
   }
 }
 
-static double move_velocities(struct Instance *instance, double time, double *state, enum Target target) {
+static double move_velocities(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
   size_t n = lagrangian.coordinate_count;
   if (!evaluate_residual(instance, time, state, target)) return INFINITY;
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double size = size_of(work.change, state, n);
   for (size_t i = 0; i < n; i++) state[n + i] += work.change[i];
   return size;
 }
 
 /* True if redundant constraints agree with the others: a constraint may be redundant only at the start. */
-static bool others_hold(const struct Work *work, const double *state, size_t first) {
+static bool others_hold(const struct ProjectionWork *work, const double *state, size_t first) {
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && !(fabs(work->residual[j]) <= redundant_residual * work->slope[j] * scale))
@@ -138,7 +139,7 @@ static bool others_hold(const struct Work *work, const double *state, size_t fir
   return true;
 }
 
-static bool has_redundant(const struct Work *work) {
+static bool has_redundant(const struct ProjectionWork *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j])) return true;
   return false;
@@ -149,7 +150,7 @@ static bool has_redundant(const struct Work *work) {
  * residuals to 0 on success.
  */
 static double project_velocities(struct Instance *instance, double time, double *state) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double size = move_velocities(instance, time, state, VELOCITIES);
   bool hold = isfinite(size) && (!has_redundant(&work) || (evaluate_residual(instance, time, state, VELOCITIES) &&
                                                            others_hold(&work, state, lagrangian.coordinate_count)));
@@ -164,7 +165,7 @@ static bool holds_velocities_alone(void) {
 }
 
 static double project(struct Instance *instance, double time, double *state) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double size = INFINITY, before;
   memcpy(work.start, state, lagrangian.state_count * sizeof *state);
   if (holds_velocities_alone()) return project_velocities(instance, time, state);
@@ -185,31 +186,31 @@ static double project(struct Instance *instance, double time, double *state) {
 }
 
 static bool found_redundant(struct Instance *instance) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   return has_redundant(&work);
 }
 
 static double drift(struct Instance *instance, double time) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
   return project(instance, time, work.before);
 }
 
 /* Returns the first constraint whose residual is not finite. */
-static size_t find_without_value(const struct Work *work) {
+static size_t find_without_value(const struct ProjectionWork *work) {
   size_t j = 0;
   while (j + 1 < lagrangian.constraints.count && isfinite(work->residual[j])) j++;
   return j;
 }
 
 /* Returns the residual of a constraint as a length in units of scale. */
-static double way_of(const struct Work *work, size_t constraint, double scale) {
+static double way_of(const struct ProjectionWork *work, size_t constraint, double scale) {
   double residual = work->residual[constraint];
   return residual == 0.0 ? 0.0 : fabs(residual) / (work->slope[constraint] * scale);
 }
 
 /* Returns the constraint of largest residual above *most, and sets *most to it; constraints.count for none. */
-static size_t find_above(const struct Work *work, const double *state, size_t first, double *most) {
+static size_t find_above(const struct ProjectionWork *work, const double *state, size_t first, double *most) {
   size_t worst = lagrangian.constraints.count;
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
@@ -223,7 +224,7 @@ static size_t find_above(const struct Work *work, const double *state, size_t fi
 }
 
 /* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
-static size_t find_violated(const struct Work *work, const double *state, size_t first) {
+static size_t find_violated(const struct ProjectionWork *work, const double *state, size_t first) {
   double most = fulfilled;
   return find_above(work, state, first, &most);
 }
@@ -233,7 +234,7 @@ static size_t find_violated(const struct Work *work, const double *state, size_t
  * coordinates and velocities.
  */
 static size_t violated_constraint(struct Instance *instance, double time) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   int singular = instance->singular;
   size_t n = lagrangian.coordinate_count, none = lagrangian.constraints.count, larger = none;
   size_t found = find_violated(&work, work.start, (size_t)*work.first);
@@ -252,8 +253,9 @@ static size_t violated_constraint(struct Instance *instance, double time) {
  * Moves the coordinates from afar onto the constraints: to the nearest point if least, else to any point. False if the
  * iterations do not converge.
  */
-static bool approach_from(struct Instance *instance, double time, double *state, enum Target target, bool least) {
-  struct Work work = work_of(instance);
+static bool approach_from(struct Instance *instance, double time, double *state, enum ProjectionTarget target,
+                          bool least) {
+  struct ProjectionWork work = work_of(instance);
   memcpy(state, work.before, lagrangian.state_count * sizeof *state);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   for (int iteration = 0; iteration < START_LIMIT; iteration++) {
@@ -268,8 +270,8 @@ static bool approach_from(struct Instance *instance, double time, double *state,
 }
 
 /* Moves the coordinates. Returns the constraint that cannot be fulfilled; constraints.count for none. */
-static size_t approach_positions(struct Instance *instance, double time, double *state, enum Target target) {
-  struct Work work = work_of(instance);
+static size_t approach_positions(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
+  struct ProjectionWork work = work_of(instance);
   if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, target);
@@ -278,8 +280,8 @@ static size_t approach_positions(struct Instance *instance, double time, double 
   return find_violated(&work, state, 0);
 }
 
-static size_t approach_velocities(struct Instance *instance, double time, double *state, enum Target target) {
-  struct Work work = work_of(instance);
+static size_t approach_velocities(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
+  struct ProjectionWork work = work_of(instance);
   if (!isfinite(move_velocities(instance, time, state, target))) return 0;
   if (!evaluate_residual(instance, time, state, target)) return 0;
   return find_violated(&work, state, lagrangian.coordinate_count);
@@ -300,7 +302,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
                 text, length >= 500 ? ", ..." : "");
 }
 
-static void log_redundant(const struct Instance *instance, const struct Work *work) {
+static void log_redundant(const struct Instance *instance, const struct ProjectionWork *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
     if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* the row of an open contact is 0 */
       log_message(instance, STATUS_DONE, "time %g: the %s '%s' is redundant; the forces are those of least norm",
@@ -308,7 +310,7 @@ static void log_redundant(const struct Instance *instance, const struct Work *wo
 }
 
 static bool report_violated(struct Instance *instance, size_t constraint, const char *what) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   if (instance->singular != 0) {
     log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
     return false;
@@ -330,7 +332,7 @@ static bool report_violated(struct Instance *instance, size_t constraint, const 
  * state: the instance's own, which piecewise functions follow; it is restored.
  */
 static size_t find_vanishing(struct Instance *instance, double time, double *state) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   size_t n = lagrangian.coordinate_count, found = 0;
   double *there = work.moved; /* workspace that projections of velocities do not use */
   if (!evaluate_residual(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
@@ -372,7 +374,7 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
 }
 
 static bool make_consistent(struct Instance *instance) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double time = instance->fmu_state->time;
   bool keeps_fixed = lagrangian.constraints.coordinate_is_fixed != NULL;
   memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
@@ -394,7 +396,7 @@ static bool make_consistent(struct Instance *instance) {
 
 /* True if an input has jumped: coordinates cannot follow it. Logs that the step is discarded. */
 static bool has_jumped(struct Instance *instance) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double time = instance->fmu_state->time, scale = largest_scale(instance->state, 0);
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   if (lagrangian.constraints.prescribed_input_count == 0 ||
@@ -424,7 +426,7 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
 }
 
 static bool follow_change(struct Instance *instance) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   double time = instance->fmu_state->time;
   const char *what = "coordinates";
   if (has_jumped(instance)) return false;
@@ -445,7 +447,7 @@ static bool follow_change(struct Instance *instance) {
 }
 
 static const char *weakest(struct Instance *instance, double time, const double *state) {
-  struct Work work = work_of(instance);
+  struct ProjectionWork work = work_of(instance);
   size_t found = 0;
   double least = INFINITY;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);

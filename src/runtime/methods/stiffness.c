@@ -82,7 +82,7 @@ double predicted_stiffness(const struct Taylor *taylor, int order, double tolera
 }
 
 /* Columns or rows of the Jacobian, from first to end - 1. */
-struct Range {
+struct IndexRange {
   size_t first, end;
 };
 
@@ -93,7 +93,7 @@ static double scale_of_state(size_t state) {
 }
 
 /* Returns the norm of a block: the largest row sum of its elements in these units. sum: workspace. */
-static double norm_of_block(const double *jacobian, struct Range rows, struct Range columns, double *sum) {
+static double norm_of_block(const double *jacobian, struct IndexRange rows, struct IndexRange columns, double *sum) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   for (size_t i = rows.first; i < rows.end; i++) sum[i - rows.first] = 0.0;
   for (size_t j = columns.first; j < columns.end; j++) {
@@ -114,11 +114,11 @@ static double norm_of_block(const double *jacobian, struct Range rows, struct Ra
  */
 double stiffness_rate(const double *jacobian, double *work) {
   size_t n = lagrangian.coordinate_count;
-  const struct Range q = {0, n}, v = {n, 2 * n}, z = {2 * n, lagrangian.state_count};
+  const struct IndexRange q = {0, n}, v = {n, 2 * n}, z = {2 * n, lagrangian.state_count};
   double stiffness = norm_of_block(jacobian, v, q, work), damping = norm_of_block(jacobian, v, v, work);
   double rate = 0.5 * (damping + sqrt(damping * damping + 4.0 * stiffness));
   if (z.first == z.end) return rate;
-  double prescribed_motion = norm_of_block(jacobian, v, z, work);
-  return rate + norm_of_block(jacobian, z, z, work) + sqrt(prescribed_motion * norm_of_block(jacobian, z, v, work)) +
-         cbrt(prescribed_motion * norm_of_block(jacobian, z, q, work));
+  double coupling = norm_of_block(jacobian, v, z, work);
+  return rate + norm_of_block(jacobian, z, z, work) + sqrt(coupling * norm_of_block(jacobian, z, v, work)) +
+         cbrt(coupling * norm_of_block(jacobian, z, q, work));
 }

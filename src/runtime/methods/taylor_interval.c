@@ -170,8 +170,8 @@ static double rounding_of_right_side(struct Instance *instance, struct Taylor *t
 /* Returns the largest defect inside the step and at its end; stops at the first one that is too large. */
 static double defect_over(struct Instance *instance, struct Taylor *taylor, double s) {
   double largest = 0.0;
-  for (int i = 0; i < DEFECT_PLACES && largest <= 1.0; i++)
-    largest = fmax(largest, defect(instance, taylor, slots_of_defects[i] * s));
+  for (int i = 0; i < DEFECT_POINTS && largest <= 1.0; i++)
+    largest = fmax(largest, defect(instance, taylor, defect_points[i] * s));
   return fmax(largest, defect(instance, taylor, s));
 }
 

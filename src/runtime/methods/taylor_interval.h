@@ -1,6 +1,6 @@
 /* Step size of the Taylor method. */
-#ifndef TAYLOR_REACH_H
-#define TAYLOR_REACH_H
+#ifndef TAYLOR_INTERVAL_H
+#define TAYLOR_INTERVAL_H
 
 #include "methods/taylor.h"
 

@@ -25,12 +25,12 @@ static const double look_ahead = 1e4;
 /* Rounding error of the right side in the defect, in units of the last place; and margin of that of the state. */
 static const double rounding = 100.0, rounding_margin = 10.0;
 /* Fractions of the step at which the defect is also measured if the coefficients do not limit the step. */
-static const double slots_of_defects[] = {0.15, 0.35, 0.55, 0.75, 0.9};
+static const double defect_points[] = {0.15, 0.35, 0.55, 0.75, 0.9};
 
 /* Ratio of consecutive terms at the end of the step: smaller if fast modes limit the step, otherwise larger. */
 enum { FALL_OF_FAST = 3 };
 
-enum { DEFECT_PLACES = sizeof slots_of_defects / sizeof *slots_of_defects };
+enum { DEFECT_POINTS = sizeof defect_points / sizeof *defect_points };
 
 /* Returns the tolerance of the error in one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static inline double local_tolerance(double tolerance) {

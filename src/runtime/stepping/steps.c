@@ -76,7 +76,7 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 }
 
 /* Data of a communication step in progress. */
-struct Course {
+struct StepProgress {
   struct EventProgress progress;
   int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
   bool is_reported;                /* the warning was logged */
@@ -86,7 +86,7 @@ struct Course {
 
 /* Returns the operations in the communication step. */
 static double work_in_step(const struct Instance *instance, const struct CommunicationStep *step,
-                           const struct Course *course) {
+                           const struct StepProgress *course) {
   const int64_t *present = instance->fmu_state->statistics, *before = course->before;
   return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.steps.work.evaluation +
          (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.steps.work.event +
@@ -103,7 +103,8 @@ static const char *excess(const struct CommunicationStep *step, double work) {
 }
 
 /* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
-static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step, struct Course *course) {
+static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step,
+                              struct StepProgress *course) {
   double work = work_in_step(instance, step, course);
   const char *problem = excess(step, work);
   if (problem != NULL && lagrangian.event_laws != NULL)
@@ -116,7 +117,8 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
 }
 
 /* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
-static const char *advance_once(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
+static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
+                                struct StepProgress *course) {
   const struct EventLaws *laws = lagrangian.event_laws;
   const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
@@ -134,7 +136,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
 }
 
 /* Handles the next event in the solver's last step, which then ends there. Returns NULL, or the reason for stopping. */
-static const char *pass_events(struct Instance *instance, struct CommunicationStep *step, struct Course *course) {
+static const char *pass_events(struct Instance *instance, struct CommunicationStep *step, struct StepProgress *course) {
   return lagrangian.event_laws != NULL ? lagrangian.event_laws->pass(instance, step, &course->progress) : NULL;
 }
 
@@ -150,7 +152,8 @@ static void notify_observer(struct Instance *instance, struct CommunicationStep 
  */
 static const char *make_steps(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
                               double *reached) {
-  struct Course course = {.progress = {.searched = step->start, .close_events = instance->fmu_state->close_events}};
+  struct StepProgress course = {
+      .progress = {.searched = step->start, .close_events = instance->fmu_state->close_events}};
   memcpy(course.before, instance->fmu_state->statistics, sizeof course.before);
   for (;;) {
     const char *problem = pass_events(instance, step, &course);

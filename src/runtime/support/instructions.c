@@ -213,7 +213,8 @@ void instructions_limit(const struct Frame *frame, const struct LimitCheck *chec
                         struct SeriesLimit *limit) {
   for (size_t i = 0; i < count; i++) {
     const struct LimitCheck *check = &checks[i];
-    if (check->is_gated) LIMIT_WHERE(*at(frame->base, check->guard_condition) > 0.0, check_limit(frame, check, limit));
+    if (check->is_guarded)
+      LIMIT_WHERE(*at(frame->base, check->guard_condition) > 0.0, check_limit(frame, check, limit));
     else check_limit(frame, check, limit);
   }
 }

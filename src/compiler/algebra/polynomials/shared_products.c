@@ -27,20 +27,20 @@ struct Product {
 };
 
 /* A product of two bases, with left <= right. */
-struct Pair {
+struct FactorPair {
   Node left, right;
 };
 
 /*
  * State of the method. Bases below first_pair are nodes; the others are pairs, in the order in which they were found.
  */
-struct Sharing {
+struct ProductSharing {
   struct Graph *graph;
   Node *members; /* all nodes below the given ones, ascending */
   size_t member_count;
   Node first_pair;
   Node *value; /* [node or pair]: its replacement; ZERO while unknown */
-  struct Pair *pairs;
+  struct FactorPair *pairs;
   size_t pair_count;
   struct Product *products;
   size_t product_count, deciding_count; /* of products; of factors in those that decide */
@@ -70,7 +70,7 @@ static void mark_terms(const struct Graph *graph, const struct Cone *cone, bool 
   }
 }
 
-static void append_products(struct Sharing *sharing, const bool *is_term, const bool *decides) {
+static void append_products(struct ProductSharing *sharing, const bool *is_term, const bool *decides) {
   for (size_t i = 0; i < sharing->member_count; i++) {
     struct Product product = {.node = sharing->members[i]};
     if (!is_term[product.node] || !is_product(sharing->graph, product.node)) continue;
@@ -96,14 +96,14 @@ static int times_of(const struct Factor *left, const struct Factor *right) {
 }
 
 static int compare_pairs(const void *a, const void *b) {
-  const struct Pair *one = a, *other = b;
+  const struct FactorPair *one = a, *other = b;
   if (one->left != other->left) return one->left < other->left ? -1 : 1;
   return (one->right > other->right) - (one->right < other->right);
 }
 
 /* Returns all pairs of deciding products, sorted, each as often as it occurs. */
-static struct Pair *pairs_of(const struct Sharing *sharing, size_t *count) {
-  struct Pair *pairs = NULL;
+static struct FactorPair *pairs_of(const struct ProductSharing *sharing, size_t *count) {
+  struct FactorPair *pairs = NULL;
   *count = 0;
   for (size_t k = 0; k < sharing->product_count; k++) {
     const struct Product *product = &sharing->products[k];
@@ -111,7 +111,7 @@ static struct Pair *pairs_of(const struct Sharing *sharing, size_t *count) {
       for (int j = i; j < product->count; j++)
         for (int times = times_of(&product->factors[i], &product->factors[j]); times > 0; times--) {
           pairs = make_room(pairs, *count, sizeof *pairs);
-          pairs[(*count)++] = (struct Pair){product->factors[i].base, product->factors[j].base};
+          pairs[(*count)++] = (struct FactorPair){product->factors[i].base, product->factors[j].base};
         }
   }
   graph_work(sharing->graph, *count);
@@ -119,17 +119,17 @@ static struct Pair *pairs_of(const struct Sharing *sharing, size_t *count) {
   return pairs;
 }
 
-static bool is_constant(const struct Sharing *sharing, Node base) {
+static bool is_constant(const struct ProductSharing *sharing, Node base) {
   if (base < sharing->first_pair) return graph_is_constant_in_time(sharing->graph, base);
-  const struct Pair *pair = &sharing->pairs[base - sharing->first_pair];
+  const struct FactorPair *pair = &sharing->pairs[base - sharing->first_pair];
   return is_constant(sharing, pair->left) && is_constant(sharing, pair->right);
 }
 
 /* Finds the most frequent pair; among equals, one of two factors that vary in time. False if none occurs twice. */
-static bool find_most_frequent(const struct Sharing *sharing, struct Pair *best) {
+static bool find_most_frequent(const struct ProductSharing *sharing, struct FactorPair *best) {
   size_t count, most = 1;
   bool best_moves = false;
-  struct Pair *pairs = pairs_of(sharing, &count);
+  struct FactorPair *pairs = pairs_of(sharing, &count);
   for (size_t i = 0, end; i < count; i = end) {
     for (end = i + 1; end < count && compare_pairs(&pairs[i], &pairs[end]) == 0;) end++;
     bool moves = !is_constant(sharing, pairs[i].left) && !is_constant(sharing, pairs[i].right);
@@ -155,7 +155,7 @@ static void remove_spent(struct Product *product) {
   product->count = kept;
 }
 
-static void replace_pair(struct Product *product, struct Pair pair, Node base) {
+static void replace_pair(struct Product *product, struct FactorPair pair, Node base) {
   struct Factor *left = factor_with(product, pair.left), *right = factor_with(product, pair.right);
   int times = left != NULL && right != NULL ? times_of(left, right) : 0;
   if (times == 0) return;
@@ -165,8 +165,8 @@ static void replace_pair(struct Product *product, struct Pair pair, Node base) {
   if (product->count < FACTOR_LIMIT) product->factors[product->count++] = (struct Factor){base, times};
 }
 
-static void replace_pairs(struct Sharing *sharing) {
-  struct Pair pair;
+static void replace_pairs(struct ProductSharing *sharing) {
+  struct FactorPair pair;
   while (graph_limit(sharing->graph) == NULL && find_most_frequent(sharing, &pair)) {
     Node base = sharing->first_pair + (Node)sharing->pair_count;
     sharing->pairs = make_room(sharing->pairs, sharing->pair_count, sizeof pair);
@@ -175,22 +175,22 @@ static void replace_pairs(struct Sharing *sharing) {
   }
 }
 
-static Node value_of(struct Sharing *sharing, Node base) {
+static Node value_of(struct ProductSharing *sharing, Node base) {
   if (base < sharing->first_pair || sharing->value[base] != ZERO) return sharing->value[base];
-  struct Pair pair = sharing->pairs[base - sharing->first_pair];
+  struct FactorPair pair = sharing->pairs[base - sharing->first_pair];
   Node left = value_of(sharing, pair.left), right = value_of(sharing, pair.right);
   sharing->value[base] =
       left == right ? power_number(sharing->graph, left, 2.0) : graph_node(sharing->graph, MULTIPLY, left, right);
   return sharing->value[base];
 }
 
-static Node product_value(struct Sharing *sharing, struct Product product) {
+static Node product_value(struct ProductSharing *sharing, struct Product product) {
   for (int i = 0; i < product.count; i++)
     if (product.factors[i].base != product.node) product.factors[i].base = value_of(sharing, product.factors[i].base);
   return product_of(sharing->graph, product.factors, product.count);
 }
 
-static void find_values(struct Sharing *sharing, const bool *is_term) {
+static void find_values(struct ProductSharing *sharing, const bool *is_term) {
   struct Graph *graph = sharing->graph;
   sharing->value = allocate(sharing->first_pair + sharing->pair_count, sizeof *sharing->value);
   for (size_t i = 0, next = 0; i < sharing->member_count; i++) {
@@ -218,7 +218,8 @@ static bool *terms_below(struct Graph *graph, size_t count, const Node *nodes) {
 void share_products(struct Graph *graph, size_t leading, size_t count, Node *nodes) {
   if (graph_limit(graph) != NULL) return;
   bool *decides = terms_below(graph, leading, nodes), *is_term = terms_below(graph, count, nodes);
-  struct Sharing sharing = {.graph = graph, .first_pair = (Node)graph->count, .member_count = graph->cone->count};
+  struct ProductSharing sharing = {
+      .graph = graph, .first_pair = (Node)graph->count, .member_count = graph->cone->count};
   sharing.pairs = make_room(NULL, 0, sizeof *sharing.pairs);
   sharing.products = make_room(NULL, 0, sizeof *sharing.products);
   sharing.members = allocate(sharing.member_count, sizeof *sharing.members);

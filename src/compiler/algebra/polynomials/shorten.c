@@ -7,14 +7,14 @@
 #include "base/memory.h"
 
 /* Numbers of operations: evaluated at each time, and once for given parameters. */
-struct Length {
+struct EvaluationCost {
   size_t in_motion, once;
 };
 
 /* Counts the operations of all nodes together. */
-static struct Length length_of(const struct Graph *graph, const Node *nodes, size_t count) {
+static struct EvaluationCost length_of(const struct Graph *graph, const Node *nodes, size_t count) {
   const struct Cone *cone = graph->cone;
-  struct Length length = {0};
+  struct EvaluationCost length = {0};
   if (graph_limit(graph) != NULL) return length;
   cone_collect(graph->cone, graph, nodes, count);
   for (size_t index = 0; index < cone->count; index++) {
@@ -26,7 +26,7 @@ static struct Length length_of(const struct Graph *graph, const Node *nodes, siz
 }
 
 bool are_shorter(const struct Graph *graph, size_t count, const Node *nodes, const Node *others) {
-  struct Length length = length_of(graph, nodes, count), other = length_of(graph, others, count);
+  struct EvaluationCost length = length_of(graph, nodes, count), other = length_of(graph, others, count);
   return length.in_motion != other.in_motion ? length.in_motion < other.in_motion : length.once < other.once;
 }
 

@@ -15,27 +15,27 @@ int compare_positions(const void *first, const void *second) {
 enum { JOIN_WORK = 4 };
 
 /* The neighbours of a row in the elimination graph, ascending. */
-struct Set {
+struct NeighbourSet {
   size_t *items;
   size_t count;
 };
 
 /* A priority queue of rows, as a binary heap: the lowest degree first. Entries with an outdated degree are skipped. */
-struct Waiting {
+struct QueueEntry {
   size_t degree, row;
 };
 
 /* The heap: no item precedes its parent, item (i - 1) / 2. */
 struct Queue {
-  struct Waiting *items;
+  struct QueueEntry *items;
   size_t count;
 };
 
-static bool precedes(struct Waiting a, struct Waiting b) {
+static bool precedes(struct QueueEntry a, struct QueueEntry b) {
   return a.degree < b.degree || (a.degree == b.degree && a.row < b.row);
 }
 
-static void push(struct Queue *queue, struct Waiting entry) {
+static void push(struct Queue *queue, struct QueueEntry entry) {
   queue->items = make_room(queue->items, queue->count, sizeof *queue->items);
   size_t index = queue->count++;
   for (; index > 0 && precedes(entry, queue->items[(index - 1) / 2]); index = (index - 1) / 2)
@@ -43,8 +43,8 @@ static void push(struct Queue *queue, struct Waiting entry) {
   queue->items[index] = entry;
 }
 
-static struct Waiting pop(struct Queue *queue) {
-  struct Waiting top = queue->items[0], last = queue->items[--queue->count];
+static struct QueueEntry pop(struct Queue *queue) {
+  struct QueueEntry top = queue->items[0], last = queue->items[--queue->count];
   size_t index = 0;
   for (size_t child = 1; child < queue->count; child = 2 * index + 1) {
     if (child + 1 < queue->count && precedes(queue->items[child + 1], queue->items[child])) child++;
@@ -56,8 +56,8 @@ static struct Waiting pop(struct Queue *queue) {
   return top;
 }
 
-static struct Set *neighbours_of(size_t count, const struct Position *positions, size_t position_count) {
-  struct Set *sets = allocate(count, sizeof *sets);
+static struct NeighbourSet *neighbours_of(size_t count, const struct Position *positions, size_t position_count) {
+  struct NeighbourSet *sets = allocate(count, sizeof *sets);
   size_t *degree = allocate(count, sizeof *degree);
   for (size_t i = 0; i < position_count; i++) {
     if (positions[i].row == positions[i].column) continue;
@@ -76,8 +76,8 @@ static struct Set *neighbours_of(size_t count, const struct Position *positions,
 }
 
 /* Adds the neighbours of the eliminated row; removes that row, and the row itself. */
-static void join(struct Set *set, size_t row, const struct Set *others, size_t eliminated) {
-  struct Set joined = {.items = allocate(set->count + others->count, sizeof(size_t))};
+static void join(struct NeighbourSet *set, size_t row, const struct NeighbourSet *others, size_t eliminated) {
+  struct NeighbourSet joined = {.items = allocate(set->count + others->count, sizeof(size_t))};
   for (size_t i = 0, j = 0; i < set->count || j < others->count;) {
     size_t next =
         j == others->count || (i < set->count && set->items[i] < others->items[j]) ? set->items[i] : others->items[j];
@@ -89,15 +89,15 @@ static void join(struct Set *set, size_t row, const struct Set *others, size_t e
 }
 
 /* Eliminates all rows. Afterwards the sets are the columns of L below the diagonal. */
-static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct Set *sets, size_t *order,
-                           size_t *index) {
+static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct NeighbourSet *sets,
+                           size_t *order, size_t *index) {
   struct Queue queue = {0};
   bool *is_eliminated = allocate(count, sizeof *is_eliminated);
-  for (size_t row = 0; row < count; row++) push(&queue, (struct Waiting){sets[row].count, row});
+  for (size_t row = 0; row < count; row++) push(&queue, (struct QueueEntry){sets[row].count, row});
   size_t next = 0;
   while (next < count && graph_limit(graph) == NULL) {
-    struct Waiting waiting = pop(&queue);
-    const struct Set *set = &sets[waiting.row];
+    struct QueueEntry waiting = pop(&queue);
+    const struct NeighbourSet *set = &sets[waiting.row];
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
     if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* pushed again when they are gone */
     is_eliminated[waiting.row] = true;
@@ -107,7 +107,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
       size_t row = set->items[i];
       graph_work(graph, JOIN_WORK * (sets[row].count + set->count));
       join(&sets[row], row, set, waiting.row);
-      push(&queue, (struct Waiting){sets[row].count, row});
+      push(&queue, (struct QueueEntry){sets[row].count, row});
     }
   }
   for (size_t row = 0; row < count; row++) {
@@ -132,7 +132,7 @@ struct Elimination eliminate(const struct Graph *graph, size_t count, size_t lat
                              size_t position_count) {
   if (position_count == count * (count + 1) / 2) return full_elimination(count);
   struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
-  struct Set *sets = neighbours_of(count, positions, position_count);
+  struct NeighbourSet *sets = neighbours_of(count, positions, position_count);
   size_t *index = allocate(count, sizeof *index), *end = allocate(count, sizeof *end);
   eliminate_rows(graph, count, late, sets, result.order, index);
   for (size_t i = 0; i < count; i++)
@@ -143,7 +143,7 @@ struct Elimination eliminate(const struct Graph *graph, size_t count, size_t lat
   }
   result.column = allocate(result.start[count], sizeof(size_t));
   for (size_t column = 0; column < count; column++) {
-    const struct Set *set = &sets[result.order[column]];
+    const struct NeighbourSet *set = &sets[result.order[column]];
     for (size_t k = 0; k < set->count; k++) result.column[end[index[set->items[k]]]++] = column;
     result.column[end[column]++] = column;
   }

@@ -85,7 +85,7 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
 /* Creates the blocks of a matrix of count rows, the last of which are those of constraints. */
 static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
                                      struct Elements *elements, const struct Trees *trees) {
-  struct Components components = find_components(count, elements);
+  struct ConnectedComponents components = find_components(count, elements);
   size_t *start = sort_by_components(elements, &components);
   struct Inertia *inertia = allocate(1, sizeof *inertia);
   *inertia = (struct Inertia){.count = count,

@@ -16,7 +16,7 @@ static const double least_depth = 4.5;
 enum { LEAST_LINKS = 6 };
 
 /* State while the tree of links is built. */
-struct Builder {
+struct TreeBuilder {
   const struct Model *model;
   struct KinematicTrees *trees;
   size_t row_count;     /* coordinates and constraints */
@@ -27,7 +27,7 @@ struct Builder {
   Node *at_rest;        /* replacements of symbols: displacements are 0 */
 };
 
-static struct Vector without_displacements(const struct Builder *builder, struct Vector vector) {
+static struct Vector without_displacements(const struct TreeBuilder *builder, struct Vector vector) {
   if (builder->model->displacements.count > 0)
     substitute(builder->model->graph, vector.along, 3, builder->at_rest, vector.along);
   return vector;
@@ -49,7 +49,7 @@ static void append_row(struct TreeLink *link, size_t row) {
 }
 
 /* Appends the coordinates on whose velocities a vector depends. */
-static void find_coordinates(const struct Builder *builder, struct TreeLink *link, struct Vector velocity) {
+static void find_coordinates(const struct TreeBuilder *builder, struct TreeLink *link, struct Vector velocity) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
   cone_collect(graph->cone, graph, velocity.along, 3);
@@ -63,7 +63,7 @@ static void find_coordinates(const struct Builder *builder, struct TreeLink *lin
 }
 
 /* Fills in the motion subspace: the derivatives of a velocity by those of the link's coordinates. */
-static void set_motion_subspace(const struct Builder *builder, struct TreeLink *link, struct Vector velocity,
+static void set_motion_subspace(const struct TreeBuilder *builder, struct TreeLink *link, struct Vector velocity,
                                 bool is_angular) {
   struct Graph *graph = builder->model->graph;
   for (int component = 0; component < 3; component++) {
@@ -78,7 +78,7 @@ static void set_motion_subspace(const struct Builder *builder, struct TreeLink *
 }
 
 /* Fills in the pose of a link in its parent, and its motion subspace. */
-static void set_motion(const struct Builder *builder, struct TreeLink *link) {
+static void set_motion(const struct TreeBuilder *builder, struct TreeLink *link) {
   for (int i = 0; i < 3; i++) link->pose.rotation.row[i] = without_displacements(builder, link->pose.rotation.row[i]);
   link->pose.origin = without_displacements(builder, link->pose.origin);
   link->motion_subspace = allocate(link->count, sizeof *link->motion_subspace);
@@ -88,7 +88,7 @@ static void set_motion(const struct Builder *builder, struct TreeLink *link) {
 }
 
 /* Appends a link for a step from its parent. Returns its index. */
-static size_t append_link(struct Builder *builder, size_t parent, const struct Pose *step) {
+static size_t append_link(struct TreeBuilder *builder, size_t parent, const struct Pose *step) {
   struct KinematicTrees *trees = builder->trees;
   struct TreeLink link = {.parent = parent, .pose = *step};
   find_coordinates(builder, &link, step->velocity);
@@ -104,7 +104,7 @@ static size_t append_link(struct Builder *builder, size_t parent, const struct P
   return trees->count++;
 }
 
-static void create_links_of_frames(struct Builder *builder) {
+static void create_links_of_frames(struct TreeBuilder *builder) {
   const struct Mechanism *mechanism = &builder->model->mechanism;
   builder->last_link = allocate(mechanism->frame_count, sizeof *builder->last_link);
   builder->last_link[0] = NO_LINK;
@@ -117,7 +117,7 @@ static void create_links_of_frames(struct Builder *builder) {
 }
 
 /* Appends a link for a body that moves in its frame. */
-static void append_link_of_body(struct Builder *builder, size_t number) {
+static void append_link_of_body(struct TreeBuilder *builder, size_t number) {
   struct Graph *graph = builder->model->graph;
   const struct Body *body = &builder->model->mechanism.bodies[number];
   bool moves = false;
@@ -130,7 +130,7 @@ static void append_link_of_body(struct Builder *builder, size_t number) {
   builder->link_of_body[number] = append_link(builder, builder->last_link[body->frame], &step);
 }
 
-static void set_inertia_of_body(struct Builder *builder, size_t number) {
+static void set_inertia_of_body(struct TreeBuilder *builder, size_t number) {
   struct Graph *graph = builder->model->graph;
   const struct Body *body = &builder->model->mechanism.bodies[number];
   size_t number_of_link = builder->link_of_body[number];
@@ -142,7 +142,7 @@ static void set_inertia_of_body(struct Builder *builder, size_t number) {
   link->bodies = spatial_inertia_add(graph, &link->bodies, &inertia);
 }
 
-static void mark_coordinates_of(struct Builder *builder, Node node) {
+static void mark_coordinates_of(struct TreeBuilder *builder, Node node) {
   const struct Graph *graph = builder->model->graph;
   const struct Cone *cone = graph->cone;
   cone_collect(graph->cone, graph, &node, 1);
@@ -151,7 +151,7 @@ static void mark_coordinates_of(struct Builder *builder, Node node) {
       builder->is_elsewhere[graph_symbol_of(graph, cone->nodes[i])->index] = true;
 }
 
-static void append_links_of_bodies(struct Builder *builder) {
+static void append_links_of_bodies(struct TreeBuilder *builder) {
   const struct Mechanism *mechanism = &builder->model->mechanism;
   builder->link_of_body = allocate(mechanism->body_count, sizeof *builder->link_of_body);
   for (size_t i = 0; i < mechanism->body_count; i++) {
@@ -171,7 +171,7 @@ static void add_inertia(struct TreeLink *link, size_t i, size_t j, Node value) {
 /*
  * Adds the inertia of <kinetic> terms, potentials and regularization. It must couple coordinates of the same link only.
  */
-static void add_further_inertia(struct Builder *builder, Node regularization) {
+static void add_further_inertia(struct TreeBuilder *builder, Node regularization) {
   const struct Model *model = builder->model;
   struct Graph *graph = model->graph;
   size_t n = model->coordinates.count;
@@ -197,7 +197,7 @@ static size_t moved_link(const struct KinematicTrees *trees, size_t link) {
 }
 
 /* Finds the components of rows: coordinates on one path to the base move the same bodies. */
-static struct Components couple(const struct Builder *builder) {
+static struct ConnectedComponents couple(const struct TreeBuilder *builder) {
   const struct KinematicTrees *trees = builder->trees;
   struct Elements couplings = {0};
   for (size_t i = 0; i < trees->count; i++) {
@@ -210,14 +210,14 @@ static struct Components couple(const struct Builder *builder) {
   return find_components(builder->row_count, &couplings);
 }
 
-static void mark_columns(struct Builder *builder, const struct Elements *elements, const bool *is_local) {
+static void mark_columns(struct TreeBuilder *builder, const struct Elements *elements, const bool *is_local) {
   for (size_t k = 0; k < elements->count; k++)
     if (is_local == NULL || !is_local[elements->positions[k].row])
       builder->is_elsewhere[elements->positions[k].column] = true;
 }
 
 /* Excludes constraints that share a link: they may depend on each other, which only saddle.h detects. */
-static void leave_shared_links(const struct Builder *builder, const size_t *link, size_t count, bool *is_local) {
+static void leave_shared_links(const struct TreeBuilder *builder, const size_t *link, size_t count, bool *is_local) {
   size_t *counts = allocate(builder->trees->count, sizeof *counts);
   for (size_t j = 0; j < count; j++)
     if (is_local[j]) counts[link[j]]++;
@@ -228,7 +228,7 @@ static void leave_shared_links(const struct Builder *builder, const size_t *link
  * Returns, for each constraint, whether it is local: permanent, and the only one on the coordinates of a single link,
  * as the norm of a quaternion is. If coordinates are fixed at the start, none is.
  */
-static bool *find_local_constraints(const struct Builder *builder, const struct ConstraintBlock *constraint_block) {
+static bool *find_local_constraints(const struct TreeBuilder *builder, const struct ConstraintBlock *constraint_block) {
   const struct Model *model = builder->model;
   const struct Elements *jacobian = constraint_block->jacobian;
   bool *is_local = allocate(constraint_block->count, sizeof *is_local);
@@ -249,7 +249,7 @@ static bool *find_local_constraints(const struct Builder *builder, const struct 
 }
 
 /* Adds a constraint within one link to its rows, without motion. Others exclude a tree; saddle.h solves them. */
-static void add_constraints(struct Builder *builder, const struct ConstraintBlock *constraint_block) {
+static void add_constraints(struct TreeBuilder *builder, const struct ConstraintBlock *constraint_block) {
   const struct Elements *jacobian = constraint_block->jacobian;
   size_t n = builder->model->coordinates.count;
   const bool *is_local = find_local_constraints(builder, constraint_block);
@@ -264,7 +264,7 @@ static void add_constraints(struct Builder *builder, const struct ConstraintBloc
 }
 
 /* Fills in the elements of J in these rows. */
-static void set_constraints(struct Builder *builder, const struct ConstraintBlock *constraint_block) {
+static void set_constraints(struct TreeBuilder *builder, const struct ConstraintBlock *constraint_block) {
   const struct Elements *jacobian = constraint_block->jacobian;
   size_t n = builder->model->coordinates.count;
   for (size_t k = 0; k < jacobian->count; k++) {
@@ -277,7 +277,7 @@ static void set_constraints(struct Builder *builder, const struct ConstraintBloc
 }
 
 /* Returns, for each component, whether it has enough links and is deep enough on average. */
-static bool *find_deep(const struct KinematicTrees *trees, const struct Components *components) {
+static bool *find_deep(const struct KinematicTrees *trees, const struct ConnectedComponents *components) {
   double *depth = allocate(trees->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
          *count = allocate(components->count, sizeof *count);
   size_t *moving = allocate(components->count, sizeof *moving);
@@ -297,7 +297,7 @@ static bool *find_deep(const struct KinematicTrees *trees, const struct Componen
 }
 
 /* Chooses the components that are trees as a whole, and deep. True if there are any. */
-static bool choose_trees(struct Builder *builder, const struct Components *components) {
+static bool choose_trees(struct TreeBuilder *builder, const struct ConnectedComponents *components) {
   struct KinematicTrees *trees = builder->trees;
   size_t n = builder->row_count;
   bool *is_tree = find_deep(trees, components), any = false;
@@ -318,7 +318,8 @@ static bool choose_trees(struct Builder *builder, const struct Components *compo
  * Fills in motion subspaces and inertias. No node is made before, so that systems without trees have the same nodes as
  * without this search.
  */
-static void set_links(struct Builder *builder, const struct ConstraintBlock *constraint_block, Node regularization) {
+static void set_links(struct TreeBuilder *builder, const struct ConstraintBlock *constraint_block,
+                      Node regularization) {
   for (size_t i = 0; i < builder->trees->count; i++) set_motion(builder, &builder->trees->items[i]);
   for (size_t i = 0; i < builder->model->mechanism.body_count; i++)
     if (builder->model->mechanism.bodies[i].is_in_frame) set_inertia_of_body(builder, i);
@@ -336,19 +337,19 @@ struct KinematicTrees *no_kinematic_trees(size_t row_count) {
 struct KinematicTrees *kinematic_trees_create(const struct Model *model, const struct ConstraintBlock *constraint_block,
                                               Node regularization) {
   size_t rows = model->coordinates.count + constraint_block->count;
-  struct Builder builder = {.model = model,
-                            .trees = no_kinematic_trees(rows),
-                            .row_count = rows,
-                            .link_of = allocate(rows, sizeof *builder.link_of),
-                            .is_elsewhere = allocate(rows, sizeof *builder.is_elsewhere),
-                            .at_rest = own_symbols(model->graph)};
+  struct TreeBuilder builder = {.model = model,
+                                .trees = no_kinematic_trees(rows),
+                                .row_count = rows,
+                                .link_of = allocate(rows, sizeof *builder.link_of),
+                                .is_elsewhere = allocate(rows, sizeof *builder.is_elsewhere),
+                                .at_rest = own_symbols(model->graph)};
   for (size_t i = 0; i < model->graph->symbol_count; i++)
     if (model->graph->symbols[i].kind == DISPLACEMENT) builder.at_rest[i] = ZERO;
   for (size_t i = 0; i < rows; i++) builder.link_of[i] = NO_LINK;
   create_links_of_frames(&builder);
   append_links_of_bodies(&builder);
   add_constraints(&builder, constraint_block);
-  struct Components components = couple(&builder);
+  struct ConnectedComponents components = couple(&builder);
   if (!choose_trees(&builder, &components)) return builder.trees;
   set_links(&builder, constraint_block, regularization);
   choose_trees(&builder, &components);

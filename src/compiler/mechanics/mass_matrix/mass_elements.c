@@ -43,8 +43,8 @@ static size_t root_of(size_t *parent, size_t i) {
   return i;
 }
 
-struct Components find_components(size_t count, const struct Elements *elements) {
-  struct Components components = {.of = allocate(count, sizeof(size_t))};
+struct ConnectedComponents find_components(size_t count, const struct Elements *elements) {
+  struct ConnectedComponents components = {.of = allocate(count, sizeof(size_t))};
   size_t *parent = allocate(count, sizeof *parent);
   for (size_t i = 0; i < count; i++) parent[i] = i;
   for (size_t k = 0; k < elements->count; k++) {
@@ -56,7 +56,7 @@ struct Components find_components(size_t count, const struct Elements *elements)
   return components;
 }
 
-size_t *sort_by_components(struct Elements *elements, const struct Components *components) {
+size_t *sort_by_components(struct Elements *elements, const struct ConnectedComponents *components) {
   struct Elements sorted = elements_create();
   size_t *start = allocate(components->count + 1, sizeof *start), *next = allocate(elements->count, sizeof *next);
   size_t *first = allocate(components->count, sizeof *first);
@@ -115,7 +115,7 @@ static void try_columns(const struct Model *model, const Node *momentum, const s
 
 /* Replaces the elements of each component by reduced fractions if these are shorter, and removes those that vanish. */
 static void shorten_elements(const struct Model *model, const Node *momentum, struct Elements *elements) {
-  struct Components components = find_components(model->coordinates.count, elements);
+  struct ConnectedComponents components = find_components(model->coordinates.count, elements);
   size_t *start = sort_by_components(elements, &components), kept = 0;
   for (size_t component = 0; component < components.count; component++) {
     size_t first = start[component], count = start[component + 1] - first;

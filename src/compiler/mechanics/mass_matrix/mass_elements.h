@@ -21,13 +21,13 @@ struct Elements elements_of(const struct Model *model, const Node *momentum, con
 void elements_append(struct Elements *elements, size_t row, size_t column, Node node);
 
 /* Connected components: coordinates that are coupled, directly or through others; numbered by their first ones. */
-struct Components {
+struct ConnectedComponents {
   size_t *of; /* [coordinates] */
   size_t count;
 };
 
 /* Finds the components of count coordinates, by union-find. */
-struct Components find_components(size_t count, const struct Elements *elements);
+struct ConnectedComponents find_components(size_t count, const struct Elements *elements);
 
 /* Sorts the elements by components. Returns the start of each component, and the end. */
-size_t *sort_by_components(struct Elements *elements, const struct Components *components);
+size_t *sort_by_components(struct Elements *elements, const struct ConnectedComponents *components);

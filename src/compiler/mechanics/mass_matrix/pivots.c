@@ -11,15 +11,15 @@ double next_random(uint64_t *seed) {
 }
 
 /* The kind of pivot that ends a numerical factorization L D L^T. */
-enum Ending { SINGULAR, NOT_POSITIVE };
+enum PivotFailure { SINGULAR, NOT_POSITIVE };
 
 /*
  * Factors a block numerically. Returns the coordinate of the first pivot that is 0, or with NOT_POSITIVE also negative;
  * count, the number of all rows, if there is none. *sign is the sign of the last pivot, 0 for a zero one. A pivot is 0
  * up to rounding if it is below 1e-10 of its diagonal element.
  */
-static size_t end_in_block(const struct InertiaBlock *block, const double *values, size_t count, enum Ending ending,
-                           int *sign) {
+static size_t end_in_block(const struct InertiaBlock *block, const double *values, size_t count,
+                           enum PivotFailure ending, int *sign) {
   const size_t *start = block->start, *column = block->column;
   double *factor = allocate(start[block->count], sizeof *factor), *row = allocate(block->count, sizeof *row);
   size_t found = count;
@@ -45,7 +45,8 @@ static size_t end_in_block(const struct InertiaBlock *block, const double *value
 }
 
 /* Does the same for all blocks without a tree; -1 if an element of M is not finite. */
-static long ending_coordinate(const struct Inertia *inertia, const double *values, enum Ending ending, int *sign) {
+static long ending_coordinate(const struct Inertia *inertia, const double *values, enum PivotFailure ending,
+                              int *sign) {
   size_t found = inertia->count;
   for (size_t b = 0; b < inertia->block_count; b++) {
     const struct InertiaBlock *block = &inertia->blocks[b];

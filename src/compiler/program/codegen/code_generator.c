@@ -27,35 +27,35 @@ static Slot slot_of_symbol(const struct CodeGenerator *generator, const struct S
   size_t index = (size_t)symbol->index, n = generator->coordinates;
   switch (symbol->kind) {
   case PARAMETER:
-  case MODE: return slot_in(SPACE_PARAMETER, index);
-  case TIME: return slot_in(SPACE_TIME, 0);
-  case COORDINATE: return slot_in(SPACE_STATE, index);
-  case VELOCITY: return slot_in(SPACE_STATE, n + index);
-  case STATE: return slot_in(SPACE_STATE, 2 * n + index);
-  case ACCELERATION: return slot_in(SPACE_ACCELERATION, index);
-  case INPUT: return slot_in(SPACE_INPUT, index);
-  case SEED_PARAMETER: return slot_in(SPACE_SEED_PARAMETER, index);
-  case SEED_TIME: return slot_in(SPACE_SEED_TIME, 0);
-  case SEED_COORDINATE: return slot_in(SPACE_SEED_STATE, index);
-  case SEED_VELOCITY: return slot_in(SPACE_SEED_STATE, n + index);
-  case SEED_STATE: return slot_in(SPACE_SEED_STATE, 2 * n + index);
-  case SEED_ACCELERATION: return slot_in(SPACE_SEED_ACCELERATION, index);
-  case SEED_RESULT: return slot_in(SPACE_SEED_RESULT, index);
+  case MODE: return slot_at(SPACE_PARAMETER, index);
+  case TIME: return slot_at(SPACE_TIME, 0);
+  case COORDINATE: return slot_at(SPACE_STATE, index);
+  case VELOCITY: return slot_at(SPACE_STATE, n + index);
+  case STATE: return slot_at(SPACE_STATE, 2 * n + index);
+  case ACCELERATION: return slot_at(SPACE_ACCELERATION, index);
+  case INPUT: return slot_at(SPACE_INPUT, index);
+  case SEED_PARAMETER: return slot_at(SPACE_SEED_PARAMETER, index);
+  case SEED_TIME: return slot_at(SPACE_SEED_TIME, 0);
+  case SEED_COORDINATE: return slot_at(SPACE_SEED_STATE, index);
+  case SEED_VELOCITY: return slot_at(SPACE_SEED_STATE, n + index);
+  case SEED_STATE: return slot_at(SPACE_SEED_STATE, 2 * n + index);
+  case SEED_ACCELERATION: return slot_at(SPACE_SEED_ACCELERATION, index);
+  case SEED_RESULT: return slot_at(SPACE_SEED_RESULT, index);
   case DISPLACEMENT: /* these are replaced in all expressions and have no seeds */
   case REACTION:
   case DUMMY:
   case SEED_INPUT:
   case SYMBOL_KIND_COUNT: break;
   }
-  return slot_in(SPACE_SEED_INPUT, index);
+  return slot_at(SPACE_SEED_INPUT, index);
 }
 
 Slot generator_slot(const struct CodeGenerator *generator, Node node) {
   if (generator->has_local[node]) return generator->local[node];
-  if (graph_is_constant(generator->graph, node)) return slot_in(SPACE_NUMBER, node);
+  if (graph_is_constant(generator->graph, node)) return slot_at(SPACE_NUMBER, node);
   if (generator->graph->vertices[node].operation == SYMBOL)
     return slot_of_symbol(generator, graph_symbol_of(generator->graph, node));
-  return slot_in(SPACE_PARAMETER_CONSTANTS, generator->parameter_constants->slot[node] - 1);
+  return slot_at(SPACE_PARAMETER_CONSTANTS, generator->parameter_constants->slot[node] - 1);
 }
 
 void generator_define(struct CodeGenerator *generator, Node node, Slot slot) {
@@ -119,7 +119,7 @@ static bool is_missing(const struct CodeGenerator *generator, Node node) {
 enum { COMPUTE_WORK = 10 };
 
 void generator_compute(struct CodeGenerator *generator, const Node *targets, size_t count, bool preparing) {
-  struct Needs *needs = generator->needs;
+  struct NeededNodes *needs = generator->needs;
   if (graph_limit(generator->graph) != NULL) return; /* the limit is reached, and no code will be written */
   needs_collect(needs, targets, count, preparing);
   graph_work(generator->graph, COMPUTE_WORK * needs->cone->count);

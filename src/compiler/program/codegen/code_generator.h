@@ -10,7 +10,7 @@ struct CodeGenerator {
   const struct Graph *graph;
   const struct ParameterConstants *parameter_constants;
   size_t coordinates; /* number of coordinates, after which the velocities follow in the state */
-  struct Needs *needs;
+  struct NeededNodes *needs;
   struct IrFunction *ir; /* the function under construction */
   Slot *local;           /* for each node with has_local: the slot of its value in the function */
   bool *has_local;

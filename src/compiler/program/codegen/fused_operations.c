@@ -4,8 +4,8 @@
 #include "base/memory.h"
 #include "program/codegen/parameter_constants.h"
 
-struct Needs *needs_create(const struct Graph *graph) {
-  struct Needs *needs = allocate(1, sizeof *needs);
+struct NeededNodes *needs_create(const struct Graph *graph) {
+  struct NeededNodes *needs = allocate(1, sizeof *needs);
   needs->graph = graph;
   needs->cone = cone_create();
   return needs;
@@ -15,7 +15,7 @@ static bool is_leaf(const struct Graph *graph, Node node) {
   return operation_arity(graph->vertices[node].operation) == 0;
 }
 
-bool is_fetched(const struct Needs *needs, Node node) {
+bool is_fetched(const struct NeededNodes *needs, Node node) {
   return is_leaf(needs->graph, node) || (!needs->preparing && is_of_parameters(needs->graph, node));
 }
 
@@ -24,7 +24,7 @@ static enum Visit visit_motion(void *context, const struct Graph *graph, Node no
   return is_of_parameters(graph, node) ? VISIT_NOTHING_BELOW : VISIT_OPERANDS;
 }
 
-void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing) {
+void needs_collect(struct NeededNodes *needs, const Node *targets, size_t count, bool preparing) {
   const struct Graph *graph = needs->graph;
   struct Cone *cone = needs->cone;
   needs->preparing = preparing;
@@ -43,18 +43,18 @@ void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool 
   }
 }
 
-static bool is_inverse_for_one(const struct Needs *needs, Node node) {
+static bool is_inverse_for_one(const struct NeededNodes *needs, Node node) {
   const struct Vertex *vertex = &needs->graph->vertices[node];
   return !is_fetched(needs, node) && vertex->operation == POWER && graph_is_constant(needs->graph, vertex->right) &&
          graph_value(needs->graph, vertex->right) == -1.0 && needs->uses[cone_slot(needs->cone, node)] == 1;
 }
 
-static bool is_negation(const struct Needs *needs, Node node) {
+static bool is_negation(const struct NeededNodes *needs, Node node) {
   Node base;
   return !is_fetched(needs, node) && coefficient_of(needs->graph, node, &base) == -1.0;
 }
 
-struct FusedOperation fused_operation_of(const struct Needs *needs, Node node) {
+struct FusedOperation fused_operation_of(const struct NeededNodes *needs, Node node) {
   const struct Vertex *vertices = needs->graph->vertices, *vertex = &vertices[node];
   Node left = vertex->left, right = vertex->right;
   switch (vertex->operation) {

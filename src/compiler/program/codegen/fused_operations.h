@@ -24,7 +24,7 @@ struct FusedOperation {
  * The nodes needed for some targets, with use counts. Fetched nodes (symbols, numbers and parameter constants) are
  * members, but their operands are not.
  */
-struct Needs {
+struct NeededNodes {
   const struct Graph *graph;
   struct Cone *cone;
   size_t *uses; /* uses of each member; being a target counts as 2, since its value is stored */
@@ -33,13 +33,13 @@ struct Needs {
 };
 
 /* Returns an empty collection, which needs_collect() fills. */
-struct Needs *needs_create(const struct Graph *graph);
+struct NeededNodes *needs_create(const struct Graph *graph);
 
 /* Collects the nodes that the targets need, in place of those collected before. */
-void needs_collect(struct Needs *needs, const Node *targets, size_t count, bool preparing);
+void needs_collect(struct NeededNodes *needs, const Node *targets, size_t count, bool preparing);
 
 /* True if the node is a symbol, a number or a parameter constant. */
-bool is_fetched(const struct Needs *needs, Node node);
+bool is_fetched(const struct NeededNodes *needs, Node node);
 
 /* Returns a member's operation, with a + (-b) fused into a - b, and a * (1 / b) into a / b if 1 / b has one use. */
-struct FusedOperation fused_operation_of(const struct Needs *needs, Node node);
+struct FusedOperation fused_operation_of(const struct NeededNodes *needs, Node node);

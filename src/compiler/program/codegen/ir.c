@@ -113,7 +113,7 @@ void ir_append_call(struct IrFunction *ir, enum Operation function, Slot result,
 }
 
 Slot ir_new_local(struct IrFunction *ir) {
-  return slot_in(SPACE_LOCAL, ir->local_count++);
+  return slot_at(SPACE_LOCAL, ir->local_count++);
 }
 
 bool ir_uses(const struct IrFunction *ir, enum Space space) {

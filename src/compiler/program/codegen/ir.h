@@ -30,13 +30,13 @@ struct IrFunction {
 };
 
 /* Returns the slot with this index in a space. */
-static inline Slot slot_in(enum Space space, size_t index) {
+static inline Slot slot_at(enum Space space, size_t index) {
   return (Slot)space << SLOT_BITS | (Slot)index;
 }
 
 /* Returns the slot of an element of the array that the function fills. */
 static inline Slot target_slot(size_t index) {
-  return slot_in(SPACE_TARGET, index);
+  return slot_at(SPACE_TARGET, index);
 }
 
 /* Returns the space of a slot. */

@@ -77,7 +77,7 @@ void append_solution(struct CodeGenerator *generator, const struct LoopedBlocks 
                      const Node *right_side) {
   const struct LoopedBlock *looped = &blocks->items[number];
   for (size_t i = 0; i < looped->block->count; i++)
-    generator_copy(generator, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i),
+    generator_copy(generator, slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i),
                    right_side[looped->block->coordinates[i]]);
   ir_append(generator->ir, SOLVE, (Slot)number, 0, 0, 0);
 }
@@ -94,10 +94,10 @@ static size_t factor_operations(const struct InertiaBlock *block) {
 void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
   for (size_t i = 0; i < block->start[block->count]; i++)
-    generator_copy(generator, slot_in(SPACE_MASS, looped->first_mass + i), block->mass[i]);
+    generator_copy(generator, slot_at(SPACE_MASS, looped->first_mass + i), block->mass[i]);
   size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    generator_copy(generator, slot_in(SPACE_MASS, first + i), block->nonsymmetric[i]);
+    generator_copy(generator, slot_at(SPACE_MASS, first + i), block->nonsymmetric[i]);
 }
 
 void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number) {
@@ -132,8 +132,8 @@ static void append_block(struct CodeGenerator *generator, const struct Equations
   if (with_forces && has_least_forces(block)) ir_append(generator->ir, LEAST_FORCES, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     if (with_forces || block->coordinates[i] < equations->count)
-      ir_copy(generator->ir, slot_in(SPACE_ACCELERATION, block->coordinates[i]),
-              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      ir_copy(generator->ir, slot_at(SPACE_ACCELERATION, block->coordinates[i]),
+              slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
 }
 
 void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol) {
@@ -141,7 +141,7 @@ void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
       generator_define(generator, symbol[looped->block->coordinates[i]],
-                       slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+                       slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
 }
 
@@ -162,6 +162,6 @@ void append_accelerations(struct CodeGenerator *generator, const struct Equation
     if (!pivot_is_parameter_constants(generator->graph, &inertia->pivots[i]))
       append_pivot_check(generator, &inertia->pivots[i]);
   for (size_t i = 0; i < (with_forces ? row_count(equations) : equations->count); i++)
-    if (!is_looped(equations, i)) generator_copy(generator, slot_in(SPACE_ACCELERATION, i), equations->acceleration[i]);
+    if (!is_looped(equations, i)) generator_copy(generator, slot_at(SPACE_ACCELERATION, i), equations->acceleration[i]);
   for (size_t block = 0; block < blocks->count; block++) append_block(generator, equations, blocks, block, with_forces);
 }

@@ -186,7 +186,7 @@ static void create_rates(struct Expressions *expressions, const Node *seeds) {
   derivative_along(model->graph, rates->nodes, rates->count, seeds, expressions->rates_along);
 }
 
-static void create_directional(struct Expressions *expressions, struct Extras extras) {
+static void create_directional(struct Expressions *expressions, struct OptionalParts extras) {
   struct Graph *graph = expressions->model->graph;
   Node *seeds = create_seeds(expressions->model);
   create_results(expressions, seeds);
@@ -268,7 +268,7 @@ static void create_watched_series(struct Expressions *expressions) {
 }
 
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Extras extras,
+                                       const struct Interface *interface, struct OptionalParts extras,
                                        struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   const struct Method *method = equations->method;

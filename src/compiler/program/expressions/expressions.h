@@ -67,13 +67,13 @@ struct Expressions {
 };
 
 /* Optional parts of an FMU. */
-struct Extras {
+struct OptionalParts {
   bool adjoint; /* gradients in reverse mode */
 };
 
 /* Derives all expressions. Reports an error if the chosen solver does not fit the system, and returns NULL then. */
 struct Expressions *expressions_create(const struct Model *model, const struct Equations *equations,
-                                       const struct Interface *interface, struct Extras extras,
+                                       const struct Interface *interface, struct OptionalParts extras,
                                        struct Diagnostics *diagnostics);
 
 /* Returns all nodes that the generated code computes. */

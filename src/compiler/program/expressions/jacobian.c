@@ -23,26 +23,26 @@
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
 
 /* An element of the Jacobian, at a row and column of the state. */
-struct Element {
+struct JacobianElement {
   struct Position at;
   Node value;
 };
 
-struct ElementList {
-  struct Element *items;
+struct JacobianElements {
+  struct JacobianElement *items;
   size_t count;
 };
 
-static void append(struct ElementList *list, size_t row, size_t column, Node value) {
+static void append(struct JacobianElements *list, size_t row, size_t column, Node value) {
   list->items = make_room(list->items, list->count, sizeof *list->items);
-  list->items[list->count++] = (struct Element){{row, column}, value};
+  list->items[list->count++] = (struct JacobianElement){{row, column}, value};
 }
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {
   return state_slot(coordinates, graph_symbol_of(graph, symbol));
 }
 
-static void append_gradient(struct ElementList *list, struct Graph *graph, size_t coordinates, Node target,
+static void append_gradient(struct JacobianElements *list, struct Graph *graph, size_t coordinates, Node target,
                             size_t row) {
   struct Gradient gradient = gradient_by_kinds(graph, target, STATE_KINDS);
   for (size_t i = 0; i < gradient.count; i++)
@@ -50,7 +50,7 @@ static void append_gradient(struct ElementList *list, struct Graph *graph, size_
 }
 
 /* Appends one column of a block: its solution, or right sides if the block is factored at run time. */
-static void append_column(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+static void append_column(struct JacobianElements *list, struct Graph *graph, const struct Equations *equations,
                           const struct InertiaBlock *block, size_t column, Node *right) {
   if (block->is_unrolled) block_solve(graph, block, right);
   for (size_t i = 0; i < block->count; i++) {
@@ -60,9 +60,9 @@ static void append_column(struct ElementList *list, struct Graph *graph, const s
   }
 }
 
-static void append_block(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+static void append_block(struct JacobianElements *list, struct Graph *graph, const struct Equations *equations,
                          const struct InertiaBlock *block) {
-  struct ElementList residual = {0};
+  struct JacobianElements residual = {0};
   for (size_t i = 0; i < block->count; i++)
     append_gradient(&residual, graph, equations->count, equations->residual[block->coordinates[i]], i);
   if (residual.count > 0) qsort(residual.items, residual.count, sizeof *residual.items, compare_positions);
@@ -77,7 +77,7 @@ static void append_block(struct ElementList *list, struct Graph *graph, const st
 }
 
 /* Sorts the elements into compressed columns. Rows beyond the states are constraint rows. */
-static struct JacobianExpressions *by_columns(struct ElementList *list, size_t columns) {
+static struct JacobianExpressions *by_columns(struct JacobianElements *list, size_t columns) {
   struct JacobianExpressions *jacobian = allocate(1, sizeof *jacobian);
   if (list->count > 0) qsort(list->items, list->count, sizeof *list->items, compare_positions);
   jacobian->start = allocate(columns + 1, sizeof *jacobian->start);
@@ -85,7 +85,7 @@ static struct JacobianExpressions *by_columns(struct ElementList *list, size_t c
   jacobian->value = allocate(list->count, sizeof *jacobian->value);
   jacobian->right_sides = allocate(list->count, sizeof *jacobian->right_sides);
   for (size_t i = 0; i < list->count; i++) {
-    const struct Element *element = &list->items[i];
+    const struct JacobianElement *element = &list->items[i];
     if (element->at.row >= columns) {
       struct ConstraintRightSide right_side = {element->at.column, element->at.row - columns, element->value};
       jacobian->right_sides[jacobian->right_side_count++] = right_side;
@@ -111,7 +111,7 @@ static bool is_symbol_of(const struct Graph *graph, Node node, unsigned kinds) {
 }
 
 /* Appends the pattern of a block: each state that its equations depend on, in all its rows. */
-static void append_pattern(struct ElementList *list, struct Graph *graph, const struct Equations *equations,
+static void append_pattern(struct JacobianElements *list, struct Graph *graph, const struct Equations *equations,
                            const struct InertiaBlock *block) {
   const struct Cone *cone = graph->cone;
   collect_block(graph, equations, block);
@@ -133,7 +133,8 @@ static void mark_columns(const struct Graph *graph, size_t coordinates, bool *is
 }
 
 /* Appends the pattern of first-order states. A rate that depends on an acceleration depends on its block's states. */
-static void append_pattern_of_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
+static void append_pattern_of_rates(struct JacobianElements *list, struct Graph *graph,
+                                    const struct Equations *equations) {
   size_t n = equations->count, states = 2 * n + equations->rates.count;
   for (size_t i = 0; i < equations->rates.count; i++) {
     bool *is_marked = allocate(states, sizeof *is_marked),
@@ -154,7 +155,7 @@ static void append_pattern_of_rates(struct ElementList *list, struct Graph *grap
 }
 
 /* Appends the rows of the first-order states. */
-static void append_rates(struct ElementList *list, struct Graph *graph, const struct Equations *equations) {
+static void append_rates(struct JacobianElements *list, struct Graph *graph, const struct Equations *equations) {
   for (size_t i = 0; i < equations->rates.count; i++)
     append_gradient(list, graph, equations->count, equations->rates.nodes[i], 2 * equations->count + i);
 }
@@ -164,7 +165,7 @@ static void append_rates(struct ElementList *list, struct Graph *graph, const st
  * formulas for each element, and of rates that depend on values found at run time.
  */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
-  struct ElementList list = {0};
+  struct JacobianElements list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
   for (size_t i = 0; i < equations->inertia->block_count; i++)
@@ -179,7 +180,7 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
   if (!equations->explicit_form && (inertia_has_trees(equations->inertia) || rates_use_unknowns(graph, equations)))
     return pattern_for_directions(graph, equations);
-  struct ElementList list = {0};
+  struct JacobianElements list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
   for (size_t i = 0; equations->explicit_form && i < n; i++)

@@ -104,7 +104,7 @@ static const struct SampleMetadata *samples_of(const struct Program *program) {
   struct SampleMetadata *metadata = allocate(switching->sample_count, sizeof *metadata);
   size_t count = 0;
   for (size_t i = 0; i < switches->event_count; i++) {
-    const struct Sample *sample = &switches->events[i].sample;
+    const struct SampleClock *sample = &switches->events[i].sample;
     if (switches->events[i].passage != PASSAGE_SAMPLES) continue;
     metadata[count++] =
         (struct SampleMetadata){i, branch_with(switching, sample->branch), mode_index(program, sample->base),

@@ -42,7 +42,7 @@ const struct LimitMetadata *limit_metadata(enum LimitRule rule) {
 }
 
 /* A check before its rows have slots; ZERO for rows that it does not have. */
-struct Check {
+struct PendingCheck {
   enum LimitRule rule;
   Node rows[2];
   const char *function;
@@ -54,20 +54,20 @@ struct Check {
 };
 
 /* The checks that were found, with an index by their first rows. */
-struct CheckList {
+struct PendingChecks {
   const struct SeriesBuilder *builder;
-  struct Check *items;
+  struct PendingCheck *items;
   size_t count;
   size_t *first;                                  /* for each node: 1 + the first check with this row, 0 for none */
   const struct GuardConditions *guard_conditions; /* guard conditions of the present node; NULL: always needed */
 };
 
 /* Adds a check, or merges it with an equal one. Of two powers of one base, the smaller share is the stricter. */
-static void append_under(struct CheckList *list, struct Check check, Node guard_condition) {
+static void append_under(struct PendingChecks *list, struct PendingCheck check, Node guard_condition) {
   check.guard_condition = guard_condition;
   size_t *end = &list->first[check.rows[0]];
   for (; *end != 0; end = &list->items[*end - 1].next) {
-    struct Check *other = &list->items[*end - 1];
+    struct PendingCheck *other = &list->items[*end - 1];
     if (other->rule != check.rule || other->rows[1] != check.rows[1] || other->exponent != check.exponent ||
         other->guard_condition != check.guard_condition)
       continue;
@@ -81,7 +81,7 @@ static void append_under(struct CheckList *list, struct Check check, Node guard_
 }
 
 /* Adds a check for each guard condition of the present node. */
-static void append(struct CheckList *list, struct Check check) {
+static void append(struct PendingChecks *list, struct PendingCheck check) {
   const struct GuardConditions *guard_conditions = list->guard_conditions;
   if (guard_conditions == NULL || guard_conditions->always) {
     append_under(list, check, ZERO);
@@ -115,10 +115,10 @@ static Node bare_base(const struct SeriesBuilder *builder, Node base, double *ex
 }
 
 /* Adds the check of a quotient. A numerator that vanishes throughout a motion lifts the limit at run time. */
-static void check_division(struct CheckList *list, Node numerator, Node denominator) {
+static void check_division(struct PendingChecks *list, Node numerator, Node denominator) {
   double exponent = -1.0;
   Node base = bare_base(list->builder, denominator, &exponent);
-  struct Check check = {.rule = LIMIT_QUOTIENT, .rows = {base}, .share = series_limit_share(exponent)};
+  struct PendingCheck check = {.rule = LIMIT_QUOTIENT, .rows = {base}, .share = series_limit_share(exponent)};
   if (can_have_row(list->builder, numerator)) {
     check.rule = LIMIT_DIVISION;
     check.rows[1] = numerator;
@@ -126,24 +126,26 @@ static void check_division(struct CheckList *list, Node numerator, Node denomina
   append(list, check);
 }
 
-static void check_number_power(struct CheckList *list, Node base, double exponent) {
+static void check_number_power(struct PendingChecks *list, Node base, double exponent) {
   base = bare_base(list->builder, base, &exponent);
   bool is_whole = exponent == floor(exponent);
   if (is_whole && exponent > 0.0 && exponent <= HIGHEST_WIDE_POWER) return;
   enum LimitRule rule = exponent < 0.0 ? LIMIT_QUOTIENT : is_whole ? LIMIT_WHOLE_POWER : LIMIT_ROOT;
-  append(list, (struct Check){.rule = rule, .rows = {base}, .share = series_limit_share(exponent)});
+  append(list, (struct PendingCheck){.rule = rule, .rows = {base}, .share = series_limit_share(exponent)});
 }
 
-static void check_power(struct CheckList *list, Node node) {
+static void check_power(struct PendingChecks *list, Node node) {
   const struct Graph *graph = list->builder->graph;
   const struct Vertex *vertex = &graph->vertices[node];
   Node auxiliary = list->builder->plan->auxiliary[node];
   if (graph_is_constant(graph, vertex->right))
     check_number_power(list, vertex->left, graph_value(graph, vertex->right));
   else if (is_constant_series(list->builder, vertex->right))
-    append(list, (struct Check){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
+    append(list,
+           (struct PendingCheck){.rule = LIMIT_POWER, .rows = {vertex->left}, .exponent = vertex->right, .share = NAN});
   else if (can_have_row(list->builder, auxiliary))
-    append(list, (struct Check){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
+    append(list,
+           (struct PendingCheck){.rule = LIMIT_EXPONENTIAL, .rows = {auxiliary}, .function = "pow", .share = NAN});
 }
 
 static enum LimitRule rule_named(const char *name) {
@@ -153,12 +155,12 @@ static enum LimitRule rule_named(const char *name) {
 }
 
 /* Adds the check that the table of functions names for an operand or an auxiliary node. */
-static void check_by_rule(struct CheckList *list, const char *rule, Node row, const char *function) {
+static void check_by_rule(struct PendingChecks *list, const char *rule, Node row, const char *function) {
   if (rule != NULL && can_have_row(list->builder, row))
-    append(list, (struct Check){.rule = rule_named(rule), .rows = {row}, .function = function, .share = NAN});
+    append(list, (struct PendingCheck){.rule = rule_named(rule), .rows = {row}, .function = function, .share = NAN});
 }
 
-static void check_function(struct CheckList *list, Node node) {
+static void check_function(struct PendingChecks *list, Node node) {
   const struct SeriesBuilder *builder = list->builder;
   const struct Vertex *vertex = &builder->graph->vertices[node];
   const struct Function *function = &functions[vertex->operation];
@@ -168,13 +170,14 @@ static void check_function(struct CheckList *list, Node node) {
   check_by_rule(list, function->auxiliary_limit, builder->plan->auxiliary[node], name);
   bool is_angle =
       function->recurrence == ANGLE && can_have_row(builder, vertex->left) && can_have_row(builder, vertex->right);
-  if (is_angle) append(list, (struct Check){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
+  if (is_angle)
+    append(list, (struct PendingCheck){.rule = LIMIT_ANGLE, .rows = {vertex->left, vertex->right}, .share = NAN});
 }
 
 /* Marks checks of quotients that a check of the denominator alone covers. */
-static void find_covered(struct CheckList *list) {
+static void find_covered(struct PendingChecks *list) {
   for (size_t i = 0; i < list->count; i++) {
-    struct Check *check = &list->items[i];
+    struct PendingCheck *check = &list->items[i];
     if (check->rule != LIMIT_DIVISION) continue;
     for (size_t j = list->first[check->rows[0]]; j != 0; j = list->items[j - 1].next)
       check->is_covered |= list->items[j - 1].rule == LIMIT_QUOTIENT && list->items[j - 1].share <= check->share &&
@@ -182,26 +185,26 @@ static void find_covered(struct CheckList *list) {
   }
 }
 
-static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct CheckList *list) {
+static struct LimitChecks take_rows(struct SeriesBuilder *builder, const struct PendingChecks *list) {
   struct LimitChecks checks = {.items = allocate(list->count, sizeof *checks.items)};
   for (size_t i = 0; i < list->count; i++) {
-    const struct Check *check = &list->items[i];
+    const struct PendingCheck *check = &list->items[i];
     if (check->is_covered) continue;
     struct LimitCheck *taken = &checks.items[checks.count++];
     *taken = (struct LimitCheck){.rule = check->rule, .function = check->function, .share = check->share};
     taken->row = series_row(builder, check->rows[0]);
     if (check->rows[1] != ZERO) taken->other_row = series_row(builder, check->rows[1]);
     if (check->exponent != ZERO) taken->exponent = generator_slot(builder->generator, check->exponent);
-    taken->is_gated = check->guard_condition != ZERO;
-    if (taken->is_gated) taken->guard_condition = generator_slot(builder->generator, check->guard_condition);
+    taken->is_guarded = check->guard_condition != ZERO;
+    if (taken->is_guarded) taken->guard_condition = generator_slot(builder->generator, check->guard_condition);
   }
   return checks;
 }
 
 struct LimitChecks limits_of(struct SeriesBuilder *builder) {
-  struct CheckList list = {.builder = builder,
-                           .items = make_room(NULL, 0, sizeof *list.items),
-                           .first = allocate(builder->graph->count, sizeof(size_t))};
+  struct PendingChecks list = {.builder = builder,
+                               .items = make_room(NULL, 0, sizeof *list.items),
+                               .first = allocate(builder->graph->count, sizeof(size_t))};
   struct GuardConditions *guard_conditions = guard_conditions_of(builder->graph, builder->plan);
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];

@@ -24,17 +24,17 @@ bool is_constant_series(const struct SeriesBuilder *builder, Node node) {
 }
 
 Slot series_coefficient(const struct SeriesBuilder *builder, Node node) {
-  if (is_constant_series(builder, node)) return slot_in(SPACE_NUMBER, ZERO);
-  if (builder->is_computed[node]) return slot_in((enum Space)SPACE_OF_NODES, node);
+  if (is_constant_series(builder, node)) return slot_at(SPACE_NUMBER, ZERO);
+  if (builder->is_computed[node]) return slot_at((enum Space)SPACE_OF_NODES, node);
   const struct Symbol *symbol = graph_symbol_of(builder->graph, node);
   size_t index = (size_t)symbol->index;
   switch (symbol->kind) {
-  case TIME: return slot_in(SPACE_TIME_ROW, 0);
-  case INPUT: return slot_in(SPACE_INPUT_ROW, index);
-  case COORDINATE: return slot_in(SPACE_STATE_ROW, index);
-  case VELOCITY: return slot_in(SPACE_STATE_ROW, builder->coordinates + index);
-  case STATE: return slot_in(SPACE_STATE_ROW, 2 * builder->coordinates + index);
-  default: return slot_in((enum Space)SPACE_OF_ACCELERATIONS, index);
+  case TIME: return slot_at(SPACE_TIME_ROW, 0);
+  case INPUT: return slot_at(SPACE_INPUT_ROW, index);
+  case COORDINATE: return slot_at(SPACE_STATE_ROW, index);
+  case VELOCITY: return slot_at(SPACE_STATE_ROW, builder->coordinates + index);
+  case STATE: return slot_at(SPACE_STATE_ROW, 2 * builder->coordinates + index);
+  default: return slot_at((enum Space)SPACE_OF_ACCELERATIONS, index);
   }
 }
 
@@ -53,7 +53,7 @@ static Slot value_of(const struct SeriesBuilder *builder, Node node) {
 }
 
 static Slot new_local(struct SeriesBuilder *builder) {
-  return slot_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+  return slot_at((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
 }
 
 static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
@@ -64,13 +64,13 @@ static bool is_coordinate(const struct SeriesBuilder *builder, Node node) {
 /* Returns the row of the time derivative: that of a velocity, or one that all functions of the operand share. */
 static Slot rate_row(struct SeriesBuilder *builder, Node operand) {
   if (is_coordinate(builder, operand))
-    return slot_in(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
+    return slot_at(SPACE_STATE_ROW, builder->coordinates + (size_t)graph_symbol_of(builder->graph, operand)->index);
   if (builder->rate[operand] == 0) {
     builder->rate[operand] = ++builder->further_rows;
-    append(builder, SERIES_RATE, slot_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1),
+    append(builder, SERIES_RATE, slot_at((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1),
            series_coefficient(builder, operand), 0, 0);
   }
-  return slot_in((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1);
+  return slot_at((enum Space)SPACE_OF_RATES, builder->rate[operand] - 1);
 }
 
 static void append_product(struct SeriesBuilder *builder, Slot result, Node left, Node right) {
@@ -90,7 +90,7 @@ static void append_quotient(struct SeriesBuilder *builder, Node node, Node top, 
   }
   if (builder->inverse[below] == 0) builder->inverse[below] = ++builder->further_rows;
   append(builder, SERIES_QUOTIENT, series_row(builder, node), series_coefficient(builder, top),
-         series_row(builder, below), slot_in((enum Space)SPACE_OF_RATES, builder->inverse[below] - 1));
+         series_row(builder, below), slot_at((enum Space)SPACE_OF_RATES, builder->inverse[below] - 1));
 }
 
 /* Returns the coefficient k of sign * factor * top, where factor is constant in time. */
@@ -202,7 +202,7 @@ static void append_function(struct SeriesBuilder *builder, Node node) {
     append(builder, SERIES_ABSOLUTE, series_coefficient(builder, node), series_row(builder, operand), 0, 0);
     return;
   case PIECEWISE_CONSTANT: append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0); return;
-  case GATED:
+  case GUARDED:
     if (is_constant_series(builder, vertex->right)) {
       append(builder, SERIES_ZERO, series_coefficient(builder, node), 0, 0, 0);
       return;

@@ -20,7 +20,7 @@ struct SeriesBuilder {
   const struct Graph *graph;
   const struct SeriesPlan *plan;
   size_t coordinates;
-  struct Needs *needs;
+  struct NeededNodes *needs;
   const struct CodeGenerator *generator; /* for the slots of values that are constant in time */
   struct IrFunction *order;
   struct NodeList nodes; /* the computed nodes, ascending */

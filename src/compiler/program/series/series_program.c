@@ -18,7 +18,7 @@
 
 /* Finds the nodes that change in time and must be computed. */
 static void find_computed(struct SeriesBuilder *builder) {
-  struct Needs *needs = builder->needs;
+  struct NeededNodes *needs = builder->needs;
   const struct Cone *cone = needs->cone;
   bool *below = allocate(cone->count, sizeof *below);
   for (size_t i = 0; i < builder->plan->targets.count; i++)
@@ -95,7 +95,7 @@ static void append_nodes_before_blocks(struct SeriesBuilder *builder) {
 }
 
 static Slot acceleration_row(size_t coordinate) {
-  return slot_in((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
+  return slot_at((enum Space)SPACE_OF_ACCELERATIONS, coordinate);
 }
 
 /* An element of M that changes in time. */
@@ -122,7 +122,7 @@ static struct ChangingMass *changing_masses(const struct SeriesBuilder *builder,
 
 /* Appends sum - (M_ij a_j)_k without the term with a_k, which is solved for. */
 static Slot append_rest(struct SeriesBuilder *builder, Slot sum, Node mass, size_t coordinate) {
-  Slot rest = slot_in((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
+  Slot rest = slot_at((enum Space)SPACE_OF_FACTORS, builder->factor_count++);
   ir_append(builder->order, SERIES_REST, rest, sum, series_row(builder, mass), acceleration_row(coordinate));
   return rest;
 }
@@ -142,23 +142,23 @@ static void append_block(struct SeriesBuilder *builder, const struct Equations *
       if (!is_constant_series(builder, nonsymmetric))
         sum = append_rest(builder, sum, nonsymmetric, block->coordinates[block->forces[k]]);
     }
-    ir_append(builder->order, SERIES_COPY, slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), sum, 0, 0);
+    ir_append(builder->order, SERIES_COPY, slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i), sum, 0, 0);
   }
   ir_append(builder->order, SERIES_SOLVE, (Slot)number, 0, 0, 0);
   for (size_t i = 0; i < block->count; i++)
     ir_append(builder->order, SERIES_COPY, acceleration_row(block->coordinates[i]),
-              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i), 0, 0);
+              slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i), 0, 0);
 }
 
 static void append_state(struct SeriesBuilder *builder, size_t state, Slot derivative) {
-  ir_append(builder->order, SERIES_STATE, slot_in(SPACE_STATE_ROW, state), derivative, 0, 0);
+  ir_append(builder->order, SERIES_STATE, slot_at(SPACE_STATE_ROW, state), derivative, 0, 0);
 }
 
 /* Appends the coefficients k + 1 of the state from the coefficients k of its derivative. */
 static void append_states(struct SeriesBuilder *builder, const struct Equations *equations) {
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) {
-    append_state(builder, i, slot_in(SPACE_STATE_ROW, n + i));
+    append_state(builder, i, slot_at(SPACE_STATE_ROW, n + i));
     append_state(builder, n + i, series_coefficient(builder, equations->acceleration[i]));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
@@ -180,12 +180,12 @@ static Slot resolved(struct Rows *rows, Slot slot) {
   size_t index = index_in(slot);
   switch ((int)space_of(slot)) {
   case SPACE_OF_NODES:
-    if (rows->builder->has_row[index]) return slot_in(SPACE_ROW, rows->row[index]);
+    if (rows->builder->has_row[index]) return slot_at(SPACE_ROW, rows->row[index]);
     if (!rows->has_local[index]) rows->local[index] = ir_new_local(rows->order);
     rows->has_local[index] = true;
     return rows->local[index];
-  case SPACE_OF_ACCELERATIONS: return slot_in(SPACE_ROW, rows->acceleration_row + index);
-  case SPACE_OF_RATES: return slot_in(SPACE_ROW, rows->further_row + index);
+  case SPACE_OF_ACCELERATIONS: return slot_at(SPACE_ROW, rows->acceleration_row + index);
+  case SPACE_OF_RATES: return slot_at(SPACE_ROW, rows->further_row + index);
   case SPACE_OF_FACTORS:
     if (rows->factor[index] == 0) rows->factor[index] = ir_new_local(rows->order);
     return rows->factor[index];
@@ -283,12 +283,12 @@ static void copy_first(const struct Rows *rows, struct CodeGenerator *generator)
   const struct SeriesBuilder *builder = rows->builder;
   for (size_t i = 0; i < builder->nodes.count; i++) {
     Node node = builder->nodes.nodes[i];
-    if (builder->has_row[node]) generator_copy(generator, slot_in(SPACE_ROW, rows->row[node]), node);
+    if (builder->has_row[node]) generator_copy(generator, slot_at(SPACE_ROW, rows->row[node]), node);
   }
   for (size_t i = 0; i < builder->needs->cone->count; i++) {
     Node node = builder->needs->cone->nodes[i];
     if (builder->inverse[node] == 0) continue;
-    Slot row = slot_in(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
+    Slot row = slot_at(SPACE_ROW, rows->further_row + builder->inverse[node] - 1);
     ir_append(generator->ir, RECIPROCAL, row, generator_slot(generator, node), 0, 0);
   }
 }
@@ -313,12 +313,12 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   hold_unknowns(generator, equations, blocks, expressions->unknowns);
   compute_first(builder, generator, equations->rates.nodes, equations->rates.count);
   copy_first(&rows, generator);
-  for (size_t i = 0; i < n; i++) ir_copy(program->start, target_slot(i), slot_in(SPACE_STATE, n + i));
+  for (size_t i = 0; i < n; i++) ir_copy(program->start, target_slot(i), slot_at(SPACE_STATE, n + i));
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
-      ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
-              slot_in(SPACE_RIGHT_SIDE, looped->first_right_side + i));
+      ir_copy(program->start, slot_at(SPACE_ROW, rows.acceleration_row + looped->block->coordinates[i]),
+              slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
   }
   for (size_t i = 0; i < equations->rates.count; i++)
     generator_copy(generator, target_slot(2 * n + i), equations->rates.nodes[i]);
@@ -339,23 +339,23 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   struct SeriesBuilder *builder = builder_create(plan, generator);
   bool with_accelerations = uses_accelerations(plan, generator->graph);
   for (size_t i = 0; with_accelerations && i < n; i++)
-    ir_append(builder->order, SERIES_SLOPE, acceleration_row(i), slot_in(SPACE_STATE_ROW, n + i), 0, 0);
+    ir_append(builder->order, SERIES_SLOPE, acceleration_row(i), slot_at(SPACE_STATE_ROW, n + i), 0, 0);
   append_nodes_of_order(builder);
   for (size_t i = 0; i < count; i++)
-    ir_append(builder->order, SERIES_COPY, slot_in(SPACE_TARGET_ROW, i),
+    ir_append(builder->order, SERIES_COPY, slot_at(SPACE_TARGET_ROW, i),
               series_coefficient(builder, expressions->result[i]), 0, 0);
   struct Rows rows = rows_create(builder, with_accelerations ? n : 0, 0, program);
   complete(program, &rows);
 
   program->start = generator_begin(generator);
   for (size_t i = 0; with_accelerations && i < n; i++) {
-    Slot acceleration = slot_in(SPACE_ACCELERATION, i);
-    ir_append(program->start, FIRST_SLOPE, acceleration, slot_in(SPACE_STATE_ROW, n + i), 0, 0);
-    ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), acceleration);
+    Slot acceleration = slot_at(SPACE_ACCELERATION, i);
+    ir_append(program->start, FIRST_SLOPE, acceleration, slot_at(SPACE_STATE_ROW, n + i), 0, 0);
+    ir_copy(program->start, slot_at(SPACE_ROW, rows.acceleration_row + i), acceleration);
   }
   compute_first(builder, generator, expressions->result, count);
   copy_first(&rows, generator);
-  for (size_t i = 0; i < count; i++) generator_copy(generator, slot_in(SPACE_TARGET_ROW, i), expressions->result[i]);
+  for (size_t i = 0; i < count; i++) generator_copy(generator, slot_at(SPACE_TARGET_ROW, i), expressions->result[i]);
   return program;
 }
 
@@ -376,6 +376,6 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   compute_first(builder, generator, NULL, 0);
   copy_first(&rows, generator);
   for (size_t i = 0; i < forces; i++)
-    ir_copy(program->start, slot_in(SPACE_ROW, rows.acceleration_row + i), slot_in(SPACE_ACCELERATION, i));
+    ir_copy(program->start, slot_at(SPACE_ROW, rows.acceleration_row + i), slot_at(SPACE_ACCELERATION, i));
   return program->limit.count > 0 ? program : NULL;
 }

@@ -82,13 +82,13 @@ static uint32_t index_of(const struct Encoding *encoding, Slot slot) {
   return (uint32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
 }
 
-static void append_word(struct Words *words, uint32_t word) {
+static void append_word(struct WordList *words, uint32_t word) {
   words->items = make_room(words->items, words->count, sizeof *words->items);
   words->items[words->count++] = word;
 }
 
 /* Appends one run: instructions first .. end - 1 of the schedule. */
-static void append_run(struct Words *words, const struct Encoding *encoding, const struct IrFunction *ir,
+static void append_run(struct WordList *words, const struct Encoding *encoding, const struct IrFunction *ir,
                        const size_t *schedule, size_t first, size_t end) {
   const struct Instruction *instructions = ir->instructions;
   enum Opcode opcode = instructions[schedule[first]].opcode;
@@ -104,7 +104,7 @@ static void append_run(struct Words *words, const struct Encoding *encoding, con
   }
 }
 
-void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct Words *words) {
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
   size_t *schedule = schedule_create(ir, &encoding->program->blocks);
   for (size_t first = 0, end = 0; first < ir->count; first = end) {
     const struct Instruction *instruction = &ir->instructions[schedule[first]];
@@ -130,7 +130,7 @@ struct IrTables encode_all(const struct Encoding *encoding, struct IrFunction *c
 }
 
 static Slot encoded(const struct Encoding *encoding, Slot slot) {
-  return slot_in(space_of(slot), index_of(encoding, slot));
+  return slot_at(space_of(slot), index_of(encoding, slot));
 }
 
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check) {
@@ -141,6 +141,6 @@ struct LimitCheck encoded_check(const struct Encoding *encoding, const struct Li
                              .function = metadata->has_function ? check->function : NULL,
                              .share = check->share,
                              .exponent = metadata->has_exponent ? encoded(encoding, check->exponent) : 0,
-                             .is_gated = check->is_gated,
-                             .guard_condition = check->is_gated ? encoded(encoding, check->guard_condition) : 0};
+                             .is_guarded = check->is_guarded,
+                             .guard_condition = check->is_guarded ? encoded(encoding, check->guard_condition) : 0};
 }

@@ -19,17 +19,17 @@ struct Encoding *encoding_create(const struct Program *program);
 size_t encoding_work_count(const struct Encoding *encoding);
 
 /* The words of consecutive tables. */
-struct Words {
+struct WordList {
   uint32_t *items;
   size_t count;
 };
 
 /* Appends the table of a function, terminated by END. */
-void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct Words *words);
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words);
 
 /* Consecutive tables of several functions. */
 struct IrTables {
-  struct Words words;
+  struct WordList words;
   size_t *start;      /* of each function: the offset of its table, or of its leader's */
   const size_t *slot; /* of each function: its index among the targets of the leader's table */
   size_t largest_slot, operation_count;

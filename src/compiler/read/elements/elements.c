@@ -336,13 +336,13 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
 typedef void Action(struct Reader *reader, xmlNodePtr node);
 
 /* The functions that read an element, one per pass; NULL for none. The table is sorted by name. */
-struct Element {
+struct ElementReaders {
   const char *name;
   Action *declare, *collect, *place, *read, *draw;
   bool is_of_system; /* read in the main file only, ignored in included ones */
 };
 
-static const struct Element elements[] = {
+static const struct ElementReaders elements[] = {
     {"body", number_body, collect_components, read_body, NULL, NULL, false},
     {"bushing", NULL, NULL, NULL, read_bushing, NULL, false},
     {"constant", read_constant, NULL, NULL, NULL, NULL, false},
@@ -382,11 +382,11 @@ static const struct Element elements[] = {
 };
 
 static int compare(const void *name, const void *element) {
-  return strcmp(name, ((const struct Element *)element)->name);
+  return strcmp(name, ((const struct ElementReaders *)element)->name);
 }
 
 void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
-  const struct Element *element =
+  const struct ElementReaders *element =
       bsearch(node->name, elements, sizeof elements / sizeof *elements, sizeof *elements, compare);
   if (element == NULL || (element->is_of_system && reader->source->outer != NULL)) return;
   Action *const actions[] = {[DECLARATIONS] = element->declare,

@@ -230,7 +230,7 @@ static Node read_time(struct Reader *reader, xmlNodePtr node, const char *name) 
  * time becomes the base, and the new period counts from there.
  */
 static void count_on(struct Graph *graph, struct Event *event) {
-  const struct Sample *sample = &event->sample;
+  const struct SampleClock *sample = &event->sample;
   Node present = add(graph, sample->base, multiply(graph, sample->count, sample->period));
   Node change = function(graph, ABSOLUTE, subtract(graph, sample->every, sample->period), ZERO);
   append_assignment(event, sample->base, choose_node(graph, change, present, sample->base));
@@ -244,7 +244,7 @@ void read_sample(struct Reader *reader, xmlNodePtr node) {
   struct Event event = {
       .passage = PASSAGE_SAMPLES, .text = attribute(node, "every"), .line = scope_line(reader->scope, line_of(node))};
   if (event.text == NULL) return;
-  struct Sample *sample = &event.sample;
+  struct SampleClock *sample = &event.sample;
   sample->every = read_time(reader, node, "every");
   sample->offset = read_time(reader, node, "offset");
   expect_size(reader, node, "every of <sample>", sample->every, true);

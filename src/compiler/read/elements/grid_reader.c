@@ -13,7 +13,7 @@ enum { VALUE_LIMIT = 1000 };
 /* A table of two arguments while its lines are read. */
 struct Grid {
   struct TableLines lines; /* first member, so that take_line() can cast to struct Grid */
-  struct Surface *surface;
+  struct SurfaceTable *surface;
 };
 
 /* True if the knot is finite and larger than the previous one; reports an error otherwise. */
@@ -44,7 +44,7 @@ static bool check_size(struct Grid *grid) {
 
 /* Reads the knots of the first argument. A word in the corner before them is skipped. */
 static void take_head(struct Grid *grid, const char *line) {
-  struct Surface *surface = grid->surface;
+  struct SurfaceTable *surface = grid->surface;
   const char *rest = line;
   if (!isdigit((unsigned char)*line) && strchr("+-.", *line) == NULL) rest += strcspn(line, " \t,;");
   rest += strspn(rest, " \t,;");
@@ -56,13 +56,13 @@ static void take_head(struct Grid *grid, const char *line) {
 }
 
 /* Removes the corner from the first line: it is a number if the lines below are as long as the first one. */
-static void drop_corner(struct Surface *surface) {
+static void drop_corner(struct SurfaceTable *surface) {
   surface->columns--;
   memmove(surface->x, surface->x + 1, surface->columns * sizeof *surface->x);
 }
 
 static void append_row(struct Grid *grid, const double *numbers) {
-  struct Surface *surface = grid->surface;
+  struct SurfaceTable *surface = grid->surface;
   size_t columns = surface->columns, first = surface->rows * columns;
   surface->y = make_room(surface->y, surface->rows, sizeof *surface->y);
   surface->y[surface->rows] = numbers[0];
@@ -76,7 +76,7 @@ static void append_row(struct Grid *grid, const double *numbers) {
 }
 
 static void take_row(struct Grid *grid, const char *line) {
-  struct Surface *surface = grid->surface;
+  struct SurfaceTable *surface = grid->surface;
   size_t count;
   const char *rest;
   double *numbers = table_numbers(line, &count, &rest);
@@ -99,7 +99,8 @@ static void take_line(struct TableLines *lines, const char *line) {
   else take_row(grid, line);
 }
 
-bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file, struct Surface *surface) {
+bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file,
+               struct SurfaceTable *surface) {
   struct Grid grid = {.lines = {.reader = reader, .take = take_line}, .surface = surface};
   if (file != NULL) table_lines_of_file(&grid.lines, node, file);
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {

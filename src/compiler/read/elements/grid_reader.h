@@ -8,4 +8,5 @@
 #include "read/tables/surface.h"
 
 /* Reads the lines of a file, or of the element's text if file is NULL. Returns false after reporting an error. */
-bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file, struct Surface *surface);
+bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const char *file,
+               struct SurfaceTable *surface);

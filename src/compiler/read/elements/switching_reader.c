@@ -191,7 +191,7 @@ static struct Friction *friction_of_contact(struct Reader *reader, const struct 
 
 /* Sets Coulomb friction in the tangent plane of a contact. In planar mechanisms one of the two velocities is 0. */
 static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, const struct Contact *contact,
-                                    const struct Grip *grip, const struct Slip *slip) {
+                                    const struct FrictionCoefficients *grip, const struct Slip *slip) {
   struct Friction *friction = friction_of_contact(reader, contact);
   Node pressing = reader->model->unknowns.forces[contact->constraint];
   if (slip->along == ZERO && slip->across == ZERO)
@@ -207,7 +207,7 @@ static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, cons
 static void read_rigid_contact(struct Reader *reader, xmlNodePtr node) {
   const struct RigidTouch *touches = rigid_touches(reader, node);
   size_t count = touches != NULL ? count_shape_contacts(reader, node) : 0;
-  struct Grip grip = read_grip(reader, node);
+  struct FrictionCoefficients grip = read_grip(reader, node);
   for (size_t i = 0; i < count; i++) {
     size_t number = reader->present->number + i;
     set_contact(reader, node, number, touches[i].gap);

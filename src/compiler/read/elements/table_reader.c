@@ -12,12 +12,12 @@
 enum { POINT_LIMIT = 500 };
 
 /* Collects the points of a table of one argument. */
-struct Points {
-  struct TableLines lines; /* first member, so that take_line() can cast to struct Points */
+struct TablePoints {
+  struct TableLines lines; /* first member, so that take_line() can cast to struct TablePoints */
   struct Curve curve;
 };
 
-static void append_point(struct Points *points, double x, double y) {
+static void append_point(struct TablePoints *points, double x, double y) {
   struct Curve *curve = &points->curve;
   struct Diagnostics *diagnostics = points->lines.reader->diagnostics;
   if (points->lines.wrong) return;
@@ -48,7 +48,7 @@ static void take_line(struct TableLines *lines, const char *line) {
   size_t count;
   const char *rest;
   double *numbers = table_numbers(line, &count, &rest);
-  if (count == 2 && *rest == '\0') append_point((struct Points *)lines, numbers[0], numbers[1]);
+  if (count == 2 && *rest == '\0') append_point((struct TablePoints *)lines, numbers[0], numbers[1]);
   else if (!lines->is_heading) {
     report_error(lines->reader->diagnostics, lines->line,
                  "'%.40s' is not a point; expected two numbers, the argument and the value, such as 0.5 2", line);
@@ -57,7 +57,7 @@ static void take_line(struct TableLines *lines, const char *line) {
 }
 
 /* Reads <point x y/> elements or lines of text. */
-static void read_content(struct Points *points, xmlNodePtr node) {
+static void read_content(struct TablePoints *points, xmlNodePtr node) {
   for (xmlNodePtr part = node->children; part != NULL; part = part->next) {
     points->lines.line = line_of(part);
     if (part->type == XML_ELEMENT_NODE) {
@@ -86,7 +86,7 @@ static struct Table *create_table(struct Reader *reader, xmlNodePtr node) {
 
 /* Returns the table; NULL after reporting an error. */
 static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
-  struct Points points = {.lines = {.reader = reader, .take = take_line}};
+  struct TablePoints points = {.lines = {.reader = reader, .take = take_line}};
   if (file != NULL) table_lines_of_file(&points.lines, node, file);
   read_content(&points, node);
   if (!points.lines.wrong && points.curve.count < 2)
@@ -103,7 +103,7 @@ static struct Table *read_curve(struct Reader *reader, xmlNodePtr node, const ch
 }
 
 static struct Table *read_surface(struct Reader *reader, xmlNodePtr node, const char *name, const char *file) {
-  struct Surface surface = {0};
+  struct SurfaceTable surface = {0};
   if (!read_grid(reader, node, name, file, &surface)) return NULL;
   struct Table *table = create_table(reader, node);
   table->has_two_arguments = true;

@@ -18,9 +18,9 @@ static const char derivative_form[] = "diff(expression, name)";
 /* Adds a dummy variable with this range to the scope. Returns its symbol; the caller decrements dummy_count. */
 static Node open_dummy(struct Parser *parser, Node low, Node high) {
   struct Scope *scope = parser->scope;
-  struct Dummy *dummy = &scope->dummies[scope->dummy_count++];
+  struct DummyVariable *dummy = &scope->dummies[scope->dummy_count++];
   if (dummy->symbol == ZERO) dummy->symbol = graph_symbol(parser->graph, DUMMY, (int)scope->dummy_count, "dummy");
-  *dummy = (struct Dummy){dummy->symbol, low, high};
+  *dummy = (struct DummyVariable){dummy->symbol, low, high};
   return dummy->symbol;
 }
 
@@ -134,7 +134,7 @@ static Node derivative_with_constant_arguments(struct Parser *parser, Node varia
   *dimension = value.dimension;
   Node derivative = parser->failed ? ZERO : derivative_by(graph, value.node, variable);
   while (scope->dummy_count > first) {
-    const struct Dummy *dummy = &scope->dummies[--scope->dummy_count];
+    const struct DummyVariable *dummy = &scope->dummies[--scope->dummy_count];
     derivative = substitute_symbol(graph, derivative, dummy->symbol, dummy->low);
   }
   return has_copies ? with_pieces(scope, derivative, current_line(parser)) : derivative;

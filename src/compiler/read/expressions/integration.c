@@ -38,17 +38,17 @@ static const unsigned moving =
     1u << COORDINATE | 1u << VELOCITY | 1u << STATE | 1u << DISPLACEMENT | 1u << ACCELERATION | 1u << REACTION;
 
 /* The interval of a symbol in which the sum is exact. */
-struct Range {
+struct ExactRange {
   size_t symbol;
   double low, high;
 };
 
 /* A quadrature rule for an integral, and the ranges in which it holds. */
-struct Choice {
+struct QuadratureChoice {
   size_t nodes;
   double worst; /* error, relative to the integral of the magnitude */
   bool is_near; /* the nodes suffice only near the start values */
-  struct Range *ranges;
+  struct ExactRange *ranges;
   size_t range_count;
   bool has_value;
 };
@@ -78,8 +78,8 @@ static size_t nodes_at(struct Sampling *sampling, size_t nodes, size_t limit, do
 }
 
 /* Chooses nodes for the start values and for random states within a number of spreads around them. */
-static struct Choice choose_within(struct Sampling *sampling, double spreads, size_t limit) {
-  struct Choice choice = {.nodes = 1};
+static struct QuadratureChoice choose_within(struct Sampling *sampling, double spreads, size_t limit) {
+  struct QuadratureChoice choice = {.nodes = 1};
   for (int sample = 0; sample < SAMPLES; sample++) {
     double error = 0.0;
     if (!sampling_near(sampling, sample == 0 ? 0.0 : spreads)) continue;
@@ -149,7 +149,7 @@ static bool *mark_curved(const struct Graph *graph, Node integrand) {
   return is_curved;
 }
 
-static void find_ranges(struct Sampling *sampling, const struct Rule *rule, struct Choice *choice) {
+static void find_ranges(struct Sampling *sampling, const struct Rule *rule, struct QuadratureChoice *choice) {
   const struct Graph *graph = sampling->scope->graph;
   bool *is_curved = mark_curved(graph, sampling->targets[0]);
   for (size_t i = 0; i < graph->symbol_count; i++) {
@@ -159,7 +159,7 @@ static void find_ranges(struct Sampling *sampling, const struct Rule *rule, stru
         graph->symbols[i].kind == TIME ? -INFINITY : end_of(sampling, i, range_towards(sampling, rule, i, -1.0), -1.0);
     if (isinf(forth) && isinf(back)) continue;
     choice->ranges = make_room(choice->ranges, choice->range_count, sizeof *choice->ranges);
-    choice->ranges[choice->range_count++] = (struct Range){i, fmin(back, forth), fmax(back, forth)};
+    choice->ranges[choice->range_count++] = (struct ExactRange){i, fmin(back, forth), fmax(back, forth)};
   }
   release(is_curved);
 }
@@ -168,9 +168,9 @@ static void find_ranges(struct Sampling *sampling, const struct Rule *rule, stru
  * Chooses nodes and ranges. If no number of nodes suffices for random states, limits that move get a range about the
  * start.
  */
-static struct Choice choose(struct Sampling *sampling, bool limits_move) {
+static struct QuadratureChoice choose(struct Sampling *sampling, bool limits_move) {
   size_t limit = limits_move ? MOVING_CHOICE_LIMIT : CHOICE_LIMIT;
-  struct Choice choice = choose_within(sampling, wide, limit);
+  struct QuadratureChoice choice = choose_within(sampling, wide, limit);
   if (!choice.has_value || choice.worst > exactness) choice = choose_within(sampling, 1.0, limit);
   if (choice.worst > exactness && limits_move) {
     choice = choose_within(sampling, 0.0, limit);
@@ -192,10 +192,10 @@ static bool is_new(struct Parser *parser, const struct Integral *integral) {
 }
 
 /* "for x from -4 to 5 and time up to 30, beyond which the FMU stops" */
-static char *text_of_ranges(const struct Graph *graph, const struct Choice *choice) {
+static char *text_of_ranges(const struct Graph *graph, const struct QuadratureChoice *choice) {
   char *text = copy_text("");
   for (size_t i = 0; i < choice->range_count; i++) {
-    const struct Range *range = &choice->ranges[i];
+    const struct ExactRange *range = &choice->ranges[i];
     const char *name = graph->symbols[range->symbol].name, *joint = i == 0 ? "" : " and ";
     if (isinf(range->low)) text = format_text("%s%s%s up to %.3g", text, joint, name, range->high);
     else if (isinf(range->high)) text = format_text("%s%s%s down to %.3g", text, joint, name, range->low);
@@ -204,7 +204,8 @@ static char *text_of_ranges(const struct Graph *graph, const struct Choice *choi
   return text;
 }
 
-static void report_choice(struct Parser *parser, const struct Integral *integral, const struct Choice *choice) {
+static void report_choice(struct Parser *parser, const struct Integral *integral,
+                          const struct QuadratureChoice *choice) {
   const struct Diagnostics *diagnostics = parser->scope->diagnostics;
   long line = current_line(parser);
   const char *plural = choice->nodes == 1 ? "" : "s", *ranges = text_of_ranges(parser->graph, choice);
@@ -226,9 +227,9 @@ static void report_choice(struct Parser *parser, const struct Integral *integral
                 choice->nodes, plural);
 }
 
-static struct Choice choose_nodes(struct Parser *parser, const struct Integral *integral, bool limits_move) {
+static struct QuadratureChoice choose_nodes(struct Parser *parser, const struct Integral *integral, bool limits_move) {
   struct Sampling sampling = sampling_create(parser->scope, integral->value);
-  struct Choice choice = choose(&sampling, limits_move);
+  struct QuadratureChoice choice = choose(&sampling, limits_move);
   if (!choice.has_value)
     FAIL(parser, "%s: %s has no finite value; expected one at the start values and near them", parser->location.what,
          integral->text);
@@ -242,10 +243,10 @@ static Node one_above_zero(struct Graph *graph, Node node) {
 }
 
 /* Returns the sum, divided by 0 beyond the ranges. */
-static Node within_ranges(struct Graph *graph, const struct Choice *choice, Node sum) {
+static Node within_ranges(struct Graph *graph, const struct QuadratureChoice *choice, Node sum) {
   Node inside = ONE;
   for (size_t i = 0; i < choice->range_count; i++) {
-    const struct Range *range = &choice->ranges[i];
+    const struct ExactRange *range = &choice->ranges[i];
     Node symbol = graph->symbols[range->symbol].node;
     if (!isinf(range->high)) {
       Node high = graph_constant(graph, range->high);
@@ -262,7 +263,7 @@ static Node within_ranges(struct Graph *graph, const struct Choice *choice, Node
 /* Returns the quadrature sum of an expression of the dummy. */
 static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value) {
   struct Graph *graph = parser->graph;
-  const struct Dummy dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
+  const struct DummyVariable dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
   Node length = subtract(graph, dummy.high, dummy.low), sum = ZERO;
   for (size_t k = 0; k < rule->count && graph_limit(graph) == NULL; k++) {
     Node point = add(graph, dummy.low, scale(graph, rule->nodes[k], length));
@@ -313,10 +314,10 @@ static Node sum_of_quadratic(struct Parser *parser, const struct Rule *rule, Nod
 
 Node integrate(struct Parser *parser, const struct Integral *integral) {
   struct Graph *graph = parser->graph;
-  const struct Dummy dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
+  const struct DummyVariable dummy = parser->scope->dummies[parser->scope->dummy_count - 1];
   unsigned kinds = graph->vertices[dummy.low].kinds | graph->vertices[dummy.high].kinds;
   bool limits_move = (kinds & (moving | 1u << TIME | 1u << INPUT | 1u << DUMMY)) != 0;
-  struct Choice choice = {.nodes = integral->given};
+  struct QuadratureChoice choice = {.nodes = integral->given};
   if (integral->given == 0) choice = choose_nodes(parser, integral, limits_move);
   if (parser->failed) return ZERO;
   const struct Rule rule = rule_of(choice.nodes);

@@ -94,7 +94,7 @@ static double value_of(struct Sampling *sampling, Node node) {
 static void place_dummies(struct Sampling *sampling, bool at_end, double share) {
   const struct Scope *scope = sampling->scope;
   for (size_t i = 0; i + 1 < scope->dummy_count; i++) {
-    const struct Dummy *dummy = &scope->dummies[i];
+    const struct DummyVariable *dummy = &scope->dummies[i];
     double low = value_of(sampling, dummy->low), high = value_of(sampling, dummy->high);
     double position = at_end ? 1.0 : (1.0 + share * random_number(sampling)) / 2.0;
     sampling->symbols[scope->graph->vertices[dummy->symbol].left] = low + (high - low) * position;
@@ -116,7 +116,7 @@ static void place_symbols(struct Sampling *sampling, double share) {
 static void add_part(struct Sampling *sampling, const struct Rule *rule, double from, double to) {
   const struct Scope *scope = sampling->scope;
   const struct Graph *graph = scope->graph;
-  const struct Dummy *dummy = &scope->dummies[scope->dummy_count - 1];
+  const struct DummyVariable *dummy = &scope->dummies[scope->dummy_count - 1];
   cone_collect(graph->cone, graph, sampling->targets, sampling->count);
   for (size_t k = 0; k < rule->count; k++) {
     sampling->symbols[graph->vertices[dummy->symbol].left] = from + (to - from) * rule->nodes[k];
@@ -204,7 +204,7 @@ double *sampling_rounding_bounds(const struct Sampling *sampling) {
 /* The dummy's symbol stands for the share of the interval. */
 struct Sampling sampling_create(struct Scope *scope, Node value) {
   struct Graph *graph = scope->graph;
-  const struct Dummy *dummy = &scope->dummies[scope->dummy_count - 1];
+  const struct DummyVariable *dummy = &scope->dummies[scope->dummy_count - 1];
   Node length = subtract(graph, dummy->high, dummy->low);
   Node position = add(graph, dummy->low, multiply(graph, length, dummy->symbol));
   Node share = multiply(graph, length, substitute_symbol(graph, value, dummy->symbol, position));

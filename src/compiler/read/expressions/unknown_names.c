@@ -106,7 +106,7 @@ static char *function_names(void) {
 }
 
 /* Considers the names of the current file, without its prefix. */
-static void consider_own(struct Similar *similar, const struct Names *names, const char *prefix) {
+static void consider_own(struct SimilarName *similar, const struct Names *names, const char *prefix) {
   size_t length = strlen(prefix);
   for (size_t i = 0; i < names->capacity; i++) {
     const char *name = names->slots[i].text;
@@ -115,7 +115,7 @@ static void consider_own(struct Similar *similar, const struct Names *names, con
 }
 
 void report_unknown_function(struct Parser *parser, const char *name) {
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; special_functions[i] != NULL; i++) similar_consider(&similar, special_functions[i]);
   for (size_t i = 0; free_functions[i] != NULL; i++) similar_consider(&similar, free_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)

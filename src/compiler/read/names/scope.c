@@ -8,7 +8,7 @@
 #include "read/names/similar.h"
 
 /* The meaning of a name. */
-struct Entry {
+struct ScopeEntry {
   struct Quantity quantity;
   long line; /* of the definition; 0 for words of the language, compile-time numbers and indices */
   bool is_index;
@@ -27,18 +27,18 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   return scope;
 }
 
-static struct Entry *find_entry(const struct Scope *scope, const char *name) {
+static struct ScopeEntry *find_entry(const struct Scope *scope, const char *name) {
   return names_find(scope->names, name);
 }
 
 static void add_entry(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
-  struct Entry *entry = allocate(1, sizeof *entry);
-  *entry = (struct Entry){.quantity = quantity, .line = line};
+  struct ScopeEntry *entry = allocate(1, sizeof *entry);
+  *entry = (struct ScopeEntry){.quantity = quantity, .line = line};
   names_set(scope->names, name, entry);
 }
 
 bool scope_define(struct Scope *scope, const char *name, struct Quantity quantity, long line) {
-  const struct Entry *taken = find_entry(scope, name);
+  const struct ScopeEntry *taken = find_entry(scope, name);
   if (taken != NULL && taken->line != 0) {
     report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name%s",
                  name, noted_line(scope->diagnostics->noted, taken->line).line,
@@ -70,12 +70,12 @@ void scope_set_index(struct Scope *scope, const char *name, double value) {
 
 /* Does nothing if the name is not an index. */
 void scope_remove_index(struct Scope *scope, const char *name) {
-  const struct Entry *entry = find_entry(scope, name);
+  const struct ScopeEntry *entry = find_entry(scope, name);
   if (entry != NULL && entry->is_index) names_remove(scope->names, name);
 }
 
 bool scope_is_index(const struct Scope *scope, const char *name) {
-  const struct Entry *entry = find_entry(scope, name);
+  const struct ScopeEntry *entry = find_entry(scope, name);
   return entry != NULL && entry->is_index;
 }
 
@@ -84,11 +84,11 @@ void scope_remove(struct Scope *scope, const char *name) {
 }
 
 const struct Quantity *scope_find(const struct Scope *scope, const char *name) {
-  const struct Entry *entry = find_entry(scope, name);
+  const struct ScopeEntry *entry = find_entry(scope, name);
   return entry == NULL ? NULL : &entry->quantity;
 }
 
-static bool is_of_language(const struct Entry *entry) {
+static bool is_of_language(const struct ScopeEntry *entry) {
   return entry != NULL && entry->line == 0 && !entry->is_index;
 }
 
@@ -106,7 +106,7 @@ bool scope_is_reserved(const struct Scope *scope, const struct Quantity *quantit
 }
 
 const char *scope_similar_name(const struct Scope *scope, const char *name) {
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   size_t length = strlen(scope->prefix);
   for (size_t i = 0; i < scope->names->capacity; i++) {
     const char *known = scope->names->slots[i].text;

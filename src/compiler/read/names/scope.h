@@ -12,7 +12,7 @@ struct Model;
 struct Switches;
 
 /* The variable of an integral or a derivative while its expression is parsed, with the bounds of its interval. */
-struct Dummy {
+struct DummyVariable {
   Node symbol, low, high;
 };
 
@@ -23,24 +23,24 @@ enum { DUMMY_LIMIT = 20 };
 struct Scope {
   struct Graph *graph;
   struct Diagnostics *diagnostics;
-  struct Names *names;               /* name -> struct Entry */
-  bool checks_units;                 /* some variable has a unit; a file without units is not checked */
-  struct Requirements requirements;  /* domains of functions in all expressions parsed */
-  struct Names *tables;              /* full name -> struct Table, see table.h */
-  struct Names *functions;           /* full name -> struct NamedFunction, see named_functions.h */
-  struct Definitions *definitions;   /* names that are still to be parsed; NULL for none */
-  struct Switches *switches;         /* of the model; NULL if piecewise functions stay whole, as in a linearization */
-  Node *time_derivatives;            /* per symbol: its time derivative; ZERO for parameters and modes */
-  size_t time_derivative_count;      /* symbols that have an entry; modes are added only to the graph */
-  struct Derivatives rates;          /* cache of total_time_derivative() */
-  const char *prefix;                /* of names in the current file: "motor." if it is included, else "" */
-  bool keeps_whole;                  /* piecewise functions of the current expression stay whole */
-  struct Dummy dummies[DUMMY_LIMIT]; /* the outermost first; their symbols are reused */
-  size_t dummy_count;                /* dummies that are valid at the reading position */
-  const struct Model *model;         /* for the start values at which integrals are tested */
-  struct Names *noted_integrals;     /* "file:line:text" of those that a message has reported */
-  struct Names *warned_numbers;      /* "file:line:number" of those that a warning has reported */
-  long table_line;                   /* on which the current table is used */
+  struct Names *names;              /* name -> struct ScopeEntry */
+  bool checks_units;                /* some variable has a unit; a file without units is not checked */
+  struct Requirements requirements; /* domains of functions in all expressions parsed */
+  struct Names *tables;             /* full name -> struct Table, see table.h */
+  struct Names *functions;          /* full name -> struct NamedFunction, see named_functions.h */
+  struct Definitions *definitions;  /* names that are still to be parsed; NULL for none */
+  struct Switches *switches;        /* of the model; NULL if piecewise functions stay whole, as in a linearization */
+  Node *time_derivatives;           /* per symbol: its time derivative; ZERO for parameters and modes */
+  size_t time_derivative_count;     /* symbols that have an entry; modes are added only to the graph */
+  struct Derivatives rates;         /* cache of total_time_derivative() */
+  const char *prefix;               /* of names in the current file: "motor." if it is included, else "" */
+  bool keeps_whole;                 /* piecewise functions of the current expression stay whole */
+  struct DummyVariable dummies[DUMMY_LIMIT]; /* the outermost first; their symbols are reused */
+  size_t dummy_count;                        /* dummies that are valid at the reading position */
+  const struct Model *model;                 /* for the start values at which integrals are tested */
+  struct Names *noted_integrals;             /* "file:line:text" of those that a message has reported */
+  struct Names *warned_numbers;              /* "file:line:number" of those that a warning has reported */
+  long table_line;                           /* on which the current table is used */
 };
 
 /* Returns a scope without names, which reports to the diagnostics. */

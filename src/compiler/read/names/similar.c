@@ -59,14 +59,14 @@ static size_t common_beginning(const char *a, const char *b) {
 }
 
 /* True if a known name is better than the best one so far. */
-static bool is_better(const struct Similar *similar, const char *known, size_t distance) {
+static bool is_better(const struct SimilarName *similar, const char *known, size_t distance) {
   if (similar->best == NULL) return true;
   if (distance != similar->distance) return distance < similar->distance;
   size_t same = common_beginning(similar->wanted, known), best = common_beginning(similar->wanted, similar->best);
   return same != best ? same > best : strcmp(known, similar->best) < 0;
 }
 
-void similar_consider(struct Similar *similar, const char *known) {
+void similar_consider(struct SimilarName *similar, const char *known) {
   size_t distance = edit_distance(similar->wanted, known);
   size_t allowed = smaller(allowed_mistakes(similar->wanted), allowed_mistakes(known));
   if (distance > allowed || !is_better(similar, known, distance)) return;
@@ -74,7 +74,7 @@ void similar_consider(struct Similar *similar, const char *known) {
   similar->distance = distance;
 }
 
-void similar_consider_all(struct Similar *similar, const struct Names *names) {
+void similar_consider_all(struct SimilarName *similar, const struct Names *names) {
   for (size_t i = 0; i < names->capacity; i++)
     if (names->slots[i].text != NULL) similar_consider(similar, names->slots[i].text);
 }

@@ -4,7 +4,7 @@
 #include "read/names/names.h"
 
 /* A search for the name that is most similar to the wanted one. */
-struct Similar {
+struct SimilarName {
   const char *wanted, *best; /* best: NULL for none */
   size_t distance;           /* between best and wanted */
 };
@@ -14,7 +14,7 @@ struct Similar {
  * Names below 3 letters must be equal except for case. The best name has the smallest distance, then the longest common
  * beginning, then the first position in the alphabet.
  */
-void similar_consider(struct Similar *similar, const char *known);
+void similar_consider(struct SimilarName *similar, const char *known);
 
 /* Considers all names of a table. */
-void similar_consider_all(struct Similar *similar, const struct Names *names);
+void similar_consider_all(struct SimilarName *similar, const struct Names *names);

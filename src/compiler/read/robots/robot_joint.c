@@ -14,11 +14,11 @@
  */
 static const double creep_rate = 0.01, creep_velocity = 0.001;
 
-bool joint_slides(const struct Joint *joint) {
+bool joint_slides(const struct RobotJoint *joint) {
   return joint->type == PRISMATIC;
 }
 
-const char *joint_unit(const struct Joint *joint) {
+const char *joint_unit(const struct RobotJoint *joint) {
   return joint_slides(joint) ? "m" : "rad";
 }
 
@@ -27,7 +27,7 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
   if (writer->options->sticks) return;
   bool has_rotational = false, has_sliding = false;
   for (size_t i = 0; i < robot->joint_count; i++) {
-    const struct Joint *joint = robot->joints[i];
+    const struct RobotJoint *joint = robot->joints[i];
     has_sliding |= joint->friction > 0 && joint_slides(joint);
     has_rotational |= joint->friction > 0 && !joint_slides(joint);
   }
@@ -41,34 +41,36 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
 }
 
 /* Expressions of a joint's velocity, and of its ratio to that of its leader. */
-struct Motion {
+struct JointMotion {
   char *velocity, *ratio;
 };
 
 /* A ratio between a rotation and a translation is a parameter, as it has a unit. */
-char *joint_ratio(const struct Joint *joint) {
+char *joint_ratio(const struct RobotJoint *joint) {
   bool has_unit = joint_slides(joint) != joint_slides(joint->leader);
   return has_unit ? format_text("%s_ratio", joint->symbol) : number(joint->ratio);
 }
 
-char *joint_position(const struct Joint *joint) {
+char *joint_position(const struct RobotJoint *joint) {
   if (joint->leader == joint) return copy_text(joint->symbol);
   char *ratio = joint_ratio(joint), *shift = number(fabs(joint->shift));
   return format_text("(%s*%s %c %s)", ratio, joint->leader->symbol, joint->shift < 0 ? '-' : '+', shift);
 }
 
 /* Writes the position of a mimicking joint as an output, as it has no coordinate. */
-static struct Motion write_follower(const struct Writer *writer, const struct Joint *joint, const char *description) {
+static struct JointMotion write_follower(const struct Writer *writer, const struct RobotJoint *joint,
+                                         const char *description) {
   const char *name = joint->symbol, *leader = joint->leader->symbol;
   if (joint_slides(joint) != joint_slides(joint->leader))
     write_parameter(writer, joint_ratio(joint), joint->ratio, joint_slides(joint) ? "m/rad" : "rad/m",
                     format_text("velocity of %s over that of %s", name, leader));
   write_output(writer, copy_text(name), joint_unit(joint), joint_position(joint), copy_text(description));
   char *ratio = joint_ratio(joint);
-  return (struct Motion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
+  return (struct JointMotion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
 }
 
-static void write_friction(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+static void write_friction(const struct Writer *writer, const struct RobotJoint *joint,
+                           const struct JointMotion *motion) {
   const char *name = joint->symbol;
   write_parameter(writer, format_text("%s_friction", name), joint->friction, joint_slides(joint) ? "N" : "N.m",
                   format_text("Coulomb friction of %s", name));
@@ -86,7 +88,8 @@ static void write_friction(const struct Writer *writer, const struct Joint *join
 }
 
 /* Writes the energies of a joint: kinetic energy of its motor and potential of its spring. */
-static void write_stores(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+static void write_stores(const struct Writer *writer, const struct RobotJoint *joint,
+                         const struct JointMotion *motion) {
   const char *name = joint->symbol;
   if (joint->armature > 0) {
     write_parameter(writer, format_text("%s_armature", name), joint->armature, joint_slides(joint) ? "kg" : "kg.m2",
@@ -104,7 +107,8 @@ static void write_stores(const struct Writer *writer, const struct Joint *joint,
   }
 }
 
-static void write_losses(const struct Writer *writer, const struct Joint *joint, const struct Motion *motion) {
+static void write_losses(const struct Writer *writer, const struct RobotJoint *joint,
+                         const struct JointMotion *motion) {
   const char *name = joint->symbol;
   if (joint->damping > 0) {
     write_parameter(writer, format_text("%s_damping", name), joint->damping,
@@ -115,7 +119,7 @@ static void write_losses(const struct Writer *writer, const struct Joint *joint,
 }
 
 /* Writes stops. A mimicking joint stops its leader by contacts. */
-static void write_stops(const struct Writer *writer, const struct Joint *joint, char *lower, char *upper) {
+static void write_stops(const struct Writer *writer, const struct RobotJoint *joint, char *lower, char *upper) {
   if (joint->leader == joint) {
     xmlNodePtr stop = write_element(writer, "stop");
     set_attribute(stop, "coordinate", copy_text(joint->symbol));
@@ -126,7 +130,7 @@ static void write_stops(const struct Writer *writer, const struct Joint *joint, 
   write_end_contacts(writer, joint->symbol, joint_unit(joint), joint_position(joint), lower, upper);
 }
 
-static void write_limits(const struct Writer *writer, const struct Joint *joint) {
+static void write_limits(const struct Writer *writer, const struct RobotJoint *joint) {
   if (isnan(joint->lower)) return;
   const char *name = joint->symbol;
   char *lower = number(joint->lower), *upper = number(joint->upper);
@@ -137,8 +141,8 @@ static void write_limits(const struct Writer *writer, const struct Joint *joint)
   write_beyond(writer, name, joint_unit(joint), lower, upper);
 }
 
-static void write_single(const struct Writer *writer, const struct Joint *joint, const char *description) {
-  struct Motion motion;
+static void write_single(const struct Writer *writer, const struct RobotJoint *joint, const char *description) {
+  struct JointMotion motion;
   if (joint->leader == joint) {
     double effort = writer->options->is_effort_limited ? joint->effort : NAN;
     const char *name = joint->symbol, *unit = joint_unit(joint);
@@ -149,14 +153,14 @@ static void write_single(const struct Writer *writer, const struct Joint *joint,
     if (writer->options->has_stops && start > joint->upper) start = joint->upper;
     set_number(coordinate, "start", start);
     set_number(coordinate, "velocityStart", joint->start.velocity[0]);
-    motion = (struct Motion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
+    motion = (struct JointMotion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);
   write_stores(writer, joint, &motion);
   write_losses(writer, joint, &motion);
   write_limits(writer, joint);
 }
 
-static void write_planar(const struct Writer *writer, const struct Joint *joint, const char *description) {
+static void write_planar(const struct Writer *writer, const struct RobotJoint *joint, const char *description) {
   static const char *const coordinates[3][2] = {{"x", "m"}, {"y", "m"}, {"angle", "rad"}};
   for (int i = 0; i < 3; i++)
     write_motor(writer, format_text("%s_%s", joint->symbol, coordinates[i][0]), coordinates[i][1], NAN, description);
@@ -180,7 +184,7 @@ void write_free_coordinates(const struct Writer *writer, const char *name, const
 }
 
 /* Returns the start with the identity quaternion if the file gives none. */
-static struct JointStart start_of_quaternion(const struct Joint *joint) {
+static struct JointStart start_of_quaternion(const struct RobotJoint *joint) {
   struct JointStart start = joint->start;
   const double *q = &start.position[3];
   if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) start.position[3] = 1;
@@ -191,8 +195,8 @@ static struct JointStart start_of_quaternion(const struct Joint *joint) {
  * Writes an isotropic inertia and damper, with the energy and dissipation share*factor*square. square: the expression
  * of the squared velocity.
  */
-static void write_isotropic(const struct Writer *writer, const struct Joint *joint, const char *prefix, double share,
-                            const char *square, bool is_turning) {
+static void write_isotropic(const struct Writer *writer, const struct RobotJoint *joint, const char *prefix,
+                            double share, const char *square, bool is_turning) {
   const char *name = joint->symbol, *factor = number(share);
   const char *how = is_turning ? "about any axis" : "in any direction";
   if (joint->armature > 0) {
@@ -210,7 +214,7 @@ static void write_isotropic(const struct Writer *writer, const struct Joint *joi
 }
 
 /* For unit quaternions |omega|^2 = 4 |dq/dt|^2. */
-static void write_turning(const struct Writer *writer, const struct Joint *joint, const char *prefix) {
+static void write_turning(const struct Writer *writer, const struct RobotJoint *joint, const char *prefix) {
   const char *name = joint->symbol;
   write_isotropic(writer, joint, prefix, 2,
                   format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name, name,
@@ -218,7 +222,7 @@ static void write_turning(const struct Writer *writer, const struct Joint *joint
                   true);
 }
 
-static void write_free(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+static void write_free(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
                        const char *description) {
   const char *name = joint->symbol;
   write_free_coordinates(writer, name, start, description);
@@ -227,13 +231,13 @@ static void write_free(const struct Writer *writer, const struct Joint *joint, c
   write_turning(writer, joint, "turning_");
 }
 
-static void write_ball(const struct Writer *writer, const struct Joint *joint, const struct JointStart *start,
+static void write_ball(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
                        const char *description) {
   write_components(writer, joint->symbol, 3, start, description);
   write_turning(writer, joint, "");
 }
 
-void write_joint(const struct Writer *writer, const struct Joint *joint) {
+void write_joint(const struct Writer *writer, const struct RobotJoint *joint) {
   char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
                                   joint->parent->name, joint->child->name);
   struct JointStart start = start_of_quaternion(joint);
@@ -280,7 +284,7 @@ static void axes_across(const double axis[3], double first[3], double second[3])
     second[i] = axis[(i + 1) % 3] * first[(i + 2) % 3] - axis[(i + 2) % 3] * first[(i + 1) % 3];
 }
 
-static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
+static void write_planar_motion(const struct Writer *writer, xmlNodePtr frame, const struct RobotJoint *joint) {
   double across[2][3];
   axes_across(joint->axis, across[0], across[1]);
   for (int i = 0; i < 2; i++) write_slide(writer, frame, across[i], format_text("%s_%s", joint->symbol, axes[i]));
@@ -298,7 +302,7 @@ void write_free_motion(const struct Writer *writer, xmlNodePtr frame, const char
   write_quaternion(writer, frame, name);
 }
 
-void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Joint *joint) {
+void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct RobotJoint *joint) {
   if (joint->type == FLOATING) write_free_motion(writer, frame, joint->symbol);
   else if (joint->type == BALL) write_quaternion(writer, frame, joint->symbol);
   else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);

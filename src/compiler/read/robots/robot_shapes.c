@@ -34,7 +34,8 @@ static double friction_of(const struct Collision *shape) {
 }
 
 /* True if the shape touches the ground, provided that its link moves. */
-static bool meets_ground(const struct RobotOptions *options, const struct Link *link, const struct Collision *shape) {
+static bool meets_ground(const struct RobotOptions *options, const struct RobotLink *link,
+                         const struct Collision *shape) {
   return !shape->is_clear && link_touches_ground(options, link->name);
 }
 
@@ -43,7 +44,7 @@ static double common_friction(const struct Robot *robot, const struct RobotOptio
   double common = usual_friction;
   bool is_first = true;
   for (size_t i = 0; i < robot->link_count; i++) {
-    const struct Link *link = robot->links[i];
+    const struct RobotLink *link = robot->links[i];
     for (size_t j = 0; j < link->collision_count; j++) {
       if (!carrier_moves(link, options->floats) || !meets_ground(options, link, &link->collisions[j])) continue;
       double friction = friction_of(&link->collisions[j]);
@@ -82,7 +83,7 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
   if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
 }
 
-static void write_contact(const struct Writer *writer, const struct Link *link, const struct Collision *collision,
+static void write_contact(const struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
                           const char *shape, size_t index) {
   xmlNodePtr contact = write_element(writer, "contact");
   set_attribute(contact, "name", format_text("%s_%s%zu", link->symbol, ground, index));
@@ -96,7 +97,7 @@ static void write_contact(const struct Writer *writer, const struct Link *link, 
                     : copy_text("ground_friction"));
 }
 
-static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, const struct Collision *collision,
+static xmlNodePtr write_shape(struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
                               char *name) {
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
   const double *scale = collision->scale;
@@ -117,7 +118,7 @@ static xmlNodePtr write_shape(struct Writer *writer, const struct Link *link, co
   return shape;
 }
 
-void write_shapes(struct Writer *writer, const struct Link *link, bool moves) {
+void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves) {
   for (size_t i = 0; i < link->collision_count; i++) {
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);

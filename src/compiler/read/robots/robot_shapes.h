@@ -10,4 +10,4 @@ void write_ground(struct Writer *writer, const struct Robot *robot);
  * Writes the shapes LINK_collision1, ... and LINK_visual1, ... of a link. If the link moves and there is a ground, also
  * writes the contacts LINK_ground1, ... of the former.
  */
-void write_shapes(struct Writer *writer, const struct Link *link, bool moves);
+void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves);

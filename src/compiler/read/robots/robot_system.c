@@ -55,7 +55,7 @@ static void write_placement(const struct Writer *writer, xmlNodePtr frame, const
 }
 
 /* Writes all links that are fixed to this one, and itself, as one body. */
-static void write_body(const struct Writer *writer, const struct Link *link) {
+static void write_body(const struct Writer *writer, const struct RobotLink *link) {
   static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
   const struct RigidBody *body = &link->carried;
   if (!body_has_inertia(body)) return;
@@ -69,9 +69,9 @@ static void write_body(const struct Writer *writer, const struct Link *link) {
 }
 
 /* Writes the coordinates, frame, body and shapes of a link; the frame is in that of the parent's carrier. */
-static void write_link(struct Writer *writer, const struct Link *link) {
+static void write_link(struct Writer *writer, const struct RobotLink *link) {
   bool floats = writer->options->floats;
-  const struct Joint *joint = link->joint;
+  const struct RobotJoint *joint = link->joint;
   bool moves = joint_moves(joint);
   if (moves) {
     writer->line = joint->line;
@@ -82,7 +82,7 @@ static void write_link(struct Writer *writer, const struct Link *link) {
   xmlNodePtr frame = write_element(writer, "frame");
   set_attribute(frame, "name", copy_text(link->symbol));
   if (joint != NULL) {
-    const struct Link *parent = joint->parent;
+    const struct RobotLink *parent = joint->parent;
     struct Placement placement = placement_within(&parent->placement, &joint->origin);
     set_attribute(frame, "in", copy_text(parent->carrier->symbol));
     write_placement(writer, frame, &placement);
@@ -93,9 +93,9 @@ static void write_link(struct Writer *writer, const struct Link *link) {
 }
 
 /* Returns the leaf of the tree if there is only one; NULL otherwise. */
-static const struct Link *only_end(const struct Robot *robot) {
-  const struct Link *end = NULL;
-  for (const struct Link *link = robot->root; link != NULL; link = link->next) {
+static const struct RobotLink *only_end(const struct Robot *robot) {
+  const struct RobotLink *end = NULL;
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) {
     if (link->first_child != NULL) continue;
     if (end != NULL) return NULL;
     end = link;
@@ -103,7 +103,7 @@ static const struct Link *only_end(const struct Robot *robot) {
   return end;
 }
 
-static void write_tool(struct Writer *writer, const struct Link *link) {
+static void write_tool(struct Writer *writer, const struct RobotLink *link) {
   writer->line = link->line;
   xmlNodePtr point = write_element(writer, "point");
   set_attribute(point, "name", copy_text(tool));
@@ -152,13 +152,13 @@ static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
   set_attribute(joint, "to", copy_text(loop->links[1]->symbol));
 }
 
-static void write_robot(struct Writer *writer, const struct Robot *robot, const struct Link *end) {
+static void write_robot(struct Writer *writer, const struct Robot *robot, const struct RobotLink *end) {
   set_attribute(writer->system, "name", robot_symbol(robot->name));
   set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
   write_gravity(writer, robot);
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
-  for (const struct Link *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
   for (size_t i = 0; i < robot->tendon_count; i++) {
     writer->line = robot->tendons[i].line;
     write_tendon(writer, &robot->tendons[i]);
@@ -199,18 +199,18 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
 }
 
 /* Counts joints or tendons with a property; holds the first of them. */
-struct Common {
+struct PropertyCount {
   const char *kind, *name;
   long line;
   size_t count;
 };
 
-static void count_one(struct Common *common, const char *kind, const char *name, long line) {
-  if (common->count++ == 0) *common = (struct Common){.kind = kind, .name = name, .line = line, .count = 1};
+static void count_one(struct PropertyCount *common, const char *kind, const char *name, long line) {
+  if (common->count++ == 0) *common = (struct PropertyCount){.kind = kind, .name = name, .line = line, .count = 1};
 }
 
 /* Warns of limits in the file if the <include> does not say how to treat them. */
-static void warn_of_limits(const struct Diagnostics *diagnostics, const struct Common *common, bool is_said,
+static void warn_of_limits(const struct Diagnostics *diagnostics, const struct PropertyCount *common, bool is_said,
                            const char *what, const char *attribute) {
   if (is_said || common->count == 0) return;
   size_t others = common->count - 1;
@@ -221,9 +221,9 @@ static void warn_of_limits(const struct Diagnostics *diagnostics, const struct C
 
 static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
                          const struct Diagnostics *diagnostics) {
-  struct Common ranges = {.count = 0}, efforts = {.count = 0};
+  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0};
   for (size_t i = 0; i < robot->joint_count; i++) {
-    const struct Joint *joint = robot->joints[i];
+    const struct RobotJoint *joint = robot->joints[i];
     if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
     if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
       count_one(&efforts, "joint", joint->name, joint->line);
@@ -240,7 +240,7 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
 static void check_rims(const struct Robot *robot, const struct RobotOptions *options,
                        const struct Diagnostics *diagnostics) {
   for (size_t i = 0; i < robot->link_count; i++) {
-    const struct Link *link = robot->links[i];
+    const struct RobotLink *link = robot->links[i];
     for (size_t j = 0; j < link->collision_count; j++) {
       const struct Collision *shape = &link->collisions[j];
       if (strcmp(shape->type, "cylinder") != 0 || shape->is_clear || !link_touches_ground(options, link->name) ||
@@ -263,7 +263,7 @@ static void check_ground_contact(const struct Robot *robot, const struct RobotOp
   const char *rest = options->ground_contact;
   if (!options->has_ground || rest == NULL) return;
   for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
-    const struct Link *link = robot_link(robot, name, "the ground", diagnostics);
+    const struct RobotLink *link = robot_link(robot, name, "the ground", diagnostics);
     size_t clear = 0;
     for (size_t i = 0; link != NULL && i < link->collision_count; i++) clear += link->collisions[i].is_clear;
     if (link != NULL && link->collision_count == clear)
@@ -279,7 +279,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options
   xmlNodePtr root = xmlDocGetRootElement(document);
   struct Robot *robot =
       is_element(root, "mujoco") ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
-  const struct Link *end = NULL;
+  const struct RobotLink *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);
     check_ground_contact(robot, options, diagnostics);

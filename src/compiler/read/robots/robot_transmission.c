@@ -12,7 +12,7 @@ static char *coefficient_of(const struct TransmissionTerm *term) {
 
 /* Returns the derivative of the transmission's length with respect to the coordinate of the joint's leader. */
 static char *share_of(const struct TransmissionTerm *term) {
-  const struct Joint *joint = term->joint;
+  const struct RobotJoint *joint = term->joint;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
   return term->coefficient == 1 && term->symbol == NULL ? ratio : format_text("%s*%s", coefficient_of(term), ratio);
 }
@@ -57,7 +57,7 @@ char *transmission_rate(const struct Transmission *transmission) {
 }
 
 /* Writes a force on one end of a segment, directed away from the other end. */
-static void write_site_force(const struct Writer *writer, const struct Link *end, const struct Link *other,
+static void write_site_force(const struct Writer *writer, const struct RobotLink *end, const struct RobotLink *other,
                              const char *force) {
   static const char *const axes[] = {"x", "y", "z"};
   xmlNodePtr node = write_element(writer, "force");
@@ -70,23 +70,24 @@ static void write_site_force(const struct Writer *writer, const struct Link *end
 
 static void write_forces(const struct Writer *writer, const struct Transmission *transmission, const char *force) {
   for (size_t i = 1; i < transmission->site_count; i++) {
-    const struct Link *first = transmission->sites[i - 1], *second = transmission->sites[i];
+    const struct RobotLink *first = transmission->sites[i - 1], *second = transmission->sites[i];
     if (first->carrier == second->carrier) continue; /* of constant length */
     write_site_force(writer, first, second, force);
     write_site_force(writer, second, first, force);
   }
 }
 
-static void write_joint_force(const struct Writer *writer, const struct Joint *joint, char *force) {
+static void write_joint_force(const struct Writer *writer, const struct RobotJoint *joint, char *force) {
   xmlNodePtr node = write_element(writer, "force");
   set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
   set_content(node, force);
 }
 
 /* Adds an actuator's force to the sum for a joint that limits it, see write_limited_forces(). */
-static void add_push(struct Joint *joint, char *actuator_limits) {
-  joint->impulses =
-      joint->impulses == NULL ? actuator_limits : format_text("%s + %s", joint->impulses, actuator_limits);
+static void add_push(struct RobotJoint *joint, char *actuator_limits) {
+  joint->actuator_forces = joint->actuator_forces == NULL
+                               ? actuator_limits
+                               : format_text("%s + %s", joint->actuator_forces, actuator_limits);
 }
 
 void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
@@ -106,10 +107,11 @@ void write_term(const struct Writer *writer, const struct Transmission *transmis
   }
 }
 
-void write_limited_forces(const struct Writer *writer, const struct Joint *joint) {
-  if (joint->impulses == NULL) return;
+void write_limited_forces(const struct Writer *writer, const struct RobotJoint *joint) {
+  if (joint->actuator_forces == NULL) return;
   char *ratio = joint->leader != joint ? joint_ratio(joint) : number(1);
-  write_joint_force(writer, joint, format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->impulses)));
+  write_joint_force(writer, joint,
+                    format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->actuator_forces)));
 }
 
 /*

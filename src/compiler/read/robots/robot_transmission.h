@@ -24,4 +24,4 @@ void write_term(const struct Writer *writer, const struct Transmission *transmis
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator);
 
 /* Writes the sum of the actuators' forces on a joint that limits it. */
-void write_limited_forces(const struct Writer *writer, const struct Joint *joint);
+void write_limited_forces(const struct Writer *writer, const struct RobotJoint *joint);

@@ -12,10 +12,10 @@
 /* Links or joints by their names in the file, and by their symbols. */
 struct Register {
   const char *kind;
-  struct Names *names, *symbols; /* name -> struct Entry */
+  struct Names *names, *symbols; /* name -> struct RegisterEntry */
 };
 
-struct Entry {
+struct RegisterEntry {
   const char *name;
   long line;
   size_t index;
@@ -28,11 +28,11 @@ struct Connection {
   struct Diagnostics *diagnostics;
 };
 
-bool joint_moves(const struct Joint *joint) {
+bool joint_moves(const struct RobotJoint *joint) {
   return joint != NULL && joint->type != FIXED;
 }
 
-bool joint_is_single(const struct Joint *joint) {
+bool joint_is_single(const struct RobotJoint *joint) {
   return joint->type == REVOLUTE || joint->type == CONTINUOUS || joint->type == PRISMATIC;
 }
 
@@ -41,7 +41,7 @@ double robot_gravity(const struct Robot *robot) {
   return sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
 }
 
-bool carrier_moves(const struct Link *link, bool floats) {
+bool carrier_moves(const struct RobotLink *link, bool floats) {
   return floats || link->carrier->joint != NULL;
 }
 
@@ -65,20 +65,20 @@ static char *symbol_in_system(const char *name) {
 }
 
 /* Returns the entry with this text if there is one. Otherwise adds the new entry and returns NULL. */
-static const struct Entry *enter(struct Names *names, const char *text, struct Entry entry) {
-  const struct Entry *before = names_find(names, text);
+static const struct RegisterEntry *enter(struct Names *names, const char *text, struct RegisterEntry entry) {
+  const struct RegisterEntry *before = names_find(names, text);
   if (before != NULL) return before;
-  struct Entry *own = allocate(1, sizeof *own);
+  struct RegisterEntry *own = allocate(1, sizeof *own);
   *own = entry;
   names_set(names, text, own);
   return NULL;
 }
 
 /* Returns the symbol of a name. Reports duplicate names and symbols. */
-static char *enter_name(struct Connection *connection, struct Register *all, struct Entry entry) {
+static char *enter_name(struct Connection *connection, struct Register *all, struct RegisterEntry entry) {
   char *symbol = symbol_in_system(entry.name);
-  const struct Entry *same = enter(all->names, entry.name, entry);
-  const struct Entry *alike = same == NULL ? enter(all->symbols, symbol, entry) : NULL;
+  const struct RegisterEntry *same = enter(all->names, entry.name, entry);
+  const struct RegisterEntry *alike = same == NULL ? enter(all->symbols, symbol, entry) : NULL;
   if (same != NULL)
     report_error(connection->diagnostics, entry.line,
                  "the %s '%s' is already defined on line %ld; expected another name", all->kind, entry.name,
@@ -94,37 +94,37 @@ static char *enter_name(struct Connection *connection, struct Register *all, str
 static void enter_names(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->link_count; i++) {
-    struct Link *link = robot->links[i];
-    link->symbol = enter_name(connection, &connection->links, (struct Entry){link->name, link->line, i});
+    struct RobotLink *link = robot->links[i];
+    link->symbol = enter_name(connection, &connection->links, (struct RegisterEntry){link->name, link->line, i});
   }
   for (size_t i = 0; i < robot->joint_count; i++) {
-    struct Joint *joint = robot->joints[i];
-    joint->symbol = enter_name(connection, &connection->joints, (struct Entry){joint->name, joint->line, i});
+    struct RobotJoint *joint = robot->joints[i];
+    joint->symbol = enter_name(connection, &connection->joints, (struct RegisterEntry){joint->name, joint->line, i});
   }
 }
 
 static void report_missing(const char *kind, const char *name, const char *what, long line,
-                           const struct Similar *similar, struct Diagnostics *diagnostics) {
+                           const struct SimilarName *similar, struct Diagnostics *diagnostics) {
   report_error(diagnostics, line, "there is no %s '%s' for %s; %s%s%s", kind, name, what,
                similar->best != NULL ? "did you mean '" : "expected one of the file",
                similar->best != NULL ? similar->best : "", similar->best != NULL ? "'?" : "");
 }
 
 /* Returns the entry of this name; NULL after reporting that there is none. */
-static const struct Entry *find(const struct Connection *connection, const struct Register *all, const char *name,
-                                const char *what, long line) {
-  const struct Entry *entry = names_find(all->names, name);
+static const struct RegisterEntry *find(const struct Connection *connection, const struct Register *all,
+                                        const char *name, const char *what, long line) {
+  const struct RegisterEntry *entry = names_find(all->names, name);
   if (entry != NULL) return entry;
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   similar_consider_all(&similar, all->names);
   report_missing(all->kind, name, what, line, &similar, connection->diagnostics);
   return NULL;
 }
 
-static struct Link *find_link(const struct Connection *connection, const char *name, const char *role,
-                              const struct Joint *joint) {
+static struct RobotLink *find_link(const struct Connection *connection, const char *name, const char *role,
+                                   const struct RobotJoint *joint) {
   char *what = format_text("the %s of the joint '%s'", role, joint->name);
-  const struct Entry *entry = find(connection, &connection->links, name, what, joint->line);
+  const struct RegisterEntry *entry = find(connection, &connection->links, name, what, joint->line);
   return entry != NULL ? connection->robot->links[entry->index] : NULL;
 }
 
@@ -135,9 +135,9 @@ static struct Link *find_link(const struct Connection *connection, const char *n
 static void connect_links(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = robot->joint_count; i-- > 0;) {
-    struct Joint *joint = robot->joints[i];
-    struct Link *parent = joint->parent = find_link(connection, joint->parent_name, "parent", joint);
-    struct Link *child = joint->child = find_link(connection, joint->child_name, "child", joint);
+    struct RobotJoint *joint = robot->joints[i];
+    struct RobotLink *parent = joint->parent = find_link(connection, joint->parent_name, "parent", joint);
+    struct RobotLink *child = joint->child = find_link(connection, joint->child_name, "child", joint);
     if (parent == NULL || child == NULL) continue;
     if (child->joint != NULL) {
       report_error(
@@ -157,7 +157,7 @@ static void connect_links(struct Connection *connection) {
 static void find_root(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->link_count; i++) {
-    struct Link *link = robot->links[i];
+    struct RobotLink *link = robot->links[i];
     if (link->joint != NULL) continue;
     if (robot->root == NULL) robot->root = link;
     else
@@ -171,7 +171,7 @@ static void find_root(struct Connection *connection) {
 }
 
 /* Returns the next link in depth-first order. */
-static struct Link *following(const struct Link *link) {
+static struct RobotLink *following(const struct RobotLink *link) {
   if (link->first_child != NULL) return link->first_child;
   while (link->next_sibling == NULL && link->joint != NULL) link = link->joint->parent;
   return link->next_sibling;
@@ -181,8 +181,8 @@ static struct Link *following(const struct Link *link) {
 static void order_links(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   bool *reached = allocate(robot->link_count, sizeof *reached);
-  for (struct Link *link = robot->root; link != NULL; link = link->next) {
-    const struct Entry *entry = names_find(connection->links.names, link->name);
+  for (struct RobotLink *link = robot->root; link != NULL; link = link->next) {
+    const struct RegisterEntry *entry = names_find(connection->links.names, link->name);
     reached[entry->index] = true;
     link->next = following(link);
   }
@@ -195,7 +195,7 @@ static void order_links(struct Connection *connection) {
 }
 
 /* Reports placements and inertias that overflowed. */
-static void check_numbers(struct Connection *connection, const struct Link *link) {
+static void check_numbers(struct Connection *connection, const struct RobotLink *link) {
   if (placement_is_finite(&link->placement) && body_is_finite(&link->carrier->carried)) return;
   report_error(connection->diagnostics, link->line,
                "the position or inertia of the link '%s' as a part of '%s' is not finite; expected smaller numbers in "
@@ -207,11 +207,12 @@ static void check_numbers(struct Connection *connection, const struct Link *link
 static void join_fixed_links(struct Connection *connection) {
   const struct Robot *robot = connection->robot;
   int errors = connection->diagnostics->errors;
-  for (struct Link *link = robot->root; link != NULL && connection->diagnostics->errors == errors; link = link->next) {
+  for (struct RobotLink *link = robot->root; link != NULL && connection->diagnostics->errors == errors;
+       link = link->next) {
     link->carrier = link;
     link->placement = no_displacement;
     if (link->joint != NULL && !joint_moves(link->joint)) {
-      const struct Link *parent = link->joint->parent;
+      const struct RobotLink *parent = link->joint->parent;
       link->carrier = parent->carrier;
       link->placement = placement_within(&parent->placement, &link->joint->origin);
     }
@@ -222,9 +223,10 @@ static void join_fixed_links(struct Connection *connection) {
 }
 
 /* Returns the joint that this one mimics; NULL after reporting an error. */
-static struct Joint *mimicked_by(struct Connection *connection, const struct Joint *joint) {
-  const struct Entry *entry = find(connection, &connection->joints, joint->mimicked_name, "a <mimic>", joint->line);
-  struct Joint *other = entry != NULL ? connection->robot->joints[entry->index] : NULL;
+static struct RobotJoint *mimicked_by(struct Connection *connection, const struct RobotJoint *joint) {
+  const struct RegisterEntry *entry =
+      find(connection, &connection->joints, joint->mimicked_name, "a <mimic>", joint->line);
+  struct RobotJoint *other = entry != NULL ? connection->robot->joints[entry->index] : NULL;
   if (other == NULL || (joint_is_single(joint) && joint_is_single(other))) return other;
   report_error(connection->diagnostics, joint->line,
                "the joint '%s' mimics '%s'; expected both of them revolute, continuous or prismatic", joint->name,
@@ -233,8 +235,8 @@ static struct Joint *mimicked_by(struct Connection *connection, const struct Joi
 }
 
 /* Follows mimicked joints to the one with a coordinate and composes their linear functions. Reports cycles. */
-static void find_leader(struct Connection *connection, struct Joint *joint) {
-  struct Joint *leader = joint;
+static void find_leader(struct Connection *connection, struct RobotJoint *joint) {
+  struct RobotJoint *leader = joint;
   joint->ratio = 1;
   for (size_t steps = 0; leader != NULL && leader->mimicked_name != NULL; steps++) {
     if (steps == connection->robot->joint_count) {
@@ -263,12 +265,12 @@ static void connect_transmission(struct Connection *connection, struct Transmiss
   const char *what = format_text("%s %s", *kind == 'a' ? "an" : "a", kind);
   struct Register sites = {"site", connection->links.names, connection->links.symbols};
   for (size_t i = 0; i < transmission->site_count; i++) {
-    const struct Entry *entry = find(connection, &sites, transmission->site_names[i], what, line);
+    const struct RegisterEntry *entry = find(connection, &sites, transmission->site_names[i], what, line);
     if (entry != NULL) transmission->sites[i] = connection->robot->links[entry->index];
   }
   for (size_t i = 0; i < transmission->count; i++) {
     struct TransmissionTerm *term = &transmission->terms[i], *first = transmission->terms;
-    const struct Entry *entry = find(connection, &connection->joints, term->joint_name, what, line);
+    const struct RegisterEntry *entry = find(connection, &connection->joints, term->joint_name, what, line);
     term->joint = entry != NULL ? connection->robot->joints[entry->index] : NULL;
     if (term->joint == NULL) continue;
     if (!joint_is_single(term->joint))
@@ -301,7 +303,8 @@ static void connect_loops(struct Connection *connection) {
   for (size_t i = 0; i < robot->loop_count; i++)
     for (int end = 0; end < 2; end++) {
       struct RobotLoop *loop = &robot->loops[i];
-      const struct Entry *entry = find(connection, &connection->links, loop->link_names[end], loop->name, loop->line);
+      const struct RegisterEntry *entry =
+          find(connection, &connection->links, loop->link_names[end], loop->name, loop->line);
       if (entry != NULL) loop->links[end] = robot->links[entry->index];
     }
 }
@@ -309,15 +312,15 @@ static void connect_loops(struct Connection *connection) {
 /* Reports joints that move no inertia: neither of their link nor of its descendants, nor of a motor. */
 static void check_inertia(struct Connection *connection) {
   struct Robot *robot = connection->robot;
-  for (const struct Link *link = robot->root; link != NULL; link = link->next) {
-    struct Link *ancestor = body_has_inertia(&link->carried) ? link->carrier : NULL;
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) {
+    struct RobotLink *ancestor = body_has_inertia(&link->carried) ? link->carrier : NULL;
     while (ancestor != NULL && !ancestor->moves_inertia) {
       ancestor->moves_inertia = true;
       ancestor = ancestor->joint != NULL ? ancestor->joint->parent->carrier : NULL;
     }
   }
   for (size_t i = 0; i < robot->joint_count; i++) {
-    const struct Joint *joint = robot->joints[i];
+    const struct RobotJoint *joint = robot->joints[i];
     if (!joint_moves(joint) || joint->is_mimicked || joint->leader != joint || joint->child->moves_inertia ||
         joint->armature > 0)
       continue;
@@ -328,9 +331,9 @@ static void check_inertia(struct Connection *connection) {
   }
 }
 
-struct Link *robot_link(const struct Robot *robot, const char *name, const char *what,
-                        struct Diagnostics *diagnostics) {
-  struct Similar similar = {.wanted = name};
+struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,
+                             struct Diagnostics *diagnostics) {
+  struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < robot->link_count; i++) {
     if (strcmp(robot->links[i]->name, name) == 0) return robot->links[i];
     similar_consider(&similar, robot->links[i]->name);

@@ -13,16 +13,17 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 char *robot_symbol(const char *name);
 
 /* Returns the link of this name; NULL after reporting that there is none. what: where the name is used. */
-struct Link *robot_link(const struct Robot *robot, const char *name, const char *what, struct Diagnostics *diagnostics);
+struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,
+                             struct Diagnostics *diagnostics);
 
 /* True if the joint has coordinates; false for NULL. */
-bool joint_moves(const struct Joint *joint);
+bool joint_moves(const struct RobotJoint *joint);
 
 /* True if the joint has one coordinate: revolute, continuous or prismatic. */
-bool joint_is_single(const struct Joint *joint);
+bool joint_is_single(const struct RobotJoint *joint);
 
 /* Returns the gravitational acceleration of the file in m/s2. */
 double robot_gravity(const struct Robot *robot);
 
 /* True if the link moves, itself or by the link that it is fixed to. */
-bool carrier_moves(const struct Link *link, bool floats);
+bool carrier_moves(const struct RobotLink *link, bool floats);

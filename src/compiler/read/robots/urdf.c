@@ -36,7 +36,7 @@ static struct Matrix3 read_tensor(struct RobotFile *urdf, xmlNodePtr node) {
   return tensor;
 }
 
-static void check_inertial(struct RobotFile *urdf, xmlNodePtr node, const struct Link *link,
+static void check_inertial(struct RobotFile *urdf, xmlNodePtr node, const struct RobotLink *link,
                            const struct RigidBody *body) {
   long line = line_of(node);
   if (body->mass < 0)
@@ -44,7 +44,7 @@ static void check_inertial(struct RobotFile *urdf, xmlNodePtr node, const struct
                  link->name);
 }
 
-static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+static void read_inertial(struct RobotFile *urdf, xmlNodePtr node, struct RobotLink *link) {
   static const char *const known[] = {"origin", "mass", "inertia", NULL};
   leave_out_others(urdf, node, known);
   xmlNodePtr mass = required_child_of(urdf, node, "mass"), inertia = required_child_of(urdf, node, "inertia");
@@ -134,7 +134,7 @@ static bool read_geometry(struct RobotFile *urdf, xmlNodePtr node, bool touches,
   return collision->type != NULL && (has_size || touches) && *problem == NULL;
 }
 
-static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct RobotLink *link) {
   xmlNodePtr geometry = child_of(urdf, node, "geometry");
   struct Collision collision = {.placement = read_origin(urdf, node), .friction = NAN, .line = line_of(node)};
   char *problem = NULL;
@@ -210,7 +210,7 @@ static char *read_color(xmlNodePtr visual) {
 }
 
 /* Reads a <visual>. Returns false if it cannot be drawn. */
-static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct RobotLink *link) {
   char *problem = NULL;
   struct Collision visual = {.line = line_of(node)};
   bool is_right = is_sound_visual(node);
@@ -227,7 +227,7 @@ static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct Link *li
 }
 
 /* Reads the visuals of a link. If some cannot be drawn, the collisions are drawn instead. */
-static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct Link *link) {
+static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct RobotLink *link) {
   bool is_whole = true;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (is_element(child, "visual")) is_whole &= read_visual(urdf, child, link);
@@ -236,7 +236,7 @@ static void read_visuals(struct RobotFile *urdf, xmlNodePtr node, struct Link *l
 
 static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"inertial", "visual", "collision", NULL};
-  struct Link *link = allocate(1, sizeof *link);
+  struct RobotLink *link = allocate(1, sizeof *link);
   link->name = required_attribute(urdf, node, "name");
   link->line = line_of(node);
   leave_out_others(urdf, node, known);
@@ -248,7 +248,7 @@ static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
   add_link(urdf, link);
 }
 
-static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
+static enum RobotJointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   char *text = required_attribute(urdf, node, "type");
   int type = 0; /* a ball is not a type of URDF */
   while (type < BALL && strcmp(text, joint_types[type]) != 0) type++;
@@ -257,11 +257,11 @@ static enum JointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
         urdf->diagnostics, line_of(node),
         "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar",
         text);
-  return type < BALL ? (enum JointType)type : FIXED;
+  return type < BALL ? (enum RobotJointType)type : FIXED;
 }
 
 /* Reads the axis and normalizes it; x if the file gives none. */
-static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr axis = child_of(urdf, node, "axis");
   joint->axis[0] = 1;
   read_numbers(urdf, axis, "xyz", 3, joint->axis);
@@ -276,7 +276,7 @@ static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joi
 }
 
 /* Reads the effort. 0 means no limit, as in MuJoCo: exporters write it if they know none. */
-static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->effort = NAN;
   if (limit == NULL || !has_attribute(limit, "effort") || joint->type == FIXED) return;
@@ -291,7 +291,7 @@ static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct Joint *j
 }
 
 /* Reads the limits. A missing one is 0, as URDF defines; none are set if both are missing. */
-static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->lower = joint->upper = NAN;
   if (limit != NULL && (joint->type == FLOATING || joint->type == PLANAR) &&
@@ -315,7 +315,7 @@ static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct Joint *jo
   joint->upper = upper;
 }
 
-static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr dynamics = child_of(urdf, node, "dynamics");
   if (dynamics == NULL || joint->type == FIXED) return;
   double damping = number_not_negative(urdf, dynamics, "damping");
@@ -332,7 +332,7 @@ static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct Joint 
   read_numbers(urdf, dynamics, "spring_reference", 1, &joint->rest);
 }
 
-static void read_mimic(struct RobotFile *urdf, xmlNodePtr node, struct Joint *joint) {
+static void read_mimic(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr mimic = child_of(urdf, node, "mimic");
   joint->multiplier = 1;
   if (mimic == NULL || joint->type == FIXED) return;
@@ -348,7 +348,7 @@ static char *read_end(struct RobotFile *urdf, xmlNodePtr joint, const char *name
 
 static void read_joint(struct RobotFile *urdf, xmlNodePtr node) {
   static const char *const known[] = {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", NULL};
-  struct Joint *joint = allocate(1, sizeof *joint);
+  struct RobotJoint *joint = allocate(1, sizeof *joint);
   joint->name = required_attribute(urdf, node, "name");
   joint->line = line_of(node);
   joint->type = read_type(urdf, node);

@@ -6,7 +6,7 @@
 #include "base/diagnostics.h"
 #include "read/robots/description/robot.h"
 
-/* Names of the joint types, in the order of enum JointType. */
+/* Names of the joint types, in the order of enum RobotJointType. */
 extern const char *const joint_types[JOINT_TYPES];
 
 /* Returns the links and joints of a <robot>, not yet connected. Reports errors and warns of elements not read. */

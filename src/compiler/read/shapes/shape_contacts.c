@@ -13,7 +13,7 @@
 static const double usual_creep = 1e-3;
 
 /* Parameters of a compliant contact: N/m, s/m, a coefficient, m/s. */
-struct Law {
+struct CompliantLaw {
   Node stiffness, damping, friction, creep;
 };
 
@@ -181,8 +181,8 @@ static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const cha
   return value.node;
 }
 
-struct Grip read_grip(struct Reader *reader, xmlNodePtr node) {
-  struct Grip grip = {.friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
+struct FrictionCoefficients read_grip(struct Reader *reader, xmlNodePtr node) {
+  struct FrictionCoefficients grip = {.friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
   grip.stiction = read_law_attribute(reader, node, "stiction", "1", grip.friction);
   return grip;
 }
@@ -191,7 +191,7 @@ struct Grip read_grip(struct Reader *reader, xmlNodePtr node) {
  * Returns the normal force stiffness depth (1 + damping d depth/dt) during contact, and 0 if that is negative: contacts
  * do not pull.
  */
-static Node pressing_force(struct Reader *reader, long line, const struct Law *law, Node gap) {
+static Node pressing_force(struct Reader *reader, long line, const struct CompliantLaw *law, Node gap) {
   struct Scope *scope = reader->scope;
   struct Graph *graph = scope->graph;
   Node is_apart = branch_of(scope, gap, "the gap of the contact", line);
@@ -206,8 +206,8 @@ static Node pressing_force(struct Reader *reader, long line, const struct Law *l
  * Returns the force on the first shape: the normal force N and the friction -mu N v / sqrt(v^2 + creep^2) against the
  * tangential velocity v.
  */
-static struct Vector force_of_touch(struct Graph *graph, const struct Law *law, const struct ShapeContact *contact,
-                                    const struct Touch *touch, Node pressing) {
+static struct Vector force_of_touch(struct Graph *graph, const struct CompliantLaw *law,
+                                    const struct ShapeContact *contact, const struct Touch *touch, Node pressing) {
   struct Vector force = vector_scale(graph, pressing, touch->normal);
   if (law->friction == ZERO) return force;
   struct Vector sliding = sliding_of_touch(graph, contact, touch);
@@ -254,9 +254,9 @@ void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
   struct Graph *graph = reader->model->graph;
   struct ShapeContact contact;
   long line = line_of(node);
-  struct Law law = {.stiffness = read_law_attribute(reader, node, "stiffness", "N/m", ZERO),
-                    .damping = read_law_attribute(reader, node, "damping", "s/m", ZERO),
-                    .friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
+  struct CompliantLaw law = {.stiffness = read_law_attribute(reader, node, "stiffness", "N/m", ZERO),
+                             .damping = read_law_attribute(reader, node, "damping", "s/m", ZERO),
+                             .friction = read_law_attribute(reader, node, "friction", "1", ZERO)};
   law.creep = read_law_attribute(reader, node, "creep", "m/s", graph_constant(graph, usual_creep));
   if (law.creep == ZERO)
     report_at(reader, node, "the creep of a <contact> is 0; expected a speed above 0, such as 1e-4 m/s");

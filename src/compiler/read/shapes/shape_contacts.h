@@ -25,10 +25,10 @@ struct RigidTouch {
 const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node);
 
 /* Coefficients of a rigid contact: of sliding friction, and of static friction (stiction). */
-struct Grip {
+struct FrictionCoefficients {
   Node friction, stiction;
 };
-struct Grip read_grip(struct Reader *reader, xmlNodePtr node);
+struct FrictionCoefficients read_grip(struct Reader *reader, xmlNodePtr node);
 
 /* Adds the forces of a compliant contact, and the variable NAME.force. */
 void read_compliant_contact(struct Reader *reader, xmlNodePtr node);

@@ -12,7 +12,7 @@
 #include "read/space/frames.h"
 
 /* A dimension of a shape, and the types that have it, as bits. */
-struct Measure {
+struct ShapeDimension {
   const char *name;
   unsigned types, needing; /* types that require it */
 };
@@ -27,7 +27,7 @@ enum {
   without_axis = TYPE(SHAPE_SPHERE) | TYPE(SHAPE_MESH) | with_sizes
 };
 
-static const struct Measure measures[] = {
+static const struct ShapeDimension measures[] = {
     {"radius", with_radius, with_radius},         {"length", with_length, with_length},
     {"sizeX", with_sizes, TYPE(SHAPE_ELLIPSOID)}, {"sizeY", with_sizes, TYPE(SHAPE_ELLIPSOID)},
     {"sizeZ", with_sizes, TYPE(SHAPE_ELLIPSOID)},
@@ -56,7 +56,7 @@ static const char *article_of(const struct ContactShape *shape) {
 static void check_measures(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape) {
   bool has_size = false;
   for (int i = 0; i < MEASURE_COUNT; i++) {
-    const struct Measure *measure = &measures[i];
+    const struct ShapeDimension *measure = &measures[i];
     bool is_given = has_attribute(node, measure->name), is_of_type = (measure->types & TYPE(shape->type)) != 0,
          is_needed = (measure->needing & TYPE(shape->type)) != 0;
     has_size |= is_given;
@@ -138,7 +138,7 @@ static Node read_size(struct Reader *reader, xmlNodePtr node, const struct Conta
 }
 
 /* Sets the frame or particle of the shape; the base if the element names none. */
-static void slot_in(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
+static void set_frame(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   if (!has_attribute(node, "in")) return;
   char *name = reference_attribute(reader, node, "in");
   struct SpatialPoint point;
@@ -174,7 +174,7 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   if (!has_attribute(node, "name")) return;
   struct Graph *graph = reader->model->graph;
   struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
-  slot_in(reader, node, shape);
+  set_frame(reader, node, shape);
   turn_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;
@@ -192,7 +192,7 @@ const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr 
   char *name = reference_attribute(reader, node, attribute_name);
   const struct ContactShape *shape = name != NULL ? find_shape(reader, name) : NULL;
   if (shape != NULL || name == NULL) return shape;
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < reader->model->mechanism.shape_count; i++)
     similar_consider(&similar, reader->model->mechanism.shapes[i].name);
   if (similar.best != NULL)

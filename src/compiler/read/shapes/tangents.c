@@ -3,10 +3,10 @@
 #include "algebra/simplify.h"
 
 /*
- * Orthonormal vectors, oblique to the base's axes: normals of shapes that are placed along these axes are never
+ * Orthonormal vectors, parallel to no axis of the base: normals of shapes that are placed along those axes are never
  * opposite to the third vector.
  */
-static const double nonsymmetric[3][3] = {
+static const double generic_axes[3][3] = {
     {2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0}, {2.0 / 3.0, 1.0 / 3.0, -2.0 / 3.0}, {1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
@@ -20,7 +20,7 @@ static struct Vector velocity_of_material(struct Reader *reader, const struct Co
 
 static struct Vector tilted_axis(struct Graph *graph, int which) {
   struct Vector axis;
-  for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, nonsymmetric[which][i]);
+  for (int i = 0; i < 3; i++) axis.along[i] = graph_constant(graph, generic_axes[which][i]);
   return axis;
 }
 

@@ -17,7 +17,7 @@
 enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };
 
 /* Two shapes, with the graph and scope for expressions of their touches. */
-struct Pair {
+struct ShapePair {
   struct Scope *scope;
   struct Graph *graph;
   long line;
@@ -25,7 +25,7 @@ struct Pair {
 };
 
 /* Centres of balls of a common radius; the touches of a shape with a plane are on these balls. */
-struct Points {
+struct BallCentres {
   struct Vector positions[MOST_POINTS]; /* along the axes of the shape's frame */
   size_t count;
   Node radius;
@@ -53,12 +53,12 @@ static struct Vector along_axis(const struct ContactShape *shape, Node length) {
   return vector;
 }
 
-static void append_point(struct Graph *graph, struct Points *points, const struct ContactShape *shape,
+static void append_point(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape,
                          struct Vector from) {
   points->positions[points->count++] = vector_add(graph, shape->offset, matrix_apply(graph, &shape->rotation, from));
 }
 
-static void append_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+static void append_corners(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
   for (int corner = 0; corner < 8; corner++) {
     struct Vector point = {{ZERO, ZERO, ZERO}};
     bool is_another = true; /* false for the duplicate corners of a box without size along an axis */
@@ -72,7 +72,7 @@ static void append_corners(struct Graph *graph, struct Points *points, const str
 }
 
 /* Appends points on both rims. The first is on the axis that follows the cylinder's cyclically. */
-static void append_rims(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+static void append_rims(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
   static const double half = 0.70710678118654752440;
   static const double circle[RIM_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
                                                {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
@@ -85,7 +85,7 @@ static void append_rims(struct Graph *graph, struct Points *points, const struct
   }
 }
 
-static void append_mesh_corners(struct Graph *graph, struct Points *points, const struct ContactShape *shape) {
+static void append_mesh_corners(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
   const struct Mesh *mesh = shape->mesh;
   for (size_t i = 0; i < mesh->corner_count; i++) {
     struct Vector point;
@@ -95,8 +95,8 @@ static void append_mesh_corners(struct Graph *graph, struct Points *points, cons
   }
 }
 
-static struct Points points_of(struct Graph *graph, const struct ContactShape *shape) {
-  struct Points points = {.radius = ZERO};
+static struct BallCentres points_of(struct Graph *graph, const struct ContactShape *shape) {
+  struct BallCentres points = {.radius = ZERO};
   switch (shape->type) {
   case SHAPE_SPHERE:
     points.radius = shape->radius;
@@ -116,16 +116,16 @@ static struct Points points_of(struct Graph *graph, const struct ContactShape *s
 }
 
 /* Rotates a vector along the axes of the shape to the base's axes. */
-static struct Vector rotated_by(const struct Pair *pair, const struct ContactSide *side, struct Vector vector) {
+static struct Vector rotated_by(const struct ShapePair *pair, const struct ContactSide *side, struct Vector vector) {
   vector = matrix_apply(pair->graph, &side->shape->rotation, vector);
   return matrix_apply(pair->graph, &side->pose.rotation, vector);
 }
 
-static struct Vector axis_of(const struct Pair *pair, const struct ContactSide *side) {
+static struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *side) {
   return rotated_by(pair, side, along_axis(side->shape, ONE));
 }
 
-static struct Vector middle_of(const struct Pair *pair, const struct ContactSide *side) {
+static struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side) {
   return position_at(pair->graph, &side->pose, side->shape->offset);
 }
 
@@ -134,9 +134,9 @@ static Node length_of(struct Graph *graph, struct Vector vector) {
 }
 
 /* The first shape's points on the second shape's plane. */
-static void touch_plane(const struct Pair *pair, struct Touches *touches) {
+static void touch_plane(const struct ShapePair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
-  struct Points points = points_of(graph, pair->first->shape);
+  struct BallCentres points = points_of(graph, pair->first->shape);
   struct Vector normal = axis_of(pair, pair->second), ground = middle_of(pair, pair->second);
   for (size_t i = 0; i < points.count; i++) {
     struct Vector centre = position_at(graph, &pair->first->pose, points.positions[i]);
@@ -151,7 +151,7 @@ static void touch_plane(const struct Pair *pair, struct Touches *touches) {
  * The first shape, an ellipsoid, on the second shape's plane. With the half axes as the matrix A and the normal n along
  * them, the lowest point is -A^2 n / |A n|, and |A n| is the support function.
  */
-static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
+static void touch_ellipsoid(const struct ShapePair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
   struct Vector own = matrix_apply_transposed(graph, &pair->first->pose.rotation, normal);
@@ -168,7 +168,7 @@ static void touch_ellipsoid(const struct Pair *pair, struct Touches *touches) {
 }
 
 /* Appends the touch of two balls about the nearest points of two shapes: the first point, and the vector to it. */
-static void touch_balls(const struct Pair *pair, struct Vector first, struct Vector between, Node second_radius,
+static void touch_balls(const struct ShapePair *pair, struct Vector first, struct Vector between, Node second_radius,
                         struct Touches *touches) {
   struct Graph *graph = pair->graph;
   Node radius = pair->first->shape->radius, distance = length_of(graph, between);
@@ -179,19 +179,19 @@ static void touch_balls(const struct Pair *pair, struct Vector first, struct Vec
 }
 
 /* Clamps a length to the interval of the size `whole` about 0. */
-static Node clamp(const struct Pair *pair, Node length, Node whole) {
+static Node clamp(const struct ShapePair *pair, Node length, Node whole) {
   Node half = scale(pair->graph, 0.5, whole);
   Node above = pieces_of(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
   return pieces_of(pair->scope, MINIMUM, above, half, pair->line);
 }
 
-static void touch_sphere(const struct Pair *pair, struct Touches *touches) {
+static void touch_sphere(const struct ShapePair *pair, struct Touches *touches) {
   struct Vector centre = middle_of(pair, pair->first);
   struct Vector between = vector_subtract(pair->graph, centre, middle_of(pair, pair->second));
   touch_balls(pair, centre, between, pair->second->shape->radius, touches);
 }
 
-static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
+static void touch_capsule(const struct ShapePair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   struct Vector centre = middle_of(pair, pair->first), middle = middle_of(pair, pair->second);
   struct Vector axis = axis_of(pair, pair->second);
@@ -202,25 +202,26 @@ static void touch_capsule(const struct Pair *pair, struct Touches *touches) {
 }
 
 /* Returns the centre of the first shape relative to the second, along the axes of the second. */
-static struct Vector seen_from_second(const struct Pair *pair) {
+static struct Vector seen_from_second(const struct ShapePair *pair) {
   struct Vector between = vector_subtract(pair->graph, middle_of(pair, pair->first), middle_of(pair, pair->second));
   between = matrix_apply_transposed(pair->graph, &pair->second->pose.rotation, between);
   return matrix_apply_transposed(pair->graph, &pair->second->shape->rotation, between);
 }
 
 /* Both points are relative to the second shape, along its axes: inside of it their difference is 0 without rounding. */
-static void touch_nearest(const struct Pair *pair, struct Vector seen, struct Vector nearest, struct Touches *touches) {
+static void touch_nearest(const struct ShapePair *pair, struct Vector seen, struct Vector nearest,
+                          struct Touches *touches) {
   struct Vector between = rotated_by(pair, pair->second, vector_subtract(pair->graph, seen, nearest));
   touch_balls(pair, middle_of(pair, pair->first), between, ZERO, touches);
 }
 
-static void touch_box(const struct Pair *pair, struct Touches *touches) {
+static void touch_box(const struct ShapePair *pair, struct Touches *touches) {
   struct Vector seen = seen_from_second(pair), nearest;
   for (int i = 0; i < 3; i++) nearest.along[i] = clamp(pair, seen.along[i], pair->second->shape->size.along[i]);
   touch_nearest(pair, seen, nearest, touches);
 }
 
-static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
+static void touch_cylinder(const struct ShapePair *pair, struct Touches *touches) {
   struct Graph *graph = pair->graph;
   const struct ContactShape *shape = pair->second->shape;
   struct Vector seen = seen_from_second(pair), nearest = seen;
@@ -240,7 +241,7 @@ static void touch_cylinder(const struct Pair *pair, struct Touches *touches) {
  * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
  * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
  */
-static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
+static void touch_capsules(const struct ShapePair *pair, struct Touches *touches) {
   static const double nothing = 1e-12; /* for parallel lines, where any point is nearest */
   struct Graph *graph = pair->graph;
   struct Vector first = middle_of(pair, pair->first), second = middle_of(pair, pair->second);
@@ -257,7 +258,7 @@ static void touch_capsules(const struct Pair *pair, struct Touches *touches) {
   touch_balls(pair, nearest, vector_subtract(graph, nearest, other), pair->second->shape->radius, touches);
 }
 
-typedef void TouchFunction(const struct Pair *pair, struct Touches *touches);
+typedef void TouchFunction(const struct ShapePair *pair, struct Touches *touches);
 
 /* By types of the first and second shape. Pairs in the other order are exchanged. */
 static TouchFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
@@ -293,7 +294,7 @@ struct Touches touches_of(struct Reader *reader, long line, const struct Contact
   struct Graph *graph = reader->model->graph;
   TouchFunction *touch = functions[first->shape->type][second->shape->type];
   bool is_exchanged = touch == NULL;
-  struct Pair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
+  struct ShapePair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
   if (is_exchanged) touch = functions[second->shape->type][first->shape->type];
   struct Touches touches = {allocate(count_touches(first->shape, second->shape), sizeof *touches.items), 0};
   touch(&pair, &touches);

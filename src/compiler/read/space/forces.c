@@ -18,7 +18,7 @@ static bool are_shown(const struct Reader *reader) {
 /* Returns "did you mean 'theta'?" for a similar name, or the expected kind of name. */
 static char *meant_coordinate(const struct Reader *reader, const char *name) {
   const struct Model *model = reader->model;
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
     const char *known = model->coordinates.items[i].name;
     if (strcmp(name, model->velocities.items[i].name) == 0)
@@ -30,7 +30,7 @@ static char *meant_coordinate(const struct Reader *reader, const char *name) {
 }
 
 static char *meant_body(const struct Reader *reader, const char *name) {
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   if (are_shown(reader)) similar_consider_all(&similar, reader->bodies);
   return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
 }

@@ -124,7 +124,7 @@ static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attr
 
 /* Reports a name that is not a frame. A frame that was collected had an error, which has been reported. */
 static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
   similar_consider_all(&similar, reader->frames);
   if (similar.best != NULL) report_at(reader, node, "there is no frame '%s'; did you mean '%s'?", name, similar.best);
@@ -375,9 +375,10 @@ void add_regularization_of_norm(struct Reader *reader, xmlNodePtr node) {
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
     const struct Variable *norm = &model->constraints.items[reader->present->number];
-    model->mechanism.stillnesses = make_room(model->mechanism.stillnesses, model->mechanism.regularization_count,
-                                             sizeof *model->mechanism.stillnesses);
-    model->mechanism.stillnesses[model->mechanism.regularization_count++] =
+    model->mechanism.regularizations =
+        make_room(model->mechanism.regularizations, model->mechanism.regularization_count,
+                  sizeof *model->mechanism.regularizations);
+    model->mechanism.regularizations[model->mechanism.regularization_count++] =
         (struct Regularization){norm->node, inertia_of_norm(model, *frame)};
   }
 }

@@ -8,7 +8,7 @@
 
 /* Returns a remedy for an unknown name: the most similar one, or the expected kinds. */
 static const char *suggestion(const struct Reader *reader, const char *name) {
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   similar_consider_all(&similar, reader->bodies);
   similar_consider_all(&similar, reader->spatial_points);
   for (size_t i = 1; i < reader->model->mechanism.frame_count; i++)

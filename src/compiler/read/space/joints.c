@@ -32,12 +32,12 @@ enum ConstrainedQuantity {
   NOTHING
 };
 
-struct JointType {
+struct JointConstraints {
   const char *name;
   enum ConstrainedQuantity quantities[7]; /* ended by NOTHING */
 };
 
-static const struct JointType types[] = {
+static const struct JointConstraints types[] = {
     {"pin", {ALONG_X, ALONG_Y, NOTHING}},
     {"spherical", {ALONG_X, ALONG_Y, ALONG_Z, NOTHING}},
     {"universal", {ALONG_X, ALONG_Y, ALONG_Z, CROSS, NOTHING}},
@@ -109,7 +109,7 @@ static bool is_constrained(xmlNodePtr node, enum ConstrainedQuantity quantity) {
   return named_axes == NULL || strchr(named_axes, *axes[words[quantity].axis]) != NULL;
 }
 
-static const struct JointType *type_of(xmlNodePtr node) {
+static const struct JointConstraints *type_of(xmlNodePtr node) {
   for (size_t i = 0; i < sizeof types / sizeof *types; i++)
     if (attribute_is(node, "type", types[i].name)) return &types[i];
   return NULL; /* rejected by the schema */
@@ -145,7 +145,7 @@ static void check_attribute(struct Reader *reader, xmlNodePtr node, const char *
 }
 
 void declare_joint(struct Reader *reader, xmlNodePtr node) {
-  const struct JointType *type = type_of(node);
+  const struct JointConstraints *type = type_of(node);
   check_axis(reader, node);
   check_attribute(reader, node, "pitch", "screw", true);
   check_attribute(reader, node, "radius", "rolling", true);
@@ -210,7 +210,7 @@ static Node share_of(struct Reader *reader, xmlNodePtr node, enum ConstrainedQua
 }
 
 void collect_joint(struct Reader *reader, xmlNodePtr node) {
-  const struct JointType *type = type_of(node);
+  const struct JointConstraints *type = type_of(node);
   char *name = name_attribute(reader, node, "name");
   if (type == NULL || name == NULL) return;
   for (const enum ConstrainedQuantity *quantity = type->quantities; *quantity != NOTHING; quantity++)
@@ -303,7 +303,7 @@ static void expect_pose(struct Reader *reader, xmlNodePtr node, const struct Joi
 
 void read_joint(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  const struct JointType *type = type_of(node);
+  const struct JointConstraints *type = type_of(node);
   struct JointEnd from, to;
   bool is_right = read_joint_end(reader, node, end_attributes[0], &from);
   is_right &= read_joint_end(reader, node, end_attributes[1], &to);

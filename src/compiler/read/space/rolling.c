@@ -17,18 +17,18 @@ static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name
 }
 
 /* lead: pitch/(2 pi). sine, cosine: of 2 pi z/pitch - angle, by the addition theorems from products of axes. */
-struct Thread {
+struct ScrewThread {
   Node lead, sine, cosine;
 };
 
-static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from,
-                                 const struct JointEnd *to) {
+static struct ScrewThread read_thread(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from,
+                                      const struct JointEnd *to) {
   struct Graph *graph = reader->model->graph;
   Node lead = scale(graph, 0.5 / M_PI, read_length(reader, node, "pitch"));
   Node fitting = divide(graph, offset_along(graph, from, to, Z), lead);
   Node sine = function(graph, SINE, fitting, ZERO), cosine = function(graph, COSINE, fitting, ZERO);
   Node along = product_of_axes(graph, from, X, to, X), across = product_of_axes(graph, from, Y, to, X);
-  return (struct Thread){
+  return (struct ScrewThread){
       .lead = lead,
       .sine = subtract(graph, multiply(graph, sine, along), multiply(graph, cosine, across)),
       .cosine = add(graph, multiply(graph, cosine, along), multiply(graph, sine, across)),
@@ -37,7 +37,7 @@ static struct Thread read_thread(struct Reader *reader, xmlNodePtr node, const s
 
 /* Returns lead sin(2 pi z/pitch - angle), which is smooth, unlike the angle itself. */
 Node thread_of(struct Reader *reader, xmlNodePtr node, const struct JointEnd *from, const struct JointEnd *to) {
-  struct Thread thread = read_thread(reader, node, from, to);
+  struct ScrewThread thread = read_thread(reader, node, from, to);
   return multiply(reader->model->graph, thread.lead, thread.sine);
 }
 

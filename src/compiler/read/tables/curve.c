@@ -72,31 +72,32 @@ static void monotone_slopes(struct Curve *curve) {
 }
 
 /* An equation for three neighbouring slopes: below b[i-1] + diagonal b[i] + above b[i+1] = right. */
-struct Row {
+struct SlopeEquation {
   double below, diagonal, above, right;
 };
 
 /* Returns the not-a-knot condition at an end, in the order from the end inwards. */
-static struct Row shared_cubic(double near, double far, double near_secant, double far_secant) {
+static struct SlopeEquation shared_cubic(double near, double far, double near_secant, double far_secant) {
   double both = near + far;
-  return (struct Row){.diagonal = far,
-                      .above = both,
-                      .right = ((near + 2 * both) * far * near_secant + near * near * far_secant) / both};
+  return (struct SlopeEquation){.diagonal = far,
+                                .above = both,
+                                .right = ((near + 2 * both) * far * near_secant + near * near * far_secant) / both};
 }
 
-static struct Row row_of(const struct Curve *curve, size_t i) {
+static struct SlopeEquation row_of(const struct Curve *curve, size_t i) {
   size_t last = curve->count - 1;
-  if (curve->count == 3 && i == 0) return (struct Row){0, 1, 1, 2 * secant(curve, 0)}; /* three points: one parabola */
-  if (curve->count == 3 && i == 2) return (struct Row){1, 1, 0, 2 * secant(curve, 1)};
+  if (curve->count == 3 && i == 0)
+    return (struct SlopeEquation){0, 1, 1, 2 * secant(curve, 0)}; /* three points: one parabola */
+  if (curve->count == 3 && i == 2) return (struct SlopeEquation){1, 1, 0, 2 * secant(curve, 1)};
   if (i == 0) return shared_cubic(width(curve, 0), width(curve, 1), secant(curve, 0), secant(curve, 1));
   if (i == last) {
-    struct Row row =
+    struct SlopeEquation row =
         shared_cubic(width(curve, last - 1), width(curve, last - 2), secant(curve, last - 1), secant(curve, last - 2));
-    return (struct Row){row.above, row.diagonal, 0, row.right};
+    return (struct SlopeEquation){row.above, row.diagonal, 0, row.right};
   }
   double before = width(curve, i - 1), after = width(curve, i);
-  return (struct Row){after, 2 * (before + after), before,
-                      3 * (after * secant(curve, i - 1) + before * secant(curve, i))};
+  return (struct SlopeEquation){after, 2 * (before + after), before,
+                                3 * (after * secant(curve, i - 1) + before * secant(curve, i))};
 }
 
 static void spline_slopes(struct Curve *curve) {
@@ -105,7 +106,7 @@ static void spline_slopes(struct Curve *curve) {
     linear_slopes(curve);
     return;
   }
-  struct Row *rows = allocate(n, sizeof *rows);
+  struct SlopeEquation *rows = allocate(n, sizeof *rows);
   for (size_t i = 0; i < n; i++) rows[i] = row_of(curve, i);
   for (size_t i = 1; i < n; i++) {
     double factor = rows[i].below / rows[i - 1].diagonal;

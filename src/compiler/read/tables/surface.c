@@ -33,7 +33,7 @@ static void slopes_of_lines(const double *knots, size_t length, size_t count, si
  * The mixed derivative is the mean of both orders of differentiation. They agree for linear methods, LINEAR and SPLINE,
  * but not for MONOTONE.
  */
-void surface_interpolate(struct Surface *surface, enum Interpolation interpolation) {
+void surface_interpolate(struct SurfaceTable *surface, enum Interpolation interpolation) {
   size_t columns = surface->columns, rows = surface->rows, count = columns * rows;
   double *other = allocate(count, sizeof *other);
   surface->interpolation = interpolation;
@@ -100,7 +100,7 @@ static Node column_at(struct Graph *graph, const struct Cardinals *along_y, cons
   return sum;
 }
 
-Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y) {
+Node surface_at(struct Scope *scope, const struct SurfaceTable *surface, bool is_constant_outside, Node x, Node y) {
   struct Graph *graph = scope->graph;
   bool is_linear = surface->interpolation == LINEAR;
   struct Cardinals along_x = cardinals_at(scope, surface->x, surface->columns, is_linear, is_constant_outside, x);

@@ -8,7 +8,7 @@
 #include "read/tables/curve.h"
 
 /* The value at x[column] and y[row], and the derivatives there, have the index row * columns + column. */
-struct Surface {
+struct SurfaceTable {
   double *x, *y;
   size_t columns, rows;
   double *value, *along_x, *along_y, *along_both;
@@ -16,7 +16,7 @@ struct Surface {
 };
 
 /* Allocates and sets the derivatives. x and y ascend strictly; there are at least two of each. */
-void surface_interpolate(struct Surface *surface, enum Interpolation interpolation);
+void surface_interpolate(struct SurfaceTable *surface, enum Interpolation interpolation);
 
 /* Returns the surface at x and y as an expression; beyond the border with the slope there, or constant. */
-Node surface_at(struct Scope *scope, const struct Surface *surface, bool is_constant_outside, Node x, Node y);
+Node surface_at(struct Scope *scope, const struct SurfaceTable *surface, bool is_constant_outside, Node x, Node y);

@@ -7,8 +7,8 @@
 /* A table, with one or two arguments. */
 struct Table {
   bool has_two_arguments;
-  struct Curve curve;     /* if there is one argument */
-  struct Surface surface; /* if there are two */
+  struct Curve curve;          /* if there is one argument */
+  struct SurfaceTable surface; /* if there are two */
   bool is_constant_outside;
   struct Dimension arguments[2], value;
 };

@@ -25,33 +25,33 @@ struct AttributeLines {
 };
 
 /* The reading position in the source text. `wrong` is set when text and document disagree, which ends the scan. */
-struct Scan {
+struct LineScan {
   const char *next, *end;
   long line;
   bool wrong;
 };
 
-static bool begins(const struct Scan *scan, const char *text) {
+static bool begins(const struct LineScan *scan, const char *text) {
   size_t length = strlen(text);
   return (size_t)(scan->end - scan->next) >= length && memcmp(scan->next, text, length) == 0;
 }
 
-static void pass(struct Scan *scan) {
+static void pass(struct LineScan *scan) {
   scan->line += *scan->next == '\n';
   scan->next++;
 }
 
-static void pass_to(struct Scan *scan, const char *text) {
+static void pass_to(struct LineScan *scan, const char *text) {
   while (scan->next < scan->end && !begins(scan, text)) pass(scan);
 }
 
-static void pass_behind(struct Scan *scan, const char *text) {
+static void pass_behind(struct LineScan *scan, const char *text) {
   pass_to(scan, text);
   if (scan->next < scan->end) scan->next += strlen(text);
   else scan->wrong = true;
 }
 
-static void pass_any(struct Scan *scan, const char *characters) {
+static void pass_any(struct LineScan *scan, const char *characters) {
   while (scan->next < scan->end && strchr(characters, *scan->next) != NULL) pass(scan);
 }
 
@@ -71,7 +71,7 @@ void set_line(xmlNodePtr node, long line) {
  * Advances to the closing quote of an attribute's value and records its line breaks. Offsets count characters of the
  * parsed value: a UTF-8 sequence, an entity and a CR LF pair are one each.
  */
-static void find_breaks(struct Scan *scan, char quote, struct AttributeLines *lines) {
+static void find_breaks(struct LineScan *scan, char quote, struct AttributeLines *lines) {
   size_t offset = 0;
   for (; scan->next < scan->end && *scan->next != quote; pass(scan)) {
     if (*scan->next == '\n') {
@@ -90,7 +90,7 @@ static xmlAttrPtr attribute_named(const xmlNode *element, const char *name, size
   return NULL;
 }
 
-static void find_attribute(struct Scan *scan, xmlNodePtr element) {
+static void find_attribute(struct LineScan *scan, xmlNodePtr element) {
   const char *name = scan->next;
   while (scan->next < scan->end && strchr(" \t\r\n=>", *scan->next) == NULL) scan->next++;
   xmlAttrPtr found = attribute_named(element, name, (size_t)(scan->next - name));
@@ -107,13 +107,13 @@ static void find_attribute(struct Scan *scan, xmlNodePtr element) {
 }
 
 /* Advances to the next markup after a text. CDATA sections are part of the text. */
-static void pass_text(struct Scan *scan) {
+static void pass_text(struct LineScan *scan) {
   for (pass_to(scan, "<"); begins(scan, "<![CDATA["); pass_to(scan, "<")) pass_behind(scan, "]]>");
 }
 
-static void find_in_content(struct Scan *scan, xmlNodePtr first);
+static void find_in_content(struct LineScan *scan, xmlNodePtr first);
 
-static void find_in_element(struct Scan *scan, xmlNodePtr element) {
+static void find_in_element(struct LineScan *scan, xmlNodePtr element) {
   long first = scan->line;
   size_t length = strcspn(++scan->next, " \t\r\n/>");
   const char *name = (const char *)element->name;
@@ -134,7 +134,7 @@ static void find_in_element(struct Scan *scan, xmlNodePtr element) {
   pass_behind(scan, ">");
 }
 
-static void find_in_content(struct Scan *scan, xmlNodePtr first) {
+static void find_in_content(struct LineScan *scan, xmlNodePtr first) {
   for (xmlNodePtr node = first; node != NULL && !scan->wrong; node = node->next) {
     if (node->type == XML_TEXT_NODE) set_line(node, scan->line);
     pass_text(scan);
@@ -150,7 +150,7 @@ static void find_in_content(struct Scan *scan, xmlNodePtr first) {
 }
 
 void lines_find(xmlDocPtr document, const char *text, size_t length) {
-  struct Scan scan = {.next = text, .end = text + length, .line = 1};
+  struct LineScan scan = {.next = text, .end = text + length, .line = 1};
   pass_to(&scan, "<");
   if (begins(&scan, "<?xml ")) pass_behind(&scan, "?>");
   find_in_content(&scan, document->children);

@@ -119,7 +119,7 @@ static struct Choices choices_of_value(const struct SchemaCheck *check, xmlNodeP
 
 /* Returns "did you mean 'unit'?" for the most similar choice, or "expected name, start or unit" if none is similar. */
 static char *remedy(const char *wanted, struct Choices choices) {
-  struct Similar similar = {.wanted = wanted};
+  struct SimilarName similar = {.wanted = wanted};
   struct TextStream text;
   FILE *file = open_text(&text);
   for (size_t i = 0; i < choices.count; i++) similar_consider(&similar, choices.names[i]);
@@ -140,7 +140,7 @@ static void report_attribute(const struct SchemaCheck *check, xmlNodePtr element
 /* Reports a missing attribute, unless a given one is a probable misspelling, which is reported by itself. */
 static void report_missing_attribute(const struct SchemaCheck *check, xmlNodePtr element, const char *name) {
   for (const xmlAttr *given = element->properties; given != NULL; given = given->next) {
-    struct Similar similar = {.wanted = (const char *)given->name};
+    struct SimilarName similar = {.wanted = (const char *)given->name};
     similar_consider(&similar, name);
     if (similar.best != NULL) return;
   }

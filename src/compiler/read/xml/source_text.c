@@ -13,30 +13,30 @@
 enum { LENGTH_LIMIT = 10000000, ELEMENT_LIMIT = 40000, ATTRIBUTE_LIMIT = 200 };
 
 /* The reading position, with the numbers of elements in the file and of attributes in the current element. */
-struct Scan {
+struct TextScan {
   const char *next, *end;
   long line;
   size_t elements, attributes;
 };
 
-static bool begins(const struct Scan *scan, const char *text) {
+static bool begins(const struct TextScan *scan, const char *text) {
   size_t length = strlen(text);
   return (size_t)(scan->end - scan->next) >= length && memcmp(scan->next, text, length) == 0;
 }
 
-static char pass(struct Scan *scan) {
+static char pass(struct TextScan *scan) {
   scan->line += *scan->next == '\n';
   return *scan->next++;
 }
 
 /* Advances to the end of the next occurrence of the text. */
-static void pass_behind(struct Scan *scan, const char *text) {
+static void pass_behind(struct TextScan *scan, const char *text) {
   while (scan->next < scan->end && !begins(scan, text)) pass(scan);
   if (scan->next < scan->end) scan->next += strlen(text);
 }
 
 /* Advances to the end of a tag. Quoted values may contain '>'. */
-static void pass_tag(struct Scan *scan) {
+static void pass_tag(struct TextScan *scan) {
   char quote = '\0';
   scan->attributes = 0;
   while (scan->next < scan->end) {
@@ -52,7 +52,7 @@ static void pass_tag(struct Scan *scan) {
  * Advances past a tag, comment, CDATA section or processing instruction. Each counts as an element, because libxml2
  * makes a node of it. Returns false after reporting that a limit is exceeded.
  */
-static bool pass_markup(struct Scan *scan, struct Diagnostics *diagnostics) {
+static bool pass_markup(struct TextScan *scan, struct Diagnostics *diagnostics) {
   long line = scan->line;
   scan->elements += !begins(scan, "</");
   scan->attributes = 0;
@@ -69,7 +69,7 @@ static bool pass_markup(struct Scan *scan, struct Diagnostics *diagnostics) {
 }
 
 static bool is_readable(const char *text, size_t length, struct Diagnostics *diagnostics) {
-  struct Scan scan = {.next = text, .end = text + length, .line = 1};
+  struct TextScan scan = {.next = text, .end = text + length, .line = 1};
   while (scan.next < scan.end)
     if (*scan.next != '<') pass(&scan);
     else if (!pass_markup(&scan, diagnostics)) return false;

@@ -4,16 +4,16 @@
 #include <string.h>
 
 /* A block in the ring of all blocks of a solver. */
-struct Block {
-  struct Block *previous, *next;
+struct SundialsBlock {
+  struct SundialsBlock *previous, *next;
   size_t size; /* of content, in bytes */
   _Alignas(max_align_t) char content[];
 };
 
 /* A call of sundials_run() in progress. */
-struct Task {
+struct SundialsCall {
   const struct Allocator *memory;
-  struct Block *blocks;
+  struct SundialsBlock *blocks;
   jmp_buf out_of_memory;
 };
 
@@ -21,11 +21,11 @@ struct Task {
  * The innermost task of this thread. It is in the thread's static block: otherwise the first access in a thread would
  * allocate, and the C library would end the process if that failed.
  */
-static _Thread_local struct Task *current __attribute__((tls_model("initial-exec")));
+static _Thread_local struct SundialsCall *current __attribute__((tls_model("initial-exec")));
 
-static void free_all(const struct Allocator *memory, struct Block *block) {
+static void free_all(const struct Allocator *memory, struct SundialsBlock *block) {
   while (block != NULL) {
-    struct Block *next = block->next;
+    struct SundialsBlock *next = block->next;
     memory->free(block);
     block = next;
   }
@@ -33,8 +33,8 @@ static void free_all(const struct Allocator *memory, struct Block *block) {
 
 bool sundials_run(struct Instance *instance, void (*task)(void *argument), void *argument) {
   struct SundialsMemory *own = instance->solver_memory;
-  struct Task *const outer = current;
-  struct Task running = {.memory = &instance->memory, .blocks = own != NULL ? own->blocks : NULL};
+  struct SundialsCall *const outer = current;
+  struct SundialsCall running = {.memory = &instance->memory, .blocks = own != NULL ? own->blocks : NULL};
   current = &running;
   if (setjmp(running.out_of_memory) != 0) {
     current = outer;
@@ -57,18 +57,18 @@ void sundials_destroy(struct Instance *instance) {
 }
 
 void *sundials_allocate(size_t count, size_t size) {
-  size_t limit = SIZE_MAX - sizeof(struct Block);
-  struct Block *block = NULL;
+  size_t limit = SIZE_MAX - sizeof(struct SundialsBlock);
+  struct SundialsBlock *block = NULL;
   if (size == 0 || count <= limit / size) block = current->memory->allocate(1, sizeof *block + count * size);
   if (block == NULL) longjmp(current->out_of_memory, 1);
-  *block = (struct Block){.next = current->blocks, .size = count * size};
+  *block = (struct SundialsBlock){.next = current->blocks, .size = count * size};
   if (block->next != NULL) block->next->previous = block;
   current->blocks = block;
   return block->content;
 }
 
-static struct Block *block_of(void *content) {
-  return (struct Block *)((char *)content - offsetof(struct Block, content));
+static struct SundialsBlock *block_of(void *content) {
+  return (struct SundialsBlock *)((char *)content - offsetof(struct SundialsBlock, content));
 }
 
 /* The linker sends SUNDIALS' calls of malloc, calloc, realloc and free to these. */
@@ -87,7 +87,7 @@ void *__wrap_calloc(size_t count, size_t size) {
 
 void __wrap_free(void *content) {
   if (content == NULL) return;
-  struct Block *block = block_of(content);
+  struct SundialsBlock *block = block_of(content);
   if (block->previous != NULL) block->previous->next = block->next;
   else current->blocks = block->next;
   if (block->next != NULL) block->next->previous = block->previous;

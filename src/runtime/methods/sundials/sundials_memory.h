@@ -9,11 +9,11 @@
 #include "instance/instance.h"
 
 /* Header of each block that SUNDIALS or its solver has allocated. */
-struct Block;
+struct SundialsBlock;
 
 /* First member of the memory of each solver. */
 struct SundialsMemory {
-  struct Block *blocks;
+  struct SundialsBlock *blocks;
 };
 
 /*

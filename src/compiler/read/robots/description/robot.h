@@ -6,7 +6,7 @@
 
 #include "read/robots/description/rigid_body.h"
 
-enum JointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
+enum RobotJointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
 
 /* Geometry of a link for contacts or drawing, in the link's frame. type: as in <shape type="...">. */
 struct Collision {
@@ -22,7 +22,7 @@ struct Collision {
 };
 
 /* A link of a robot: a rigid body with shapes. */
-struct Link {
+struct RobotLink {
   char *name;   /* as in the file */
   char *symbol; /* the name as an identifier of the language */
   long line;
@@ -30,13 +30,13 @@ struct Link {
   size_t collision_count, visual_count; /* visuals, if any, are drawn instead of collisions */
   struct RigidBody body;                /* in the link's frame; without inertia if the file gives none */
   /* Results of robot_connect(): */
-  struct Joint *joint;                     /* that moves the link relative to its parent; NULL for the root */
-  struct Link *first_child, *next_sibling; /* in the order of the file */
-  struct Link *next;                       /* in depth-first order, parents first; NULL for the last */
-  struct Link *carrier;                    /* the nearest link, from this one upward, that is movable or the root */
-  struct Placement placement;              /* of this link in its carrier's frame */
-  struct RigidBody carried;                /* of a carrier: all links that are fixed to it, merged, in its frame */
-  bool moves_inertia;                      /* of a carrier: it or one of its descendants has inertia */
+  struct RobotJoint *joint;                     /* that moves the link relative to its parent; NULL for the root */
+  struct RobotLink *first_child, *next_sibling; /* in the order of the file */
+  struct RobotLink *next;                       /* in depth-first order, parents first; NULL for the last */
+  struct RobotLink *carrier;  /* the nearest link, from this one upward, that is movable or the root */
+  struct Placement placement; /* of this link in its carrier's frame */
+  struct RigidBody carried;   /* of a carrier: all links that are fixed to it, merged, in its frame */
+  bool moves_inertia;         /* of a carrier: it or one of its descendants has inertia */
 };
 
 /*
@@ -48,10 +48,10 @@ struct JointStart {
 };
 
 /* A joint between two links. The child has this joint only. */
-struct Joint {
+struct RobotJoint {
   char *name, *symbol;
   long line;
-  enum JointType type;
+  enum RobotJointType type;
   char *parent_name, *child_name;
   struct Placement origin; /* of the child in the parent, at zero coordinates */
   double axis[3];          /* unit vector in the child's frame */
@@ -63,13 +63,12 @@ struct Joint {
   bool has_motor;            /* has an input for its force or torque, in addition to the file's actuators */
   double effort;             /* largest force or torque of the motor; NAN for no limit */
   double actuator_limits[2]; /* limits of the sum of the file's actuators, along the coordinate; NAN for none */
-  char *impulses;      /* if there are such limits: the sum of actuator forces as an expression; NULL for none so far */
-  char *mimicked_name; /* position = multiplier*(that of this joint) + offset; NULL if it mimics none */
+  char *actuator_forces;     /* if there are such limits: their sum as an expression; NULL for none so far */
+  char *mimicked_name;       /* position = multiplier*(that of this joint) + offset; NULL if it mimics none */
   double multiplier, offset;
   /* Results of robot_connect(): */
-  struct Link *parent, *child;
-  struct Joint
-      *leader; /* whose coordinate determines this joint: position = ratio*(that of leader) + shift; mostly itself */
+  struct RobotLink *parent, *child;
+  struct RobotJoint *leader; /* position = ratio*(that of the leader) + shift; mostly the joint itself */
   double ratio, shift;
   bool is_mimicked;
 };
@@ -79,7 +78,7 @@ struct TransmissionTerm {
   char *joint_name;
   double coefficient;
   /* Results of robot_connect(): */
-  struct Joint *joint;
+  struct RobotJoint *joint;
   char *symbol; /* parameter with the coefficient if that has a unit; else NULL */
 };
 
@@ -88,8 +87,8 @@ struct Transmission {
   struct TransmissionTerm *terms;
   size_t count;
   char **site_names;
-  struct Link **sites; /* as many, results of robot_connect() */
-  size_t site_count;   /* 0 unless the transmission is spatial */
+  struct RobotLink **sites; /* as many, results of robot_connect() */
+  size_t site_count;        /* 0 unless the transmission is spatial */
 };
 
 /* A spring, damper, friction, inertia and limits along a transmission. */
@@ -127,7 +126,7 @@ struct Actuator {
 /* Closes a kinematic loop: the origins of two links coincide, and their axes too if is_fixed. */
 struct RobotLoop {
   char *name, *link_names[2];
-  struct Link *links[2]; /* results of robot_connect() */
+  struct RobotLink *links[2]; /* results of robot_connect() */
   long line;
   bool is_fixed;
 };
@@ -149,8 +148,8 @@ struct RobotOptions {
 struct Robot {
   char *name;
   long line;
-  struct Link **links;
-  struct Joint **joints;
+  struct RobotLink **links;
+  struct RobotJoint **joints;
   struct Tendon *tendons;
   struct Actuator *actuators;
   struct RobotLoop *loops;
@@ -158,5 +157,5 @@ struct Robot {
   size_t link_count, joint_count, tendon_count, actuator_count, loop_count, tendon_link_count;
   double gravity[3];        /* m/s2 */
   struct Collision *ground; /* plane of the ground, normal to its z axis; NULL for z = 0 */
-  struct Link *root;
+  struct RobotLink *root;
 };

@@ -189,14 +189,14 @@ bool link_touches_ground(const struct RobotOptions *options, const char *link) {
   return false;
 }
 
-void add_link(struct RobotFile *file, struct Link *link) {
+void add_link(struct RobotFile *file, struct RobotLink *link) {
   struct Robot *robot = file->robot;
-  robot->links = make_room(robot->links, robot->link_count, sizeof(struct Link *));
+  robot->links = make_room(robot->links, robot->link_count, sizeof(struct RobotLink *));
   robot->links[robot->link_count++] = link;
 }
 
-void add_joint(struct RobotFile *file, struct Joint *joint) {
+void add_joint(struct RobotFile *file, struct RobotJoint *joint) {
   struct Robot *robot = file->robot;
-  robot->joints = make_room(robot->joints, robot->joint_count, sizeof(struct Joint *));
+  robot->joints = make_room(robot->joints, robot->joint_count, sizeof(struct RobotJoint *));
   robot->joints[robot->joint_count++] = joint;
 }

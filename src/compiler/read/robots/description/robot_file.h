@@ -94,5 +94,5 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
 /* True if the shapes of the link of this name touch a ground. */
 bool link_touches_ground(const struct RobotOptions *options, const char *link);
 
-void add_link(struct RobotFile *file, struct Link *link);
-void add_joint(struct RobotFile *file, struct Joint *joint);
+void add_link(struct RobotFile *file, struct RobotLink *link);
+void add_joint(struct RobotFile *file, struct RobotJoint *joint);

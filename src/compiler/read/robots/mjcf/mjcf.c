@@ -87,7 +87,7 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
                    "%s=\"disable\" of <flag> is not read; expected a file without it", flags[i]);
 }
 
-static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
   mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
   if (make_unit(joint->axis) == 0)
     report_error(mjcf->file.diagnostics, line_of(node),
@@ -95,7 +95,7 @@ static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
 }
 
 /* Reads a hinge or slide. Its coordinate is `ref` when its body is as placed. */
-static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
   double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
   read_axis(mjcf, node, joint);
   joint->start.position[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
@@ -117,7 +117,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint)
 }
 
 /* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
-static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint) {
+static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
   static const char *const rejected[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
@@ -126,7 +126,7 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct Joint *joint
 }
 
 /* Sets the start of a free joint to the placement of its body, with the quaternion of its roll, pitch and yaw. */
-static void read_free(struct Mjcf *mjcf, struct Joint *joint, const struct Placement *placement) {
+static void read_free(struct Mjcf *mjcf, struct RobotJoint *joint, const struct Placement *placement) {
   double angles[3], s[3], c[3];
   if (strcmp(joint->parent_name, mjcf_world) != 0)
     report_error(mjcf->file.diagnostics, joint->line,
@@ -158,8 +158,8 @@ static bool is_joint(xmlNodePtr node) {
 
 static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain, bool is_last) {
   static const char *const words[] = {"hinge", "slide", "ball", "free", NULL};
-  static const enum JointType types[] = {REVOLUTE, PRISMATIC, BALL, FLOATING};
-  enum JointType type = is_element(node, "freejoint") ? FLOATING : types[mjcf_word(mjcf, node, "type", words)];
+  static const enum RobotJointType types[] = {REVOLUTE, PRISMATIC, BALL, FLOATING};
+  enum RobotJointType type = is_element(node, "freejoint") ? FLOATING : types[mjcf_word(mjcf, node, "type", words)];
   char *name = attribute(node, "name");
   struct Placement anchor = no_displacement, back = no_displacement;
   if (type != FLOATING) mjcf_numbers(mjcf, node, "pos", 3, 3, anchor.translation);
@@ -168,7 +168,7 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   if (name == NULL)
     name = type == FLOATING ? copy_text(chain->body) : format_text("%s_joint%zu", chain->body, chain->count + 1);
   char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
-  struct Joint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
+  struct RobotJoint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
   chain->is_free |= type == FLOATING;
   if (type == FLOATING) read_free(mjcf, joint, &chain->placement);
   else joint->origin = placement_within(&chain->placement, &anchor);
@@ -200,7 +200,7 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   if (name == NULL) name = format_text("body%zu", ++mjcf->unnamed_count);
   struct Placement placement = mjcf_placement(mjcf, node);
   struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
-  struct Link *link = mjcf_add_link(mjcf, node, name);
+  struct RobotLink *link = mjcf_add_link(mjcf, node, name);
   mjcf_reject(mjcf, node, "gravcomp");
   mjcf_reject(mjcf, node, "mocap");
   mjcf_note_placement(mjcf, name, parent, &chain.placement);

@@ -64,7 +64,7 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
   const char *joint_name = attribute(node, "joint");
   if (share == 0 || mjcf_is(mjcf, node, "ctrllimited", "false")) return;
-  const struct Joint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
+  const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
   if (tendon == NULL && joint == NULL) return;
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
   bool is_known = !isnan(lower) && !isnan(upper);

@@ -12,7 +12,7 @@
 static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   double c[5] = {0, 1};
   char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
-  struct Joint *joints[2] = {mjcf_joint(mjcf, names[0]), mjcf_joint(mjcf, names[1])};
+  struct RobotJoint *joints[2] = {mjcf_joint(mjcf, names[0]), mjcf_joint(mjcf, names[1])};
   mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
   for (int i = 0; i < 2; i++)
     if (joints[i] == NULL && *names[i] != '\0')

@@ -154,7 +154,7 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
 
 /* Makes the first plane of the world the ground. Other planes touch nothing. */
 static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
-                      const struct Link *link) {
+                      const struct RobotLink *link) {
   struct Robot *robot = mjcf->file.robot;
   bool is_of_world = link == robot->links[0];
   if (is_of_world && robot->ground == NULL) {
@@ -169,7 +169,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
 }
 
 /* Adds a geom that can touch to the collisions, any other to the visuals. */
-static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct Link *link) {
+static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct RobotLink *link) {
   struct MjcfContact contact = mjcf_contact(mjcf, node);
   bool touches = mjcf_touches(mjcf, &contact);
   bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
@@ -195,7 +195,7 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   (*shapes)[(*count)++] = shape;
 }
 
-static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link) {
+static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
   struct Placement placement = mjcf_placement(mjcf, node);
   struct RigidBody body = {.mass = mjcf_number_not_negative(mjcf, node, "mass", 0)};
@@ -212,7 +212,7 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link)
 
 /* Reads the geoms of a body, and those in its <frame>s, which transform them. */
 static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placement *outer, bool weighs,
-                       struct Link *link) {
+                       struct RobotLink *link) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (is_element(child, "frame")) {
       struct Placement inner = mjcf_placement(mjcf, child);
@@ -231,7 +231,7 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
   }
 }
 
-void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link) {
+void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
   bool is_world = is_element(node, "worldbody");
   xmlNodePtr inertial = child_of(&mjcf->file, node, "inertial");
   bool has_own = inertial != NULL && mjcf->inertia_from_geoms != ALWAYS;

@@ -4,4 +4,4 @@
 #include "read/robots/mjcf/mjcf_values.h"
 
 /* Sets the inertia and the shapes of a link, in its frame. Geoms of the world have no mass. */
-void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct Link *link);
+void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link);

@@ -13,7 +13,7 @@ static const size_t velocities[JOINT_TYPES] = {[REVOLUTE] = 1, [PRISMATIC] = 1, 
 /* Returns the <key> of the options; NULL after reporting that there is none. */
 static xmlNodePtr find_key(struct Mjcf *mjcf) {
   const char *name = mjcf->file.options->keyframe;
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   for (xmlNodePtr section = mjcf->root->children; section != NULL; section = section->next)
     for (xmlNodePtr key = is_element(section, "keyframe") ? section->children : NULL; key != NULL; key = key->next) {
       if (!is_element(key, "key")) continue;
@@ -52,7 +52,7 @@ static void set_rate(const double q[4], const double omega[3], double rate[4]) {
   }
 }
 
-static void start_joint(struct Joint *joint, const double *position, const double *velocity) {
+static void start_joint(struct RobotJoint *joint, const double *position, const double *velocity) {
   struct JointStart *start = &joint->start;
   size_t first = joint->type == BALL ? 3 : 0;
   size_t count = positions[joint->type], moved = joint->type == FLOATING ? 3 : first == 0 ? count : 0;
@@ -74,7 +74,7 @@ void mjcf_read_keyframe(struct Mjcf *mjcf) {
   const double *velocity = read_list(mjcf, key, "qvel", sum_of(robot, velocities));
   const double *control = read_list(mjcf, key, "ctrl", robot->actuator_count);
   for (size_t i = 0; i < robot->joint_count; i++) {
-    struct Joint *joint = robot->joints[i];
+    struct RobotJoint *joint = robot->joints[i];
     start_joint(joint, position, velocity);
     if (position != NULL) position += positions[joint->type];
     if (velocity != NULL) velocity += velocities[joint->type];

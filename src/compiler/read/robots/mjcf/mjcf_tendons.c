@@ -47,7 +47,7 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
     transmission->site_names[last] = required_attribute(&mjcf->file, child, "site");
     if (last > 0) check_line(mjcf, child, tendon, transmission->site_names[last - 1], transmission->site_names[last]);
   }
-  transmission->sites = allocate(transmission->site_count, sizeof(struct Link *));
+  transmission->sites = allocate(transmission->site_count, sizeof(struct RobotLink *));
   if (transmission->site_count < 2)
     report_error(mjcf->file.diagnostics, tendon->line,
                  "the tendon '%s' has fewer than two sites; expected <site site=\"...\"/> for each of its ends",
@@ -61,7 +61,7 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
 static double sum_of_terms(const struct Mjcf *mjcf, const struct Transmission *transmission, bool is_relaxed) {
   double length = 0;
   for (size_t i = 0; i < transmission->count; i++) {
-    const struct Joint *joint = mjcf_joint(mjcf, transmission->terms[i].joint_name);
+    const struct RobotJoint *joint = mjcf_joint(mjcf, transmission->terms[i].joint_name);
     if (joint == NULL) continue;
     length += transmission->terms[i].coefficient * (is_relaxed ? joint->rest : joint->start.position[0]);
   }
@@ -90,7 +90,7 @@ static double relaxed_length(struct Mjcf *mjcf, xmlNodePtr node, const struct Te
   if (tendon->transmission.site_count == 0) return sum_of_terms(mjcf, &tendon->transmission, true);
   bool is_needed = mjcf_number(mjcf, node, "stiffness", 0) != 0;
   for (size_t i = 0; i < robot->joint_count && is_needed; i++) {
-    const struct Joint *joint = robot->joints[i];
+    const struct RobotJoint *joint = robot->joints[i];
     bool is_single = joint->type == REVOLUTE || joint->type == PRISMATIC;
     if (!is_single || joint->rest == joint->start.position[0]) continue;
     report_error(mjcf->file.diagnostics, tendon->line,
@@ -141,7 +141,7 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
 
 const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const struct Robot *robot = mjcf->file.robot;
-  struct Similar similar = {.wanted = name};
+  struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < robot->tendon_count; i++) {
     if (strcmp(robot->tendons[i].name, name) == 0) return &robot->tendons[i];
     similar_consider(&similar, robot->tendons[i].name);

@@ -8,17 +8,17 @@
 
 const char mjcf_world[] = "world";
 
-struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
-  struct Link *link = allocate(1, sizeof *link);
+struct RobotLink *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) {
+  struct RobotLink *link = allocate(1, sizeof *link);
   link->name = name;
   link->line = line_of(node);
   add_link(&mjcf->file, link);
   return link;
 }
 
-struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
-                             char *child) {
-  struct Joint *joint = allocate(1, sizeof *joint);
+struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,
+                                  char *parent, char *child) {
+  struct RobotJoint *joint = allocate(1, sizeof *joint);
   joint->name = name;
   joint->line = line_of(node);
   joint->type = type;
@@ -32,7 +32,7 @@ struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType 
   return joint;
 }
 
-struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name) {
+struct RobotJoint *mjcf_joint(const struct Mjcf *mjcf, const char *name) {
   const struct Robot *robot = mjcf->file.robot;
   for (size_t i = 0; i < robot->joint_count; i++)
     if (strcmp(robot->joints[i]->name, name) == 0) return robot->joints[i];

@@ -7,14 +7,14 @@
 extern const char mjcf_world[];
 
 /* Adds a link for an element; returns it. */
-struct Link *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
+struct RobotLink *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
 
 /* Adds a joint along z, without limits and friction. */
-struct Joint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum JointType type, char *name, char *parent,
-                             char *child);
+struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,
+                                  char *parent, char *child);
 
 /* Returns the joint of this name; NULL for none. */
-struct Joint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
+struct RobotJoint *mjcf_joint(const struct Mjcf *mjcf, const char *name);
 
 /* Fixes a link to its parent. */
 void mjcf_fix(struct Mjcf *mjcf, xmlNodePtr node, char *parent, char *child, const struct Placement *placement);
