@@ -2,19 +2,27 @@
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 
-# add_string(NAME FILE): writes NAME.c, which defines the content of FILE as a string: the schema, and the style and script of an FMU's page.
-# The documentation in the schema is for editors and for the site, and left out.
-function(add_string name file)
-  file(READ ${root}/${file} text)
+# add_string(NAME FILE...): writes NAME.c, which defines the content of the files as a string: the schema, and the style and script of an FMU's
+# page. The documentation in the schema is for editors and for the site, and left out; likewise comments and indents of scripts.
+function(add_string name)
+  set(text "")
+  foreach(file ${ARGN})
+    file(READ ${root}/${file} content)
+    if(file MATCHES "[.]js$")
+      string(REGEX REPLACE "\n *//[^\n]*" "" content "\n${content}")
+      string(REGEX REPLACE "\n *" "\n" content "${content}")
+    endif()
+    string(APPEND text "${content}")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/${file})
+  endforeach()
   string(REGEX REPLACE "\n *<xs:annotation>[^\n]*</xs:annotation>" "" text "${text}")
   string(HEX "${text}" bytes)
-  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${bytes}")
   file(CONFIGURE OUTPUT ${name}.c CONTENT "extern const char ${name}[];\nconst char ${name}[] = {${bytes}0};\n" @ONLY)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${root}/${file})
 endfunction()
 add_string(system_schema fmu/system.xsd)
 add_string(page_style modelDescription/page/page.css)
-add_string(page_script modelDescription/page/page.js)
+add_string(page_script modelDescription/page/formula.js modelDescription/page/mathml.js modelDescription/page/page.js)
 add_string(license_text LICENSE)
 
 # list_of_names(LIST VARIABLE): sets VARIABLE to C that defines LIST as an array of strings, which ends with a null pointer.

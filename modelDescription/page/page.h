@@ -38,10 +38,7 @@ void page_element(const struct Page *page, const char *name, const char *text);
 /* Writes a paragraph. */
 void page_paragraph(const struct Page *page, const char *text);
 
-/* Returns the text with the forces of constraints as multipliers: ground.lambda, typeset as a letter with an index. */
-char *page_with_multipliers(const struct Page *page, const char *text);
-
-/* Writes left = right, typeset and as text to copy. */
+/* Writes left = right as text, which the page's script typesets. */
 void page_equation(const struct Page *page, const char *left, Node right);
 
 /* Writes an equation of two sides with a label before it. */
@@ -54,7 +51,7 @@ void page_end_fold(const struct Page *page);
 /* Writes the heading of a step of a derivation. */
 void page_step(const struct Page *page, const char *heading);
 
-/* Writes an equation of a derivation: typeset alone, to keep the page small. */
+/* Writes an equation of a derivation, of which the script keeps no text. */
 void page_step_equation(const struct Page *page, const char *left, Node right);
 void page_step_texts(const struct Page *page, const char *left, const char *right);
 

@@ -5,16 +5,7 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
-#include "mathml.h"
 #include "xml_output.h"
-
-/* Writes the name as formulas show it. */
-static void write_symbol(const struct Page *page, const char *name) {
-  char *math = mathml_of_name(page_with_multipliers(page, name));
-  xmlTextWriterStartElement(page->writer, BAD_CAST "td");
-  xmlTextWriterWriteRaw(page->writer, BAD_CAST math);
-  xmlTextWriterEndElement(page->writer);
-}
 
 static void write_row(const struct Page *page, const struct InterfaceVariable *variable) {
   static const char *const kinds[] = {
@@ -30,7 +21,7 @@ static void write_row(const struct Page *page, const struct InterfaceVariable *v
                      : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
                                                                           : kinds[entry->kind];
   xmlTextWriterStartElement(page->writer, BAD_CAST "tr");
-  write_symbol(page, entry->name);
+  page_element(page, "td", ""); /* for the name as formulas show it, which the script adds */
   page_element(page, "th", entry->name);
   page_element(page, "td", kind);
   page_element(page, "td", variable->unit != NULL ? variable->unit : "");

@@ -11,7 +11,7 @@ import reactions_in_sympy
 from fmu import lagc
 from held_systems import ARM, BEARING, CHAIN, CRANE, HOIST, ROBOT, SEAT, TABLE, WIRE, at, random_values, rename
 from mechanics import time
-from typeset import check
+from typeset import check, shown
 
 LINEAR = """<linearization of="../DisplacedBearing/system.xml" name="LinearBearing"/>
 """
@@ -136,7 +136,7 @@ def test_linearized_force(tmp_path, open_fmu):
 def test_page_shows_the_force(tmp_path):
     (tmp_path / "system.xml").write_text(BEARING)
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
-    page = (tmp_path / "out" / "documentation" / "index.html").read_text()
+    (page,) = shown([tmp_path / "out" / "documentation" / "index.html"], tmp_path)
     assert check(page) == page.count("<code>")
     section = page[page.index("Forces of reaction") :]
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")

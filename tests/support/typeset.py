@@ -1,4 +1,4 @@
-"""Comparison of typeset formulas (MathML) of a documentation page with their text."""
+"""Comparison of the formulas that a documentation page's script typesets (MathML) with their text."""
 
 import random
 import re
@@ -6,6 +6,9 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
+from chromium import look_at
+
+XHTML = "{http://www.w3.org/1999/xhtml}"
 MATHML = "{http://www.w3.org/1998/Math/MathML}"
 GREEK = dict(zip("αβγδεζηθκλμνξπρστφχψωΓΔΘΛΣΦΨΩ",
                  "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi psi omega "
@@ -68,16 +71,21 @@ def value(side, values):
         return eval(side, {}, {**values, **FUNCTIONS})
 
 
+def shown(files, folder):
+    """Return the pages as browsers show them, once their scripts have run, as XML."""
+    return list(look_at(files, folder, [1200], "view => new XMLSerializer().serializeToString(view.document)").values())
+
+
 def check(page):
-    """Compare every formula with its text at random values; return their number."""
+    """Compare every formula of a shown page with its text at random values; return their number."""
     root, count = ElementTree.fromstring(page), 0
     generator = random.Random(1)
-    for equation in root.iter("div"):
+    for equation in root.iter(f"{XHTML}div"):
         if equation.get("class") != "equation":
             continue
         conditions = lambda side: re.sub(r"\bif\(", "gate(", side)
-        typeset = conditions("".join(infix(math) for math in equation.find("p") if math.tag != "wbr")).split("=")
-        text = [plain(conditions(side)) for side in equation.find("details/code").text.split(" = ")]
+        typeset = conditions("".join(infix(math) for math in equation.find(f"{XHTML}p") if math.tag != f"{XHTML}wbr")).split("=")
+        text = [plain(conditions(side)) for side in equation.find(f"{XHTML}details/{XHTML}code").text.split(" = ")]
         # The force of a constraint is typeset as a multiplier.
         typeset = [re.sub(r"\blambda_(\w+)", lambda found: f"F_{found[1]}" if f"F_{found[1]}" in " ".join(text) else found[0], side) for side in typeset]
         names = {name: generator.uniform(0.1, 0.9) for name in sorted(set(re.findall(r"[A-Za-z_]\w*", " ".join(text))))}
